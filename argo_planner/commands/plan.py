@@ -52,16 +52,16 @@ def plan_command(
     """Plan a mission in the browser, on a 3D model of the site, and watch it run."""
     try:
         from argo_planner.service.runs.host import AfterRestart
-        from argo_planner.service.web.access import AccessToken, TokenBook, kept_secret
-        from argo_planner.service.web.guard import LOOPBACK, Doors
-        from argo_planner.service.web.serving import ServiceOrder, listen, open_folder, serve
+        from argo_planner.service.web.access import AccessToken, TokenBook, load_or_make_secret
+        from argo_planner.service.web.guard import LOOPBACK, GuardSettings
+        from argo_planner.service.web.serving import ServiceSpec, listen, open_plan_folder, serve
     except ImportError as error:
         raise Unavailable(f"the page needs {error.name}: {install_line('planner')}") from None
     opened = open_site(site).prepare()
     imported = None
     if source is not None:
         imported = import_and_warn(read_upload(source), opened, start_area, end_area).mission
-    token = AccessToken(kept_secret(folder))
+    token = AccessToken(load_or_make_secret(folder))
     try:
         listening = listen("127.0.0.1", _PORT if port is None else port)
     except Unavailable:
@@ -69,7 +69,7 @@ def plan_command(
             raise
         listening = listen("127.0.0.1", 0)
     port = listening.getsockname()[1]
-    plans = open_folder(folder)
+    plans = open_plan_folder(folder)
     fragment = ""
     if source is not None and imported is not None:
         fragment = f"#/missions/{_add_mission(plans, source.stem, imported)}"
@@ -79,10 +79,10 @@ def plan_command(
     console.print(f"Site {opened.name}, missions in {folder}.")
     console.print(f"The page is {'open: ' if shown else 'at '}{address}")
     console.print("Press Ctrl-C to stop; all changes are saved.")
-    doors = Doors(frozenset(LOOPBACK), cookie=f"argo-{port}")
-    order = ServiceOrder(plans, opened, TokenBook((token,)), doors, AfterRestart.WAIT)
+    settings = GuardSettings(frozenset(LOOPBACK), cookie=f"argo-{port}")
+    spec = ServiceSpec(plans, opened, TokenBook((token,)), settings, AfterRestart.WAIT)
     with suppress(KeyboardInterrupt):
-        serve(order, listening)
+        serve(spec, listening)
 
 
 def _add_mission(plans: "PlanFolder", name: str, mission: Mission) -> str:

@@ -83,12 +83,12 @@ def serve_command(
         from argo_planner.service.web.access import (
             AccessToken,
             TokenBook,
-            checked_secret,
-            kept_secret,
+            load_or_make_secret,
             read_tokens,
+            validate_secret,
         )
-        from argo_planner.service.web.guard import LOOPBACK, Doors
-        from argo_planner.service.web.serving import ServiceOrder, listen, open_folder, serve
+        from argo_planner.service.web.guard import LOOPBACK, GuardSettings
+        from argo_planner.service.web.serving import ServiceSpec, listen, open_plan_folder, serve
     except ImportError as error:
         raise Unavailable(f"the service needs {error.name}: {install_line('planner')}") from None
     if after_restart not in list(AfterRestart):
@@ -103,13 +103,15 @@ def serve_command(
     if token_file is not None:
         tokens = read_tokens(token_file)
     else:
-        secret = checked_secret(token, "--token") if token else kept_secret(folder)
+        secret = validate_secret(token, "--token") if token else load_or_make_secret(folder)
         tokens = (AccessToken(secret),)
     names = {*LOOPBACK, *(allow_host or ()), *([] if _is_any(host) else [_in_address(host)])}
     listening = listen(host, port)
     port = listening.getsockname()[1]
-    doors = Doors(frozenset(n.lower() for n in names), frozenset(origin or ()), f"argo-{port}")
-    plans = open_folder(folder)
+    settings = GuardSettings(
+        frozenset(n.lower() for n in names), frozenset(origin or ()), f"argo-{port}"
+    )
+    plans = open_plan_folder(folder)
     opened = open_site(site).prepare()
     console = Console(stderr=True, highlight=False, quiet=is_quiet(), soft_wrap=True)
     shown = "127.0.0.1" if _is_any(host) else _in_address(host)
@@ -119,10 +121,10 @@ def serve_command(
     console.print(f"Site {opened.name}, missions in {folder}. Open {address}")
     console.print("Press Ctrl-C to stop the service; all confirmed changes are saved.")
     with suppress(KeyboardInterrupt):
-        order = ServiceOrder(
-            plans, opened, TokenBook(tokens), doors, AfterRestart(after_restart), foxglove
+        spec = ServiceSpec(
+            plans, opened, TokenBook(tokens), settings, AfterRestart(after_restart), foxglove
         )
-        serve(order, listening)
+        serve(spec, listening)
 
 
 def _is_loopback(host: str) -> bool:

@@ -84,7 +84,7 @@ def test_the_service_begins_says_where_it_is_and_ends(serving: Serving) -> None:
         (["--token-file", "nothing"], "can't be read"),
         (["--site", "nowhere"], "nowhere"),
         (["--port", "70000"], "65535"),
-        (["--host", "no.such.host.invalid", "--token", "x" * 20], "can't be listened at"),
+        (["--host", "no.such.host.invalid", "--token", "x" * 20], "the service can't listen at"),
     ],
 )
 def test_what_can_not_be_served_is_said(argo, tmp_path, options, said) -> None:
@@ -159,7 +159,7 @@ class Subscriber(Listener):
                 ) as opened:
                     self.connections += 1
                     async for text in opened:
-                        self.told_that(json.loads(text))
+                        self.apply_message(json.loads(text))
             except (OSError, ConnectionClosed, InvalidHandshake, EOFError):  # killed at any moment
                 await asyncio.sleep(0.2)
 

@@ -1,1 +1,1 @@
-"""The planning service over HTTP and WebSockets: a thin layer, safe by default."""
+"""The planning service over HTTP and WebSockets: a thin layer with strict access rules."""

@@ -1,4 +1,4 @@
-"""Who may do what: roles, and the tokens that give them."""
+"""Access control: roles, and the tokens that grant them."""
 
 import hashlib
 import hmac
@@ -14,71 +14,71 @@ from urllib.parse import unquote
 from argo_compiler.base.errors import ArgoError, Invalid, Unavailable
 from argo_planner.service.core.plan_limits import require_name
 
-SHORTEST_TOKEN = 16
-"""characters"""
+MIN_TOKEN_LENGTH = 16
+"""in characters"""
 AUTHOR_HEADER = "argo-author"
-"""the HTTP header in which a client says who is working, percent-encoded"""
-_SECRET = ".token"
-"""the file of a folder that has its token"""
+"""HTTP header with the name of the author, percent-encoded"""
+_SECRET_FILE = ".token"
+"""name of the file with the token of a folder of missions"""
 
 
 class AccessRole(StrEnum):
-    """What somebody may do; each may do what those before may."""
+    """Role of a client. Each role includes the rights of the roles before it."""
 
     VIEW = "view"
-    """look at missions, runs and the world"""
+    """right to read missions, runs and the world"""
     PLAN = "plan"
-    """change missions and obstacles, suggest orders"""
+    """right to change missions and obstacles, and to start jobs"""
     OPERATE = "operate"
-    """start runs and steer them"""
+    """right to start and control runs"""
 
     def includes(self, other: "AccessRole") -> bool:
-        """Whether who has this one may do what the other one may."""
+        """Return True if this role has all rights of the other role."""
         roles = list(AccessRole)
         return roles.index(self) >= roles.index(other)
 
 
 class AccessDenied(ArgoError):
-    """The role does not allow it."""
+    """A request that the role does not allow."""
 
     code = "access-denied"
 
 
 class TokenMissing(ArgoError):
-    """No token was given, or an unknown one."""
+    """A request without a token, or with an unknown one."""
 
     code = "token-missing"
 
 
 @dataclass(frozen=True)
 class AccessToken:
-    """A secret, and what who has it may do."""
+    """A secret, with the role that it grants."""
 
     secret: str
     role: AccessRole = AccessRole.OPERATE
     name: str | None = None
-    """who it is; None: who has it says so"""
+    """name of the owner; None: each request states its author"""
 
     @property
     def cookie(self) -> str:
-        """What stands for it in a cookie, from which it can't be found out."""
+        """Value for a cookie: an HMAC, from which the secret can't be computed."""
         return hmac.new(self.secret.encode(), b"argo cookie", hashlib.sha256).hexdigest()
 
 
 @dataclass(frozen=True)
 class Visitor:
-    """Who has sent a request."""
+    """Sender of a request: name and role."""
 
     role: AccessRole
     author: str
     named: bool = False
-    """whether the token says who it is"""
+    """whether the name comes from the token"""
 
     def require(self, role: AccessRole) -> None:
-        """Raises AccessDenied."""
+        """Raise AccessDenied if the visitor's role does not include a role."""
         if not self.role.includes(role):
             raise AccessDenied(
-                f"this takes the role `{role}`, and yours is `{self.role}`: ask for another token"
+                f"this needs the role `{role}`, but yours is `{self.role}`: ask for another token"
             )
 
 
@@ -88,41 +88,50 @@ class TokenBook:
     def __init__(self, tokens: Iterable[AccessToken]) -> None:
         self._tokens = tuple(tokens)
 
-    def of_secret(self, secret: str) -> AccessToken | None:
-        """The token with that secret. Takes as long for a wrong one."""
-        return self._matching(secret, [token.secret for token in self._tokens])
+    def find_by_secret(self, secret: str) -> AccessToken | None:
+        """Return the token with a secret, or None; the time taken does not depend on the answer."""
+        return self._find(secret, [token.secret for token in self._tokens])
 
-    def of_cookie(self, cookie: str) -> AccessToken | None:
-        """The token that a cookie stands for."""
-        return self._matching(cookie, [token.cookie for token in self._tokens])
+    def find_by_cookie(self, cookie: str) -> AccessToken | None:
+        """Return the token with a value of a cookie, or None."""
+        return self._find(cookie, [token.cookie for token in self._tokens])
 
-    def _matching(self, given: str, wanted: list[str]) -> AccessToken | None:
-        found = None
-        for token, one in zip(self._tokens, wanted, strict=True):
-            if secrets.compare_digest(given.encode(errors="replace"), one.encode()):
-                found = token
-        return found
+    def _find(self, given: str, values: list[str]) -> AccessToken | None:
+        """Return the token whose value is the given one; compares with all, in constant time."""
+        match = None
+        for token, value in zip(self._tokens, values, strict=True):
+            if secrets.compare_digest(given.encode(errors="replace"), value.encode()):
+                match = token
+        return match
 
 
-def visitor(token: AccessToken, headers: Mapping[str, str], query: Mapping[str, str]) -> Visitor:
-    """Who has sent a request with that token. Raises Invalid for what can't be a name."""
-    said = headers.get(AUTHOR_HEADER) or query.get("author")
-    if token.name is not None or not said:
+def identify_visitor(
+    token: AccessToken, headers: Mapping[str, str], query: Mapping[str, str]
+) -> Visitor:
+    """Return the sender of a request with a token.
+
+    The name is that of the token, else that of the header or of the parameter `author`, else
+    `somebody`. Raises Invalid if the request states a text that can't be a name.
+    """
+    stated = headers.get(AUTHOR_HEADER) or query.get("author")
+    if token.name is not None or not stated:
         return Visitor(token.role, token.name or "somebody", token.name is not None)
-    author = unquote(said)
-    require_name(author, "whoever sends this")
+    author = unquote(stated)
+    require_name(author, "the author of this request")
     return Visitor(token.role, author)
 
 
 def read_tokens(path: Path) -> tuple[AccessToken, ...]:
-    """The tokens in a file, one a line: the secret, its role, and who has it; `#` begins a remark.
+    """Return the tokens in a file.
 
-    Raises Invalid with the line, Unavailable if it can't be read.
+    Each line has a secret, and optionally its role (`operate` by default) and its owner's name;
+    `#` begins a comment. Raises Invalid with the line of an error, Unavailable if the file can't
+    be read.
     """
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        raise Unavailable(f"{path}: can't be read as a file of tokens: {error}") from None
+        raise Unavailable(f"{path}: can't be read as a token file: {error}") from None
     tokens = []
     for number, line in enumerate(text.splitlines(), start=1):
         words = line.partition("#")[0].split(maxsplit=2)
@@ -131,46 +140,55 @@ def read_tokens(path: Path) -> tuple[AccessToken, ...]:
         where = f"{path}, line {number}"
         role = words[1] if len(words) > 1 else AccessRole.OPERATE
         if role not in list(AccessRole):
-            raise Invalid(f"{where}: no role `{role}`; there are: {', '.join(AccessRole)}")
+            raise Invalid(
+                f"{where}: there is no role `{role}`; choose from {', '.join(AccessRole)}"
+            )
         name = words[2].strip() if len(words) > 2 else None
         if name is not None:
             require_name(name, f"the owner of the token in {where}")
-        tokens.append(AccessToken(checked_secret(words[0], where), AccessRole(role), name))
+        tokens.append(AccessToken(validate_secret(words[0], where), AccessRole(role), name))
     if not tokens:
-        raise Invalid(f"{path}: has no tokens: write one a line, such as `SECRET plan Ann`")
+        raise Invalid(f"{path}: has no tokens: write one per line, such as `SECRET plan Ann`")
     if len({token.secret for token in tokens}) < len(tokens):
-        raise Invalid(f"{path}: has a token twice: give each of them once")
+        raise Invalid(f"{path}: has a token twice: write each token once")
     return tuple(tokens)
 
 
-def checked_secret(secret: str, where: str) -> str:
-    """The secret. Raises Invalid for one that is easily guessed or can't be sent."""
-    if len(secret) < SHORTEST_TOKEN:
-        raise Invalid(f"{where}: a token has at least {SHORTEST_TOKEN} characters")
+def validate_secret(secret: str, where: str) -> str:
+    """Return the secret; raise Invalid, with the place `where`, if it is too short or unsendable.
+
+    Only characters that need no escapes in an address and in a header are allowed.
+    """
+    if len(secret) < MIN_TOKEN_LENGTH:
+        raise Invalid(f"{where}: a token needs at least {MIN_TOKEN_LENGTH} characters")
     if not secret.isascii() or not all(c.isalnum() or c in "-._~" for c in secret):
-        raise Invalid(f"{where}: a token has letters, digits and `-._~` only")
+        raise Invalid(f"{where}: a token may have only letters, digits and `-._~`")
     return secret
 
 
-def kept_secret(folder: Path) -> str:
-    """The token of a folder of missions, made where there is none: a service that begins again has
-    the same, so that open pages go on. Raises Unavailable where it can't be kept, Invalid where it
-    was spoilt."""
-    path = folder / _SECRET
+def load_or_make_secret(folder: Path) -> str:
+    """Return the token of a folder of missions; store a new one if it has none.
+
+    A restarted service thus has the same token, and open pages stay connected. Raises Unavailable
+    if the token can't be read or stored, Invalid if the stored one is no valid token.
+    """
+    path = folder / _SECRET_FILE
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with suppress(FileExistsError):
             flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
             file = os.open(path, flags, 0o600)
             with open(file, "w", encoding="ascii") as new:
-                new.write(new_secret())
+                new.write(make_secret())
         file = os.open(path, os.O_RDONLY | os.O_NOFOLLOW)
-        with open(file, encoding="ascii") as kept:
-            return checked_secret(kept.read().strip(), str(path))
+        with open(file, encoding="ascii") as stored:
+            return validate_secret(stored.read().strip(), str(path))
     except (OSError, UnicodeDecodeError) as error:
-        raise Unavailable(f"{path}: can't be kept: {error}; choose another folder") from None
+        raise Unavailable(
+            f"{path}: the token can't be stored: {error}; choose another folder"
+        ) from None
 
 
-def new_secret() -> str:
-    """A token that nobody guesses."""
+def make_secret() -> str:
+    """Return a random secret of 24 bytes, in Base64 for URLs."""
     return secrets.token_urlsafe(24)

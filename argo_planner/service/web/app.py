@@ -1,4 +1,4 @@
-"""The app: all routes, which stand behind the guard."""
+"""The web application with all its routes, and its OpenAPI document."""
 
 import json
 from collections.abc import AsyncIterator, Callable
@@ -24,33 +24,46 @@ from argo_planner.service.web import (
     world,
 )
 from argo_planner.service.web.access import AccessRole
-from argo_planner.service.web.problems import MEDIA, answer_problems, documented
-from argo_planner.service.web.requests import KEYS, PlanningService, Service, Viewer, said
+from argo_planner.service.web.problems import (
+    PROBLEM_MEDIA_TYPE,
+    install_problem_handlers,
+    problem_responses,
+)
+from argo_planner.service.web.requests import (
+    AUTHENTICATION,
+    PlanningService,
+    Service,
+    Viewer,
+    json_response,
+)
 
-Opened = Callable[[], AbstractAsyncContextManager[PlanningService]]
-"""opens the service when the app begins, and closes it when it ends"""
+OpenService = Callable[[], AbstractAsyncContextManager[PlanningService]]
+"""function whose context opens the service, and closes it at the end"""
 
 router = APIRouter(
-    prefix="/api", tags=["service"], dependencies=KEYS, responses=documented(401, 403)
+    prefix="/api",
+    tags=["service"],
+    dependencies=AUTHENTICATION,
+    responses=problem_responses(401, 403),
 )
 
 
 class ServiceSummary(Model):
-    """What the service is, and who asks."""
+    """Version and site of the service, and the identity of the client."""
 
     argo: str
-    """its version"""
+    """version of Argo"""
     site: str
     author: str
     named: bool
-    """whether the token says who asks, whatever they say themselves"""
+    """whether the author's name comes from the token; the client then can't choose it"""
     role: AccessRole
 
 
 @router.get("/service", operation_id="read_service", response_model=ServiceSummary)
 async def read_service(service: Service, visitor: Viewer) -> Response:
-    """What the service is, and what whoever asks may do."""
-    return said(
+    """Return the version and the site of the service, and the client's name and role."""
+    return json_response(
         ServiceSummary(
             argo=__version__,
             site=service.site.name,
@@ -62,33 +75,33 @@ async def read_service(service: Service, visitor: Viewer) -> Response:
 
 
 webhooks = APIRouter()
-"""what is told over WebSockets, for the OpenAPI document: each socket as a webhook of its own,
-whose answer is one of its messages"""
+"""messages over WebSockets, for the OpenAPI document: each socket is described as a webhook whose
+response is one of its messages"""
 
 
 @webhooks.get("mission", operation_id="mission_told", response_model=RoomMessage)
-def mission_told() -> None:
-    """What `/api/missions/{id}/live` sends, message by message."""
+def mission_message() -> None:
+    """Describe a message of `/api/missions/{id}/live`."""
 
 
 @webhooks.get("robot", operation_id="robot_told", response_model=RunMessage)
-def robot_told() -> None:
-    """What `/api/robot/live` sends, message by message."""
+def robot_message() -> None:
+    """Describe a message of `/api/robot/live`."""
 
 
-def make_app(opened: Opened) -> FastAPI:
-    """The app without its guard, as the OpenAPI document is made from it."""
+def make_app(open_service: OpenService) -> FastAPI:
+    """Return the application without its guard; the OpenAPI document is made from it."""
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
-        async with opened() as service:
+        async with open_service() as service:
             app.state.service = service
             yield
 
     app = FastAPI(
         title="Argo planning service",
         version=__version__,
-        description="Plans inspection missions for one robot: many people at once, one authority.",
+        description="Plans inspection missions for one robot; many people can edit them at once.",
         lifespan=lifespan,
         openapi_url="/api/openapi.json",
         docs_url=None,
@@ -96,8 +109,8 @@ def make_app(opened: Opened) -> FastAPI:
         swagger_ui_oauth2_redirect_url=None,
         webhooks=webhooks,
     )
-    answer_problems(app)
-    app.openapi = partial(_document_of, app)  # type: ignore[method-assign]
+    install_problem_handlers(app)
+    app.openapi = partial(_make_document, app)  # type: ignore[method-assign]
     parts = (
         page, missions, versions, commands, jobs, evaluations, world, runs, live,
     )  # fmt: skip
@@ -106,23 +119,24 @@ def make_app(opened: Opened) -> FastAPI:
     return app
 
 
-def _document_of(app: FastAPI) -> dict[str, Any]:
-    """The OpenAPI document, in which problems have the media type that they are answered with."""
+def _make_document(app: FastAPI) -> dict[str, Any]:
+    """Return the OpenAPI document, with the media type of problems for all error responses."""
     if app.openapi_schema is None:
-        made = FastAPI.openapi(app)
-        for path in made["paths"].values():
+        document = FastAPI.openapi(app)
+        for path in document["paths"].values():
             for operation in path.values():
-                for status, told in operation["responses"].items():
+                for status, response in operation["responses"].items():
                     if status >= "400":
-                        told["content"] = {MEDIA: told["content"]["application/json"]}
+                        content = response["content"]["application/json"]
+                        response["content"] = {PROBLEM_MEDIA_TYPE: content}
     assert app.openapi_schema is not None
     return app.openapi_schema
 
 
-def document() -> str:
-    """The OpenAPI document as JSON."""
+def openapi_document() -> str:
+    """Return the OpenAPI document as JSON."""
 
-    def never() -> AbstractAsyncContextManager[PlanningService]:
+    def open_nothing() -> AbstractAsyncContextManager[PlanningService]:
         raise AssertionError("the document needs no service")
 
-    return json.dumps(make_app(never).openapi(), indent=1, ensure_ascii=False) + "\n"
+    return json.dumps(make_app(open_nothing).openapi(), indent=1, ensure_ascii=False) + "\n"

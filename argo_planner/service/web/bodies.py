@@ -1,4 +1,4 @@
-"""The bodies of requests, read as strictly as the OpenAPI document says."""
+"""Bodies of requests, validated as strictly as the OpenAPI document states."""
 
 import json
 from collections.abc import Callable
@@ -13,31 +13,32 @@ T = TypeVar("T")
 
 
 class StrictJson:
-    """Marks the type of a body in which a text such as "1.5" is no number.
+    """Annotation for the type of a body in which a text such as "1.5" is not accepted as a number.
 
-    FastAPI has parsed the JSON before pydantic sees it, and pydantic's strict mode then wants
-    tuples and members of enumerations, which no JSON has; so the body is validated as JSON again.
+    FastAPI parses the JSON before pydantic validates it. For parsed data, pydantic's strict mode
+    requires tuples and members of enumerations, which JSON does not have. The body is therefore
+    written as JSON again and validated as such.
     """
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> core_schema.CoreSchema:
-        # Pydantic has taken off what tells the kinds of a union apart.
+        # Pydantic has removed the discriminator of a union.
         union = get_origin(source) in (Union, UnionType)
         body: Any = Annotated[source, Discriminator("kind")] if union else source
         adapter = TypeAdapter[Any](body)
 
-        def validated(given: Any, leniently: Callable[[Any], Any]) -> Any:
-            if isinstance(given, bytes):  # by its header it is no JSON
-                return leniently(given)
+        def validate(given: Any, validate_leniently: Callable[[Any], Any]) -> Any:
+            if isinstance(given, bytes):  # the content type is not JSON
+                return validate_leniently(given)
             try:
                 return adapter.validate_json(json.dumps(given), strict=True)
             except ValidationError as error:
                 faults = [{**fault, "loc": ("body", *fault["loc"])} for fault in error.errors()]
                 raise RequestValidationError(faults) from None
 
-        return core_schema.no_info_wrap_validator_function(validated, handler(source))
+        return core_schema.no_info_wrap_validator_function(validate, handler(source))
 
 
-Sent = Annotated[T, StrictJson()]
-"""the body of a request: Sent[NameGiven]"""
+JsonBody = Annotated[T, StrictJson()]
+"""type of a request's body in a route: `JsonBody[NameGiven]`"""

@@ -1,4 +1,4 @@
-"""Commands to a mission, its script, its reading and its analysis."""
+"""Routes for the commands to a mission, its script, its plain sentences and its analysis."""
 
 import asyncio
 from typing import Annotated, Any
@@ -22,94 +22,99 @@ from argo_planner.service.jobs.analysis import AnalysisFound
 from argo_planner.service.rooms.messages import CommandDone
 from argo_planner.service.rooms.room import PlanRoom
 from argo_planner.service.storage.import_notes import store_import_notes
-from argo_planner.service.web.bodies import Sent
-from argo_planner.service.web.missions import sound
-from argo_planner.service.web.problems import documented
+from argo_planner.service.web.bodies import JsonBody
+from argo_planner.service.web.missions import require_valid_mission
+from argo_planner.service.web.problems import problem_responses
 from argo_planner.service.web.requests import (
     MadeOn,
     PlanId,
     Planner,
     Service,
     Viewer,
-    routes,
-    said,
+    json_response,
+    make_router,
 )
 from argo_planner.use_cases.explaining import explain_mission
 from argo_planner.use_cases.importing import Upload, import_mission
 
-MOST_SCRIPT = 1_000_000
-"""characters"""
+MAX_SCRIPT_LENGTH = 1_000_000
+"""in characters"""
 
-router = routes("commands", prefix="/api/missions/{id}")
-COMMAND: dict[str, Any] = {"response_model": CommandDone, "responses": documented(412, 428)}
-"""how routes answer that carry out a command"""
+router = make_router("commands", prefix="/api/missions/{id}")
+COMMAND_RESPONSE: dict[str, Any] = {
+    "response_model": CommandDone,
+    "responses": problem_responses(412, 428),
+}
+"""arguments of a route that executes a command: its response, and its problems"""
 
 AnyCommand = Annotated[EditPlan | UndoEdit | RedoEdit | ReplacePlan, Discriminator("kind")]
 
 
 class ScriptGiven(Model):
-    """A script in place of the mission."""
+    """A script whose mission replaces the present one."""
 
     id: CommandId
-    script: str = Field(max_length=MOST_SCRIPT)
+    script: str = Field(max_length=MAX_SCRIPT_LENGTH)
 
 
-@router.post("/commands", operation_id="carry_out_command", **COMMAND)
+@router.post("/commands", operation_id="carry_out_command", **COMMAND_RESPONSE)
 async def carry_out_command(
     service: Service,
     visitor: Planner,
     id: PlanId,
-    command: Sent[AnyCommand],
+    command: JsonBody[AnyCommand],
     made_on: MadeOn,
 ) -> Response:
-    """Carries out a command. Sent again with the same id it does nothing twice."""
+    """Execute a command. A command that is sent again with the same id is not executed again."""
     room = await service.rooms.open(id)
-    return await carried_out(room, command, visitor.author, made_on)
+    return await execute_command(room, command, visitor.author, made_on)
 
 
-@router.put("/script", operation_id="write_script", **COMMAND)
+@router.put("/script", operation_id="write_script", **COMMAND_RESPONSE)
 async def write_script(
     service: Service,
     visitor: Planner,
     id: PlanId,
-    given: Sent[ScriptGiven],
+    given: JsonBody[ScriptGiven],
     made_on: MadeOn,
 ) -> Response:
-    """Puts what a script says in place of the mission, as a command that can be undone."""
+    """Replace the mission by that of a script, as a command that can be undone."""
     room = await service.rooms.open(id)
     upload = Upload("script", given.script.encode(errors="replace"))
     imported = await asyncio.to_thread(import_mission, upload, service.site)
     command = ReplacePlan.model_construct(id=given.id, mission=imported.mission, about="a script")
-    answer = await carried_out(room, command, visitor.author, made_on)
+    answer = await execute_command(room, command, visitor.author, made_on)
     revision = room.document.plan.revision
     await asyncio.to_thread(store_import_notes, service.folder, id, revision, imported.diagnostics)
     return answer
 
 
 @router.get("/reading", operation_id="read_back", response_model=MissionReading)
-async def read_back(service: Service, _: Viewer, id: PlanId) -> Response:
-    """The mission in plain sentences, task by task; `text` is a script that gives the same."""
+async def read_sentences(service: Service, _: Viewer, id: PlanId) -> Response:
+    """Return the mission in plain sentences, by task; `text` is a script of the same mission."""
     document = (await service.rooms.open(id)).document
-    reading = await asyncio.to_thread(explain_mission, sound(document, service.site), service.site)
-    return said(reading, revision=document.plan.revision)
+    reading = await asyncio.to_thread(
+        explain_mission, require_valid_mission(document, service.site), service.site
+    )
+    return json_response(reading, revision=document.plan.revision)
 
 
 @router.get("/analysis", operation_id="read_analysis", response_model=AnalysisFound)
 async def read_analysis(service: Service, _: Viewer, id: PlanId) -> Response:
-    """What the analysis has found last, and of which revision; 404 until there is one."""
+    """Return the last analysis and its revision; 404 until the mission has been analysed."""
     room = await service.rooms.open(id)
     if room.analysis is None:
         raise NotFound("the mission has not been analysed yet: ask again in a moment")
-    return said(room.analysis)
+    return json_response(room.analysis)
 
 
-async def carried_out(
+async def execute_command(
     room: PlanRoom,
     command: PlanCommand,
     author: str,
     made_on: int | None,
     asked: ReplaceFrom | None = None,
 ) -> Response:
-    """The answer to a command. Raises what `PlanRoom.execute` raises."""
+    """Execute a command; return the response. Raises the errors of `PlanRoom.execute`."""
     done = await room.execute(command, author, made_on, asked)
-    return said(done, revision=done.newest)
+    return json_response(done, revision=done.newest)

@@ -1,4 +1,4 @@
-"""Connections: how many there may be, and how long one may say nothing."""
+"""Limits on the number of connections, and on the time until their first request."""
 
 import asyncio
 import resource
@@ -7,60 +7,69 @@ from typing import Any, ClassVar
 
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 
-from argo_planner.service.web.upload_limits import MOST_OF_A_MESSAGE
+from argo_planner.service.web.upload_limits import MAX_MESSAGE_BYTES
 
-MOST_CONNECTIONS = 2_000
-FIRST_REQUEST_WITHIN = 10.0
-"""s"""
-_FULL = (
+MAX_CONNECTIONS = 2_000
+FIRST_REQUEST_TIMEOUT = 10.0
+"""in s"""
+_FULL_HEAD = (
     b"HTTP/1.1 503 Service Unavailable\r\ncontent-type: application/problem+json\r\n"
     b"retry-after: 10\r\nconnection: close\r\ncontent-length: %d\r\n\r\n%s"
 )
-_SAID = b'{"status":503,"code":"full","detail":"too many connections are open: try again later"}'
+_FULL_BODY = (
+    b'{"status":503,"code":"full","detail":"too many connections are open: try again later"}'
+)
 
 
 class LimitedProtocol(HttpToolsProtocol):
-    """One connection. Those that have asked for nothing yet make room for others, and are closed
-    after a while."""
+    """Connection to a client.
+
+    A connection without a request is closed after `FIRST_REQUEST_TIMEOUT`, or earlier, the oldest
+    first, if there are more than `limit` connections. If all have sent a request, a new one is
+    refused.
+    """
 
     waiting: ClassVar[OrderedDict[asyncio.Transport, "LimitedProtocol"]] = OrderedDict()
-    """those that have asked for nothing yet, the oldest first"""
-    most: ClassVar[int] = MOST_CONNECTIONS
+    """connections without a request so far, the oldest first"""
+    limit: ClassVar[int] = MAX_CONNECTIONS
     _timeout: asyncio.TimerHandle | None = None
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
-        """Somebody has connected."""
+        """Wait for the first request; if there are too many connections, refuse one of them."""
         super().connection_made(transport)
-        if len(self.connections) > self.most:
+        if len(self.connections) > self.limit:
             oldest = next(iter(self.waiting.values()), self)
-            oldest.refuse()
+            oldest.refuse_connection()
         if not transport.is_closing():
             self.waiting[transport] = self
-            self._timeout = self.loop.call_later(FIRST_REQUEST_WITHIN, self.give_up)
+            self._timeout = self.loop.call_later(FIRST_REQUEST_TIMEOUT, self.close_silently)
 
     def on_headers_complete(self) -> None:
-        """A request has come."""
-        self._heard()
+        """Stop waiting for the first request."""
+        self._stop_waiting()
         super().on_headers_complete()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """The connection has ended."""
-        self._heard()
+        """Stop waiting for the first request of a connection that has ended."""
+        self._stop_waiting()
         super().connection_lost(exc)
 
-    def give_up(self) -> None:
-        """Closes the connection without a word: browsers open some in advance, and ask anew on
-        another one where such a one is closed; an answer they would take for that of a request."""
-        self._heard()
+    def close_silently(self) -> None:
+        """Close the connection without a response.
+
+        Browsers open connections in advance. If one of them is closed they use another one, but
+        they would take a response on it as that of their next request.
+        """
+        self._stop_waiting()
         self.transport.close()
 
-    def refuse(self) -> None:
-        """Closes the connection, with an answer for who still reads."""
-        self._heard()
-        self.transport.write(_FULL % (len(_SAID), _SAID))
+    def refuse_connection(self) -> None:
+        """Close the connection after a response with status 503."""
+        self._stop_waiting()
+        self.transport.write(_FULL_HEAD % (len(_FULL_BODY), _FULL_BODY))
         self.transport.close()
 
-    def _heard(self) -> None:
+    def _stop_waiting(self) -> None:
         self.waiting.pop(self.transport, None)
         if self._timeout is not None:
             self._timeout.cancel()
@@ -68,20 +77,20 @@ class LimitedProtocol(HttpToolsProtocol):
 
 
 def raise_file_limit() -> None:
-    """Lets the process have as many connections open as the system allows, up to what it takes."""
+    """Raise the limit of open files to four per connection, as far as the hard limit allows."""
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-    wanted = 4 * MOST_CONNECTIONS
-    most = wanted if hard == resource.RLIM_INFINITY else min(wanted, hard)
-    if soft != resource.RLIM_INFINITY and soft < most:
-        resource.setrlimit(resource.RLIMIT_NOFILE, (most, hard))
+    wanted = 4 * MAX_CONNECTIONS
+    limit = wanted if hard == resource.RLIM_INFINITY else min(wanted, hard)
+    if soft != resource.RLIM_INFINITY and soft < limit:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (limit, hard))
 
 
 def server_options() -> dict[str, Any]:
-    """How the server is set up: what it answers with is the same wherever it runs."""
+    """Return the options of Uvicorn, the same for the command and for tests."""
     return {
         "http": LimitedProtocol,
         "ws": "websockets-sansio",
-        "ws_max_size": MOST_OF_A_MESSAGE,
+        "ws_max_size": MAX_MESSAGE_BYTES,
         "ws_per_message_deflate": False,
         "h11_max_incomplete_event_size": 65_536,
         "timeout_keep_alive": 30,

@@ -1,4 +1,4 @@
-"""Evaluations: a mission is run in many worlds; what came of it, and each run once more."""
+"""Routes for evaluations: to run a mission in many worlds, report, and replay single runs."""
 
 from typing import Annotated
 
@@ -7,10 +7,10 @@ from fastapi import Path, Response
 from argo_planner.service.evaluations.replay import ReplayedRun
 from argo_planner.service.jobs.evaluation import EvaluationAsked, EvaluationSpec
 from argo_planner.service.jobs.job import EvaluationJob
-from argo_planner.service.web.bodies import Sent
+from argo_planner.service.web.bodies import JsonBody
 from argo_planner.service.web.jobs import JobId
-from argo_planner.service.web.missions import sound_plan
-from argo_planner.service.web.problems import documented
+from argo_planner.service.web.missions import open_valid_plan
+from argo_planner.service.web.problems import problem_responses
 from argo_planner.service.web.requests import (
     REPORT_POLICY,
     MadeOn,
@@ -18,13 +18,13 @@ from argo_planner.service.web.requests import (
     Planner,
     Service,
     Viewer,
-    created,
+    created_response,
+    json_response,
     links,
-    routes,
-    said,
+    make_router,
 )
 
-router = routes("jobs")
+router = make_router("jobs")
 
 RunKey = Annotated[str, Path(pattern=r"^[0-9a-f]{24}$", description="key of the run")]
 _JOB = links(
@@ -38,14 +38,17 @@ _JOB = links(
     operation_id="evaluate_mission",
     status_code=202,
     response_model=EvaluationJob,
-    responses=documented(412, 428) | {202: created(EvaluationJob, _JOB)},
+    responses=problem_responses(412, 428) | {202: created_response(EvaluationJob, _JOB)},
 )
-async def evaluate_mission(
-    service: Service, visitor: Planner, id: PlanId, asked: Sent[EvaluationAsked], made_on: MadeOn
+async def start_evaluation(
+    service: Service,
+    visitor: Planner,
+    id: PlanId,
+    asked: JsonBody[EvaluationAsked],
+    made_on: MadeOn,
 ) -> Response:
-    """Begins to run the mission as it stands in many worlds; 409 while another evaluation is under
-    way."""
-    document = await sound_plan(service, id, made_on)
+    """Start to run the mission in many worlds; 409 while another evaluation is running."""
+    document = await open_valid_plan(service, id, made_on)
     plan = document.plan
     spec = EvaluationSpec(
         name=document.name,
@@ -54,9 +57,9 @@ async def evaluate_mission(
         obstacles=service.obstacles.present.obstacles,
         asked=asked,
     )
-    spec.make_plan(service.site)  # what can't be run is refused at once
+    spec.make_plan(service.site)  # refuses at once what can't be run
     job = await service.evaluations.start(id, plan.revision, spec, visitor.author)
-    return said(job, 202, location=f"/api/jobs/{job.id}")
+    return json_response(job, 202, location=f"/api/jobs/{job.id}")
 
 
 @router.post(
@@ -65,23 +68,22 @@ async def evaluate_mission(
     status_code=202,
     response_model=EvaluationJob,
 )
-async def go_on_with_evaluation(service: Service, _: Planner, id: JobId) -> Response:
-    """Goes on with an evaluation that was cancelled or interrupted: what has been run is not run
-    again."""
-    return said(await service.evaluations.resume(id), 202)
+async def resume_evaluation(service: Service, _: Planner, id: JobId) -> Response:
+    """Resume an evaluation that was cancelled or interrupted; only missing runs are executed."""
+    return json_response(await service.evaluations.resume(id), 202)
 
 
 @router.delete("/evaluations/{id}", operation_id="forget_evaluation", status_code=204)
-async def forget_evaluation(service: Service, _: Planner, id: JobId) -> Response:
-    """Deletes an evaluation that is over, with all its rows; 409 while it is under way."""
+async def delete_evaluation(service: Service, _: Planner, id: JobId) -> Response:
+    """Delete an evaluation that has ended, with all its rows; 409 while it is running."""
     await service.evaluations.delete(id)
     return Response(status_code=204)
 
 
 @router.get("/jobs/{id}/runs/{key}", operation_id="replay_run", response_model=ReplayedRun)
-async def replay_run(service: Service, _: Viewer, id: JobId, key: RunKey) -> Response:
-    """A run of an evaluation, made once more: all that has happened in it."""
-    return said(await service.evaluations.replay(id, key))
+async def replay_evaluated_run(service: Service, _: Viewer, id: JobId, key: RunKey) -> Response:
+    """Repeat a run of an evaluation, and return all its entries."""
+    return json_response(await service.evaluations.replay(id, key))
 
 
 @router.get(
@@ -96,6 +98,6 @@ async def replay_run(service: Service, _: Viewer, id: JobId, key: RunKey) -> Res
     },
 )
 async def read_evaluation_report(service: Service, _: Viewer, id: JobId) -> Response:
-    """The report of an evaluation; of one that was cut short, of what there is."""
+    """Return the report of an evaluation; if it was ended early, of the runs that there are."""
     content = await service.evaluations.report(id)
     return Response(content, headers=REPORT_POLICY, media_type="text/html")

@@ -1,4 +1,4 @@
-"""What stands before every request: who may come in, from where, and how much they may bring."""
+"""Guard in front of all routes: checks the origin, the token and the size of each request."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,9 +11,15 @@ from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from argo_compiler.base.errors import ArgoError
-from argo_planner.service.web.access import AccessToken, TokenBook, TokenMissing, visitor
-from argo_planner.service.web.problems import Problem, TooLarge, answer, plain, problem_of
-from argo_planner.service.web.upload_limits import most_bytes
+from argo_planner.service.web.access import AccessToken, TokenBook, TokenMissing, identify_visitor
+from argo_planner.service.web.problems import (
+    Problem,
+    TooLarge,
+    plain_problem,
+    problem_from_error,
+    problem_response,
+)
+from argo_planner.service.web.upload_limits import max_body_bytes
 
 LOOPBACK = ("localhost", "127.0.0.1", "[::1]")
 
@@ -33,100 +39,111 @@ _HEADERS = {
 
 
 @dataclass(frozen=True)
-class Doors:
-    """From where requests may come."""
+class GuardSettings:
+    """Allowed hosts and origins of requests, and the name of the cookie."""
 
     hosts: frozenset[str]
-    """names under which the service is asked for, without ports; `*`: any"""
+    """accepted values of the header `Host`, without ports; `*`: any"""
     origins: frozenset[str] = frozenset()
-    """further origins of pages, such as that of a proxy: `https://argo.example.org`"""
+    """further accepted origins of pages, such as that of a proxy: `https://argo.example.org`"""
     cookie: str = "argo"
-    """name of the cookie, one for each port, as browsers don't tell ports apart"""
+    """name of the cookie; should differ by port, as browsers share cookies between ports"""
 
 
 class Guard:
-    """Lets requests in that have a token, and come from where they may; limits what they bring."""
+    """ASGI application that passes valid requests on to another one, and refuses all others.
 
-    def __init__(self, app: ASGIApp, tokens: TokenBook, doors: Doors) -> None:
+    A valid request has a known token, an allowed host and origin, and a body of limited size.
+    """
+
+    def __init__(self, app: ASGIApp, tokens: TokenBook, settings: GuardSettings) -> None:
         self._app = app
         self._tokens = tokens
-        self._doors = doors
+        self._settings = settings
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] == "lifespan":
             await self._app(scope, receive, send)
             return
         headers = Headers(scope=scope)
-        refused = self._refused(scope, headers)
+        refused = self._check_origin(scope, headers)
         if refused is None:
-            token, entering = self._token(scope, headers)
+            token, in_address = self._find_token(scope, headers)
             if token is None:
-                refused = problem_of(
+                refused = problem_from_error(
                     TokenMissing(
-                        "no token was given, or an unknown one: open the address that the service "
-                        "printed when it began, or send `Authorization: Bearer TOKEN`"
+                        "the token is missing or unknown: open the address that the service "
+                        "printed when it started, or send `Authorization: Bearer TOKEN`"
                     )
                 )
-            elif entering:
-                await self._entered(scope, token)(scope, receive, send)
+            elif in_address:
+                await self._redirect_with_cookie(scope, token)(scope, receive, send)
                 return
             else:
                 try:
-                    scope["visitor"] = visitor(token, headers, _query(scope))
+                    scope["visitor"] = identify_visitor(token, headers, _parse_query(scope))
                 except ArgoError as error:
-                    refused = problem_of(error)
+                    refused = problem_from_error(error)
         if refused is None:
-            refused = _too_large(scope, headers)
+            refused = _check_content_length(scope, headers)
         if refused is not None:
             await _refuse(refused, scope, receive, send)
             return
         if scope["type"] == "websocket":
             await self._app(scope, receive, send)
         else:
-            arriving = _Arriving(scope, receive)
-            await self._app(scope, arriving.receive, _protected(scope, arriving.answered(send)))
-            if arriving.too_large:
-                await _refuse(problem_of(_too_much(scope)), scope, receive, send)
+            body = _LimitedBody(scope, receive)
+            await self._app(scope, body.receive, _add_headers(scope, body.wrap_send(send)))
+            if body.too_large:
+                await _refuse(problem_from_error(_too_large(scope)), scope, receive, send)
 
-    def _refused(self, scope: Scope, headers: Headers) -> Problem | None:
-        """Why a request from there is not let in, if it is not."""
+    def _check_origin(self, scope: Scope, headers: Headers) -> Problem | None:
+        """Return a problem if the host, the origin or the fetching site is not allowed."""
         hosts = headers.getlist("host")
         name = hosts[0].rpartition(":")[0] if hosts and _has_port(hosts[0]) else "".join(hosts)
-        if len(hosts) != 1 or not ("*" in self._doors.hosts or name.lower() in self._doors.hosts):
-            said = "the service is not known under this name (`Host`)"
-            return plain(HTTPStatus.FORBIDDEN, "foreign-host", said)
+        if len(hosts) != 1 or not (
+            "*" in self._settings.hosts or name.lower() in self._settings.hosts
+        ):
+            reason = (
+                "the service does not accept this host name (`Host`): open the address that it "
+                "printed when it started, or allow the name with `argo serve --allow-host`"
+            )
+            return plain_problem(HTTPStatus.FORBIDDEN, "foreign-host", reason)
         origin = headers.get("origin")
-        if origin is not None and origin not in self._doors.origins:
+        if origin is not None and origin not in self._settings.origins:
             if origin.lower() not in (f"http://{hosts[0].lower()}", f"https://{hosts[0].lower()}"):
-                said = "pages of another origin may not use the service (`Origin`)"
-                return plain(HTTPStatus.FORBIDDEN, "foreign-origin", said)
+                reason = (
+                    "pages of another origin may not use the service (`Origin`): allow the address "
+                    "of a proxy with `argo serve --origin`"
+                )
+                return plain_problem(HTTPStatus.FORBIDDEN, "foreign-origin", reason)
         elif origin is None and headers.get("sec-fetch-site") in ("cross-site", "same-site"):
             safe = scope["type"] == "http" and scope["method"] == "GET"
             if not (safe and headers.get("sec-fetch-mode") == "navigate"):
-                said = "pages of another site may not use the service (`Sec-Fetch-Site`)"
-                return plain(HTTPStatus.FORBIDDEN, "foreign-origin", said)
+                reason = "pages of another site may not use the service (`Sec-Fetch-Site`)"
+                return plain_problem(HTTPStatus.FORBIDDEN, "foreign-origin", reason)
         return None
 
-    def _token(self, scope: Scope, headers: Headers) -> tuple[AccessToken | None, bool]:
-        """The token that was given, and whether it was in the address of a page."""
+    def _find_token(self, scope: Scope, headers: Headers) -> tuple[AccessToken | None, bool]:
+        """Return the request's token, and whether it is in the address of a page."""
         kind, _, secret = headers.get("authorization", "").partition(" ")
         if kind.lower() == "bearer":
-            return self._tokens.of_secret(secret.strip()), False
-        given = _query(scope).get("token")
+            return self._tokens.find_by_secret(secret.strip()), False
+        given = _parse_query(scope).get("token")
         if given is not None:
             page = scope["type"] == "http" and not scope["path"].startswith("/api/")
-            return self._tokens.of_secret(given), page
-        cookie = _cookie(headers, self._doors.cookie)
-        return (None if cookie is None else self._tokens.of_cookie(cookie)), False
+            return self._tokens.find_by_secret(given), page
+        cookie = _read_cookie(headers, self._settings.cookie)
+        return (None if cookie is None else self._tokens.find_by_cookie(cookie)), False
 
-    def _entered(self, scope: Scope, token: AccessToken) -> Response:
-        """Keeps the token in a cookie, and takes it out of the address."""
+    def _redirect_with_cookie(self, scope: Scope, token: AccessToken) -> Response:
+        """Return a redirection to the address without the token, which sets the cookie."""
         query = [(k, v) for k, v in parse_qsl(scope["query_string"].decode()) if k != "token"]
-        path = "/" + quote(scope["path"].lstrip("/\\"))  # never another host
+        path = "/" + quote(scope["path"].lstrip("/\\"))  # never to another host
         response = RedirectResponse(path + ("?" + urlencode(query) if query else ""), 303)
         secure = scope["scheme"] == "https"
         response.set_cookie(
-            self._doors.cookie, token.cookie, httponly=True, samesite="strict", secure=secure
+            self._settings.cookie, token.cookie, httponly=True, samesite="strict", secure=secure
         )
         response.headers["cache-control"] = "no-store"
         return response
@@ -134,72 +151,77 @@ class Guard:
 
 async def _refuse(problem: Problem, scope: Scope, receive: Receive, send: Send) -> None:
     if scope["type"] == "http":
-        response = answer(problem, {"connection": "close"})
+        response = problem_response(problem, {"connection": "close"})
         response.headers.update(_HEADERS)
         if problem.status == HTTPStatus.UNAUTHORIZED:
             response.headers["www-authenticate"] = "Bearer"
         await response(scope, receive, send)
         return
     if "websocket.http.response" in scope.get("extensions", {}):
-        response = answer(problem)
+        response = problem_response(problem)
         await response(scope, receive, send)
         return
     await send({"type": "websocket.close", "code": 1008, "reason": problem.code})
 
 
-def _too_large(scope: Scope, headers: Headers) -> Problem | None:
-    said = headers.get("content-length")
-    if scope["type"] != "http" or said is None:
+def _check_content_length(scope: Scope, headers: Headers) -> Problem | None:
+    """Return a problem if the header states a body that is too large."""
+    stated = headers.get("content-length")
+    if scope["type"] != "http" or stated is None:
         return None
     return (
-        problem_of(_too_much(scope))
-        if len(said) > 12 or int(said) > most_bytes(scope["path"])
+        problem_from_error(_too_large(scope))
+        if len(stated) > 12 or int(stated) > max_body_bytes(scope["path"])
         else None
     )
 
 
-def _too_much(scope: Scope) -> TooLarge:
-    return TooLarge(
-        f"more than {most_bytes(scope['path']) // 1_000_000} MB were sent: that is not taken"
-    )
+def _too_large(scope: Scope) -> TooLarge:
+    megabytes = max_body_bytes(scope["path"]) // 1_000_000
+    return TooLarge(f"the request has more than {megabytes} MB: send at most {megabytes} MB")
 
 
-class _Arriving:
-    """A request's body as it arrives. Counts it: what is too large is no longer read, whatever was
-    said of its size before."""
+class _LimitedBody:
+    """Counter of the bytes of a request's body, which stops reading at the limit.
+
+    It does not rely on the header that states the size.
+    """
 
     def __init__(self, scope: Scope, receive: Receive) -> None:
         self._scope, self._receive = scope, receive
-        self._arrived = 0
-        self._begun = False
+        self._received = 0
+        self._answered = False
         self.too_large = False
-        """and nothing has been answered yet"""
+        """whether the body is too large and no response has begun"""
 
     async def receive(self) -> Message:
         message = await self._receive()
-        self._arrived += len(message.get("body", b""))
-        if self._arrived > most_bytes(self._scope["path"]):
-            self.too_large = not self._begun
-            raise _too_much(self._scope)
+        self._received += len(message.get("body", b""))
+        if self._received > max_body_bytes(self._scope["path"]):
+            self.too_large = not self._answered
+            raise _too_large(self._scope)
         return message
 
-    def answered(self, send: Send) -> Send:
-        """Sends an answer, unless it is one to a body that was too large: the frameworks between
-        here and the routes call that a bad request."""
+    def wrap_send(self, send: Send) -> Send:
+        """Return a function that sends a response, unless the body was too large.
 
-        async def sending(message: Message) -> None:
-            self._begun = True
+        For such a body, the framework between the guard and the routes would answer that the
+        request is bad.
+        """
+
+        async def send_unless_too_large(message: Message) -> None:
+            self._answered = True
             if not self.too_large:
                 await send(message)
 
-        return sending
+        return send_unless_too_large
 
 
-def _protected(scope: Scope, send: Send) -> Send:
-    """Adds the headers that keep a page safe, and keeps what is told out of caches."""
+def _add_headers(scope: Scope, send: Send) -> Send:
+    """Return a function that adds security headers; those of the API are not cached by default."""
     api = scope["path"].startswith("/api/")
 
-    async def sending(message: Message) -> None:
+    async def send_with_headers(message: Message) -> None:
         if message["type"] == "http.response.start":
             headers = MutableHeaders(scope=message)
             for name, value in _HEADERS.items():
@@ -208,7 +230,7 @@ def _protected(scope: Scope, send: Send) -> Send:
                 headers["cache-control"] = "no-store"
         await send(message)
 
-    return sending
+    return send_with_headers
 
 
 def _has_port(host: str) -> bool:
@@ -216,13 +238,13 @@ def _has_port(host: str) -> bool:
     return ":" in host and tail.isdigit()
 
 
-def _query(scope: Scope) -> Mapping[str, str]:
+def _parse_query(scope: Scope) -> Mapping[str, str]:
     return dict(parse_qsl(scope["query_string"].decode(errors="replace")))
 
 
-def _cookie(headers: Headers, name: str) -> str | None:
+def _read_cookie(headers: Headers, name: str) -> str | None:
     try:
-        found = SimpleCookie(headers.get("cookie", "")).get(name)
+        cookie = SimpleCookie(headers.get("cookie", "")).get(name)
     except CookieError:
         return None
-    return found.value if found else None
+    return cookie.value if cookie else None

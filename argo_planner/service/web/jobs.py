@@ -1,4 +1,4 @@
-"""Jobs: the best order of a mission, searched for and accepted; and what all jobs have."""
+"""Routes for searches for the best order of a mission, and for all kinds of jobs."""
 
 from typing import Annotated
 
@@ -11,41 +11,41 @@ from argo_compiler.reorder.mission_problem import require_known
 from argo_compiler.reorder.requirements import Requirements
 from argo_planner.service.core.commands import CommandId, ReplacePlan
 from argo_planner.service.jobs.job import JOB_ID, AnyJob, OrderJob
-from argo_planner.service.web.bodies import Sent
-from argo_planner.service.web.commands import COMMAND, carried_out
-from argo_planner.service.web.missions import sound_plan
+from argo_planner.service.web.bodies import JsonBody
+from argo_planner.service.web.commands import COMMAND_RESPONSE, execute_command
+from argo_planner.service.web.missions import open_valid_plan
 from argo_planner.service.web.requests import (
     MadeOn,
     PlanId,
     Planner,
     Service,
     Viewer,
-    created,
+    created_response,
+    json_response,
     links,
-    routes,
-    said,
+    make_router,
 )
 from argo_planner.service.world.previews import PreviewedMission, preview_mission
 
-LONGEST_SEARCH = 600.0
-"""s"""
+MAX_SEARCH_TIME = 600.0
+"""in s"""
 
-router = routes("jobs")
+router = make_router("jobs")
 
 JobId = Annotated[str, Path(pattern=f"^{JOB_ID}$", description="id of the job")]
 _JOB = links("read_job", "cancel_job", "accept_order", id="$response.body#/id")
 
 
 class OrderAsked(Model):
-    """What an order has to keep to besides its mission, and how long to search."""
+    """Requirements that an order has to meet, and a time limit of the search."""
 
-    time_limit: float = Field(default=10.0, gt=0, le=LONGEST_SEARCH)
-    """s"""
+    time_limit: float = Field(default=10.0, gt=0, le=MAX_SEARCH_TIME)
+    """in s"""
     requirements: Requirements = Requirements()
 
 
 class OrderAccepted(Model):
-    """A command that puts the mission into the order that was found."""
+    """Command that applies the order that a search has found."""
 
     id: CommandId
 
@@ -61,51 +61,55 @@ class JobList(Model):
     operation_id="suggest_order",
     status_code=202,
     response_model=OrderJob,
-    responses={202: created(OrderJob, _JOB)},
+    responses={202: created_response(OrderJob, _JOB)},
 )
-async def suggest_order(
-    service: Service, visitor: Planner, id: PlanId, asked: Sent[OrderAsked]
+async def start_order_search(
+    service: Service, visitor: Planner, id: PlanId, asked: JsonBody[OrderAsked]
 ) -> Response:
-    """Begins to search for the mission's best order."""
-    plan = (await sound_plan(service, id)).plan
+    """Start a search for the mission's best order."""
+    plan = (await open_valid_plan(service, id)).plan
     try:
         require_known(plan.mission, asked.requirements)
-    except NotFound as error:  # the address is right
+    except NotFound as error:  # 404 would be about the address
         raise Invalid(str(error)) from None
     job = service.orders.start(
         id, plan.revision, plan.mission, asked.requirements, asked.time_limit, visitor.author
     )
-    return said(job, 202, location=f"/api/jobs/{job.id}")
+    return json_response(job, 202, location=f"/api/jobs/{job.id}")
 
 
 @router.get("/jobs", operation_id="list_jobs", response_model=JobList)
 async def list_jobs(service: Service, _: Viewer) -> Response:
-    """The jobs under way and the last ones that were, without what came of them."""
-    return said(JobList.model_construct(jobs=tuple(job.summary() for job in service.jobs.all())))
+    """Return the running jobs and the last ones that have ended, without their results."""
+    return json_response(
+        JobList.model_construct(jobs=tuple(job.summary() for job in service.jobs.all()))
+    )
 
 
 @router.get("/jobs/{id}", operation_id="read_job", response_model=AnyJob)
 async def read_job(service: Service, _: Viewer, id: JobId) -> Response:
-    """How far a job is, and what came of it."""
-    return said(service.jobs.job(id))
+    """Return the progress and the result of a job."""
+    return json_response(service.jobs.job(id))
 
 
 @router.delete("/jobs/{id}", operation_id="cancel_job", response_model=AnyJob)
 async def cancel_job(service: Service, _: Planner, id: JobId) -> Response:
-    """Ends a job that is under way."""
-    return said(await service.jobs.cancel(id))
+    """Cancel a running job."""
+    return json_response(await service.jobs.cancel(id))
 
 
-@router.post("/jobs/{id}/accept", operation_id="accept_order", **COMMAND)
+@router.post("/jobs/{id}/accept", operation_id="accept_order", **COMMAND_RESPONSE)
 async def accept_order(
     service: Service,
     visitor: Planner,
     id: JobId,
-    accepted: Sent[OrderAccepted],
+    accepted: JsonBody[OrderAccepted],
     made_on: MadeOn,
 ) -> Response:
-    """Puts the mission into the order that was found, as a command that can be undone; 412 where
-    the mission has changed since the search began."""
+    """Apply the order that a search has found, as a command that can be undone.
+
+    412 if the mission has changed since the search started.
+    """
     job, mission = service.orders.find_result(id)
     room = await service.rooms.open(job.mission)
     command = ReplacePlan.model_construct(
@@ -113,14 +117,16 @@ async def accept_order(
     )
     plan = room.document.plan
     if plan.revision_for(command, visitor.author) is None:
-        for on in (job.revision, made_on):
-            plan.require_newest(on)
-    return await carried_out(room, command, visitor.author, job.revision)
+        for revision in (job.revision, made_on):
+            plan.require_newest(revision)
+    return await execute_command(room, command, visitor.author, job.revision)
 
 
 @router.get("/jobs/{id}/preview", operation_id="preview_job", response_model=PreviewedMission)
 async def preview_job(service: Service, _: Viewer, id: JobId) -> Response:
-    """The ways of the mission in the order that a search has found; 409 until there is one."""
+    """Return the paths of the mission in the order that a search found; 409 until there is one."""
     mission = service.orders.find_result(id)[1]
     obstacles = service.obstacles.present.obstacles
-    return said(await service.on_site(preview_mission, service.site, mission, obstacles))
+    return json_response(
+        await service.run_on_site(preview_mission, service.site, mission, obstacles)
+    )

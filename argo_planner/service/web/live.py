@@ -1,4 +1,4 @@
-"""A mission as it changes, over a WebSocket."""
+"""Event feeds over WebSockets: that of a mission, and what all feeds share."""
 
 import asyncio
 from collections.abc import Awaitable, Callable
@@ -13,111 +13,118 @@ from argo_compiler.base.errors import ArgoError, Unavailable
 from argo_planner.service.rooms.mailbox import Mailbox, MailboxClosed
 from argo_planner.service.rooms.messages import SelectTasks
 from argo_planner.service.web.access import AccessRole, Visitor
-from argo_planner.service.web.problems import answer, problem_of
+from argo_planner.service.web.problems import problem_from_error, problem_response
 from argo_planner.service.web.requests import PlanningService
 
 router = APIRouter()
 
-MOST_SOCKETS = 1_000
-TOO_SLOW = 4408
-"""close code: too much waited to be sent; connect again and resume"""
-GONE = 4404
+MAX_SOCKETS = 1_000
+CLOSE_TOO_SLOW = 4408
+"""close code: too many messages wait for the client, which should reconnect and resume"""
+CLOSE_GONE = 4404
 """close code: the mission was deleted or closed"""
-WRONG = 4400
-"""close code: what was sent is no message"""
+CLOSE_INVALID = 4400
+"""close code: the client has sent an invalid message"""
 _NUMBERS = count(1)
 
 
 @router.websocket("/api/missions/{id}/live")
-async def follow(
+async def follow_mission(
     socket: WebSocket, id: str, since: Annotated[int | None, Query(ge=1)] = None
 ) -> None:
-    """First the whole mission, or what happened `since` a revision, then all that happens."""
+    """Send the mission, or the revisions after `since`, and then each event."""
     service: PlanningService = socket.app.state.service
     visitor: Visitor = socket.scope["visitor"]
-    if not await admitted(socket, plan=id):
+    if not await accept_socket(socket, plan=id):
         return
-    client = socket_client()
+    client = next_client_id()
     try:
         room = await service.rooms.open(id)
         mailbox = room.join(client, visitor.author, since)
     except ArgoError as error:
-        await socket.close(GONE, str(error)[:100])
+        await socket.close(CLOSE_GONE, str(error)[:100])
         return
 
-    def heard(text: str) -> None:
+    def receive_text(text: str) -> None:
         room.select(client, SelectTasks.model_validate_json(text).names)
 
     try:
-        await carry(socket, mailbox, heard)
+        await exchange_messages(socket, mailbox, receive_text)
     finally:
         room.leave(client)
 
 
-def socket_client() -> str:
-    """What a connection is called."""
+def next_client_id() -> str:
+    """Return a new identifier for a connection."""
     return f"c{next(_NUMBERS)}"
 
 
-async def admitted(
+async def accept_socket(
     socket: WebSocket, role: AccessRole = AccessRole.VIEW, plan: str | None = None
 ) -> bool:
-    """Return whether a connection is taken, to a plan if one is named. A client that is refused is
-    told why."""
+    """Accept a connection and return True, or refuse it with a problem and return False.
+
+    Args:
+        socket: The connection that a client has requested.
+        role: Role that the client must have.
+        plan: Id of a mission plan that must exist; None: the feed is of no plan.
+    """
     visitor: Visitor = socket.scope["visitor"]
     try:
         visitor.require(role)
-        if getattr(socket.app.state, "sockets", 0) >= MOST_SOCKETS:
-            raise Unavailable(f"{MOST_SOCKETS} pages are open already: close some of them")
+        if getattr(socket.app.state, "sockets", 0) >= MAX_SOCKETS:
+            raise Unavailable(f"{MAX_SOCKETS} pages are open already: close some of them")
         if plan is not None:
             await socket.app.state.service.rooms.open(plan)
     except ArgoError as error:
-        await socket.send_denial_response(answer(problem_of(error)))
+        await socket.send_denial_response(problem_response(problem_from_error(error)))
         return False
     await socket.accept()
     return True
 
 
-async def carry(socket: WebSocket, mailbox: Mailbox, heard: Callable[[str], None]) -> None:
-    """Sends what comes into the mailbox, and tells what the client says, until one of them ends."""
+async def exchange_messages(
+    socket: WebSocket, mailbox: Mailbox, receive_text: Callable[[str], None]
+) -> None:
+    """Send the mailbox's messages and receive the client's, until either side closes."""
     state = socket.app.state
     state.sockets = getattr(state, "sockets", 0) + 1
-    working = [
-        asyncio.ensure_future(_sending(socket, mailbox)),
-        asyncio.ensure_future(_hearing(socket, heard)),
+    tasks = [
+        asyncio.ensure_future(_send_messages(socket, mailbox)),
+        asyncio.ensure_future(_receive_messages(socket, receive_text)),
     ]
     try:
-        done, _ = await asyncio.wait(working, return_when=asyncio.FIRST_COMPLETED)
+        done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
         for task in done:
             with suppress(WebSocketDisconnect):
                 task.result()
     except MailboxClosed as closed:
-        code = TOO_SLOW if closed.too_slow else GONE
-        await _closed(socket.close(code, str(closed)))
+        code = CLOSE_TOO_SLOW if closed.too_slow else CLOSE_GONE
+        await _finish_close(socket.close(code, str(closed)))
     except ValidationError as error:
         fault = error.errors(include_url=False, include_input=False)[0]
-        await _closed(socket.close(WRONG, f"no message: {fault['msg']}"[:100]))
+        await _finish_close(socket.close(CLOSE_INVALID, f"invalid message: {fault['msg']}"[:100]))
     finally:
         state.sockets -= 1
-        for task in working:
+        for task in tasks:
             task.cancel()
-        await asyncio.gather(*working, return_exceptions=True)
+        await asyncio.gather(*tasks, return_exceptions=True)
 
 
-async def _sending(socket: WebSocket, mailbox: Mailbox) -> None:
+async def _send_messages(socket: WebSocket, mailbox: Mailbox) -> None:
     while True:
         await socket.send_text(await mailbox.next_message())
 
 
-async def _hearing(socket: WebSocket, heard: Callable[[str], None]) -> None:
+async def _receive_messages(socket: WebSocket, receive_text: Callable[[str], None]) -> None:
     while True:
         message = await socket.receive()
         if message["type"] == "websocket.disconnect":
             return
-        heard(message.get("text") or "")
+        receive_text(message.get("text") or "")
 
 
-async def _closed(closing: Awaitable[None]) -> None:
-    # The other side may be gone, or not read any more.
+async def _finish_close(closing: Awaitable[None]) -> None:
+    # The client may have disconnected, or no longer read.
     with suppress(RuntimeError, WebSocketDisconnect, TimeoutError):
         await asyncio.wait_for(closing, 5)

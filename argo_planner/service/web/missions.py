@@ -1,4 +1,4 @@
-"""Missions: made, imported, listed, renamed, copied, deleted, exported, and their versions."""
+"""Routes for missions: create, import, list, rename, copy, delete, restore and export them."""
 
 import asyncio
 import io
@@ -30,24 +30,24 @@ from argo_planner.service.storage.import_notes import (
     store_import_notes,
 )
 from argo_planner.service.storage.outline import PlanSummary
-from argo_planner.service.web.bodies import Sent
+from argo_planner.service.web.bodies import JsonBody
 from argo_planner.service.web.requests import (
     NameGiven,
     PlanId,
     Planner,
     Service,
     Viewer,
-    answers_file,
-    created,
+    created_response,
+    file_responses,
+    json_response,
     link,
     links,
-    routes,
-    said,
+    make_router,
 )
 from argo_planner.use_cases.exporting import export_mission, to_script
 from argo_planner.use_cases.importing import ImportedMission, Upload, import_mission
 
-OF_MISSION = links(
+MISSION_LINKS = links(
     "read_mission",
     "rename_mission",
     "duplicate_mission",
@@ -66,9 +66,9 @@ OF_MISSION = links(
 )
 ETAG = "$response.header.ETag"
 for _name in ("carry_out_command", "keep_version", "write_script", "start_run"):
-    OF_MISSION[_name]["parameters"]["If-Match"] = ETAG
+    MISSION_LINKS[_name]["parameters"]["If-Match"] = ETAG
 
-router = routes("missions")
+router = make_router("missions")
 
 
 class PlanList(Model):
@@ -78,14 +78,14 @@ class PlanList(Model):
 
 
 class NewMission(Model):
-    """A mission to begin with: empty, or as it is given."""
+    """New mission plan: its name, and its mission, which is empty if none is given."""
 
     name: str = Field(max_length=1_000)
     mission: Mission | None = None
 
 
 class RevisionList(Model):
-    """Revisions in order."""
+    """Revisions, the oldest ones first."""
 
     revisions: tuple[Revision, ...]
 
@@ -94,14 +94,14 @@ class ImportNotes(Model):
     """Notes of the last import of a mission."""
 
     revision: int
-    """of the mission that it made"""
+    """revision of the mission that the import made; 0 if there was none"""
     notes: tuple[Diagnostic, ...]
 
 
 @router.get("/missions", operation_id="list_missions", response_model=PlanList)
 async def list_missions(service: Service, _: Viewer) -> Response:
-    """The missions of the folder."""
-    return said(PlanList(missions=tuple(await service.rooms.list_plans())))
+    """Return a summary of each mission of the folder."""
+    return json_response(PlanList(missions=tuple(await service.rooms.list_plans())))
 
 
 @router.post(
@@ -109,12 +109,14 @@ async def list_missions(service: Service, _: Viewer) -> Response:
     operation_id="create_mission",
     status_code=201,
     response_model=PlanSummary,
-    responses={201: created(PlanSummary, OF_MISSION)},
+    responses={201: created_response(PlanSummary, MISSION_LINKS)},
 )
-async def create_mission(service: Service, _: Planner, new: Sent[NewMission]) -> Response:
-    """Makes a mission."""
-    if new.mission is not None and has_errors(found := check(new.mission, service.site.catalog)):
-        raise DiagnosticError(new.name, found)
+async def create_mission(service: Service, _: Planner, new: JsonBody[NewMission]) -> Response:
+    """Create a mission."""
+    if new.mission is not None and has_errors(
+        diagnostics := check(new.mission, service.site.catalog)
+    ):
+        raise DiagnosticError(new.name, diagnostics)
     mission = new.mission or Mission(tasks=(), site=service.site.name)
     return await _create(service, new.name, mission)
 
@@ -124,7 +126,7 @@ async def create_mission(service: Service, _: Planner, new: Sent[NewMission]) ->
     operation_id="import_mission",
     status_code=201,
     response_model=PlanSummary,
-    responses={201: created(PlanSummary, OF_MISSION)},
+    responses={201: created_response(PlanSummary, MISSION_LINKS)},
     openapi_extra={
         "requestBody": {
             "required": True,
@@ -138,12 +140,14 @@ async def import_a_mission(
     request: Request,
     service: Service,
     _: Planner,
-    filename: Annotated[str, Query(max_length=200, description="tells what it is by its ending")],
+    filename: Annotated[
+        str, Query(max_length=200, description="name of the file; its ending shows the format")
+    ],
     name: Annotated[str | None, Query(max_length=1_000)] = None,
     start_area: Annotated[int | None, Query(ge=-1000, le=1000)] = None,
     end_area: Annotated[int | None, Query(ge=-1000, le=1000)] = None,
 ) -> Response:
-    """Makes a mission of a script, a mission in JSON, a ROS bag or an isar mission: the body."""
+    """Create a mission from the body: a script, a mission in JSON, a ROS bag or an isar mission."""
     upload = Upload(os.path.basename(filename) or "mission", await request.body())
     imported = await asyncio.to_thread(import_mission, upload, service.site, start_area, end_area)
     name = name or os.path.splitext(upload.name)[0]
@@ -151,20 +155,20 @@ async def import_a_mission(
 
 
 @router.get("/missions/{id}", operation_id="read_mission", response_model=PlanState)
-async def read_mission(service: Service, visitor: Viewer, id: PlanId) -> Response:
-    """A mission as it stands; its ETag is the revision."""
+async def read_current_mission(service: Service, visitor: Viewer, id: PlanId) -> Response:
+    """Return the present state of a mission; its ETag is the revision."""
     state = (await service.rooms.open(id)).state(visitor.author)
-    return said(state, revision=state.revision)
+    return json_response(state, revision=state.revision)
 
 
 @router.put("/missions/{id}/name", operation_id="rename_mission", response_model=PlanSummary)
 async def rename_mission(
-    service: Service, visitor: Planner, id: PlanId, given: Sent[NameGiven]
+    service: Service, visitor: Planner, id: PlanId, given: JsonBody[NameGiven]
 ) -> Response:
-    """Gives a mission another name."""
+    """Rename a mission."""
     room = await service.rooms.open(id)
     await room.rename(given.name, visitor.author)
-    return said(summarize(room.document))
+    return json_response(summarize(room.document))
 
 
 @router.post(
@@ -172,12 +176,12 @@ async def rename_mission(
     operation_id="duplicate_mission",
     status_code=201,
     response_model=PlanSummary,
-    responses={201: created(PlanSummary, OF_MISSION)},
+    responses={201: created_response(PlanSummary, MISSION_LINKS)},
 )
 async def duplicate_mission(
-    service: Service, _: Planner, id: PlanId, given: Sent[NameGiven]
+    service: Service, _: Planner, id: PlanId, given: JsonBody[NameGiven]
 ) -> Response:
-    """Makes another mission of the same tasks."""
+    """Create a mission with the same content."""
     room = await service.rooms.open(id)
     return await _create(service, given.name, room.document.plan.mission)
 
@@ -194,7 +198,7 @@ async def duplicate_mission(
     },
 )
 async def delete_mission(service: Service, _: Planner, id: PlanId) -> Response:
-    """Moves a mission to the bin; an evaluation of it that is under way ends."""
+    """Move a mission to the bin, and cancel a running evaluation of it."""
     await service.rooms.delete(id)
     await service.evaluations.cancel_for_mission(id)
     return Response(status_code=204)
@@ -202,20 +206,20 @@ async def delete_mission(service: Service, _: Planner, id: PlanId) -> Response:
 
 @router.get("/bin", operation_id="list_bin", response_model=PlanList)
 async def list_bin(service: Service, _: Viewer) -> Response:
-    """What was deleted."""
-    return said(PlanList(missions=tuple(await service.rooms.list_deleted())))
+    """Return a summary of each mission in the bin."""
+    return json_response(PlanList(missions=tuple(await service.rooms.list_deleted())))
 
 
 @router.post("/bin/{id}/restore", operation_id="restore_mission", response_model=PlanSummary)
 async def restore_mission(service: Service, _: Planner, id: PlanId) -> Response:
-    """Takes a mission out of the bin."""
+    """Restore a mission from the bin."""
     room = await service.rooms.restore(id)
-    return said(summarize(room.document), location=f"/api/missions/{id}")
+    return json_response(summarize(room.document), location=f"/api/missions/{id}")
 
 
 @router.delete("/bin/{id}", operation_id="destroy_mission", status_code=204)
 async def destroy_mission(service: Service, _: Planner, id: PlanId) -> Response:
-    """Deletes a mission in the bin for good, with its evaluations."""
+    """Delete a mission in the bin for ever, with its evaluations."""
     await service.rooms.destroy(id)
     await service.evaluations.delete_for_mission(id)
     delete_import_notes(service.folder, id)
@@ -225,8 +229,8 @@ async def destroy_mission(service: Service, _: Planner, id: PlanId) -> Response:
 @router.get(
     "/missions/{id}/export/{format}",
     operation_id="export_mission",
-    **answers_file(
-        "the file; of a format that is a folder, a zip of it",
+    **file_responses(
+        "the file, or a zip archive if the format has several files",
         "application/octet-stream",
         "application/zip",
     ),
@@ -236,63 +240,72 @@ async def export_a_mission(
     _: Viewer,
     id: PlanId,
     format: Annotated[
-        str, Path(max_length=40, description="`script`, `json`, or of `argo export`")
+        str, Path(max_length=40, description="`script`, `json`, or a format of `argo export`")
     ],
 ) -> Response:
-    """The mission in the format of another tool, as a script or as JSON."""
+    """Return the mission in the format of another tool, as a script or as JSON."""
     room = await service.rooms.open(id)
     document = room.document
-    imported = sound(document, service.site) if format != "json" else as_it_is(document)
-    content, ending = await service.on_site(_exported, imported, service.site, format)
+    imported = (
+        require_valid_mission(document, service.site)
+        if format != "json"
+        else unchecked_mission(document)
+    )
+    content, ending = await service.run_on_site(_export_file, imported, service.site, format)
     media = "application/zip" if ending == ".zip" else "application/octet-stream"
     file = re.sub(r"[^\w.-]+", "_", document.name).strip("._") or "mission"
-    named = f"attachment; filename*=UTF-8''{quote(file + ending)}"
-    return Response(content, 200, {"content-disposition": named}, media)
+    disposition = f"attachment; filename*=UTF-8''{quote(file + ending)}"
+    return Response(content, 200, {"content-disposition": disposition}, media)
 
 
 @router.get("/missions/{id}/revisions", operation_id="list_revisions", response_model=RevisionList)
 async def list_revisions(
     service: Service, _: Viewer, id: PlanId, since: Annotated[int, Query(ge=1, le=10**12)]
 ) -> Response:
-    """What was done after a revision; 404 where that is not known any more."""
+    """Return the revisions after a given one; 404 if they are no longer known."""
     plan = (await service.rooms.open(id)).document.plan
-    found = plan.since(since)
-    if found is None:
+    revisions = plan.since(since)
+    if revisions is None:
         raise NotFound(
-            f"what was done since revision {since} is not known: read the mission, which is at "
+            f"the changes since revision {since} are not known: read the mission, which is at "
             f"revision {plan.revision}"
         )
-    return said(RevisionList.model_construct(revisions=found), revision=plan.revision)
+    return json_response(RevisionList.model_construct(revisions=revisions), revision=plan.revision)
 
 
 @router.get("/missions/{id}/notes", operation_id="read_notes", response_model=ImportNotes)
 async def read_import_notes(service: Service, _: Viewer, id: PlanId) -> Response:
-    """Return the notes of the import of the mission, or of the last script put in its place: words
-    that were healed, taken for something else, or have no effect."""
+    """Return the notes of the mission's import, or of the last script that has replaced it.
+
+    They are about words that were corrected, understood as something else, or have no effect.
+    """
     await service.rooms.open(id)
     revision, notes = load_import_notes(service.folder, id)
-    return said(ImportNotes(revision=revision, notes=notes))
+    return json_response(ImportNotes(revision=revision, notes=notes))
 
 
-def as_it_is(document: PlanDocument) -> ImportedMission:
-    """The mission of a plan, which may have errors."""
+def unchecked_mission(document: PlanDocument) -> ImportedMission:
+    """Return the mission of a plan without a check; it may have errors."""
     return ImportedMission(document.plan.mission, document.name, (), ())
 
 
-async def sound_plan(service: Service, id: str, made_on: int | None = None) -> PlanDocument:
-    """A plan whose mission has no errors, as it was on the revision `made_on`; None: as it stands.
-    Raises StaleRevision, or DiagnosticError."""
+async def open_valid_plan(service: Service, id: str, made_on: int | None = None) -> PlanDocument:
+    """Return a plan whose mission has no errors.
+
+    Raises StaleRevision if the plan is no longer at the revision `made_on` (None: any revision),
+    DiagnosticError if the mission has errors.
+    """
     document = (await service.rooms.open(id)).document
     document.plan.require_newest(made_on)
-    sound(document, service.site)
+    require_valid_mission(document, service.site)
     return document
 
 
-def sound(document: PlanDocument, site: OpenedSite) -> ImportedMission:
-    """The mission of a plan. Raises DiagnosticError if it has errors."""
-    if has_errors(found := check(document.plan.mission, site.catalog)):
-        raise DiagnosticError(document.name, found)
-    return as_it_is(document)
+def require_valid_mission(document: PlanDocument, site: OpenedSite) -> ImportedMission:
+    """Return the mission of a plan; raise DiagnosticError if it has errors."""
+    if has_errors(diagnostics := check(document.plan.mission, site.catalog)):
+        raise DiagnosticError(document.name, diagnostics)
+    return unchecked_mission(document)
 
 
 async def _create(
@@ -304,7 +317,7 @@ async def _create(
     if notes:
         revision = document.plan.revision
         await asyncio.to_thread(store_import_notes, service.folder, document.id, revision, notes)
-    return said(
+    return json_response(
         summarize(document),
         201,
         revision=document.plan.revision,
@@ -312,18 +325,18 @@ async def _create(
     )
 
 
-def _exported(imported: ImportedMission, site: OpenedSite, format: str) -> tuple[bytes, str]:
-    """The content of a file, and the ending of its name."""
+def _export_file(imported: ImportedMission, site: OpenedSite, format: str) -> tuple[bytes, str]:
+    """Return the content of the exported file, and the ending of its name."""
     if format == "json":
         return imported.mission.model_dump_json(indent=2).encode(), ".json"
     if format == "script":
         return to_script(imported, site).encode(), ".txt"
     content = export_mission(imported, site, format).content
     if isinstance(content, Mapping):
-        packed = io.BytesIO()
-        with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+        buffer = io.BytesIO()
+        with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
             for path, part in sorted(content.items()):
                 archive.writestr(zipfile.ZipInfo(path), part)
-        return packed.getvalue(), ".zip"
+        return buffer.getvalue(), ".zip"
     endings = {"isar": ".json"}
     return content.encode() if isinstance(content, str) else content, endings.get(format, "")

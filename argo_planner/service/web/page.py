@@ -1,4 +1,4 @@
-"""The page: files that a bundler has made of `argo_planner/page`."""
+"""Routes for the planner page: the files that a bundler makes from `argo_planner/page`."""
 
 import mimetypes
 import os
@@ -14,7 +14,7 @@ from argo_compiler.base.errors import NotFound
 
 router = APIRouter(include_in_schema=False)
 
-_FOR_EVER = "private, max-age=31536000, immutable"  # the names of these files tell what is in them
+_IMMUTABLE = "private, max-age=31536000, immutable"  # the files' names have a hash of the content
 _NOT_BUILT = """<!doctype html><html lang=en><meta charset=utf-8><title>Argo</title>
 <h1>The planning service is running, but the page has not been built</h1>
 <p>In a checkout of Argo, <code>make page</code> builds it; then load this page again.</p>
@@ -23,8 +23,8 @@ _NOT_BUILT = """<!doctype html><html lang=en><meta charset=utf-8><title>Argo</ti
 
 @router.get("/")
 async def show_page() -> Response:
-    """What a browser shows that opens the service's address."""
-    index = _built().get("index.html")
+    """Return the page, or a hint on how to build it."""
+    index = _load_files().get("index.html")
     if index is None:
         return HTMLResponse(_NOT_BUILT, headers={"cache-control": "no-store"})
     return Response(index, media_type="text/html", headers={"cache-control": "no-cache"})
@@ -32,31 +32,31 @@ async def show_page() -> Response:
 
 @router.get("/assets/{name}")
 async def show_asset(name: str) -> Response:
-    """A file of the page."""
-    found = _built().get(f"assets/{name}")
-    if found is None:
+    """Return a file that the page refers to."""
+    content = _load_files().get(f"assets/{name}")
+    if content is None:
         raise NotFound(f"the page has no file {name[:80]!r}: load the page again")
     media = mimetypes.guess_type(name)[0] or "application/octet-stream"
-    headers = {"cache-control": _FOR_EVER, "vary": "accept-encoding"}
-    return Response(found, media_type=media, headers=headers)
+    headers = {"cache-control": _IMMUTABLE, "vary": "accept-encoding"}
+    return Response(content, media_type=media, headers=headers)
 
 
 def page_folder() -> Path:
-    """Where the built page is."""
+    """Return the folder of the built page."""
     return Path(str(files("argo_planner"))) / "page" / "dist"
 
 
-def _built() -> Mapping[str, bytes]:
-    """The files of the page by their paths; none if it has not been built."""
+def _load_files() -> Mapping[str, bytes]:
+    """Return the files of the page by their paths; empty if the page has not been built."""
     folder = page_folder()
     try:
-        return _read(folder, os.stat(folder / "index.html").st_mtime_ns)
+        return _read_files(folder, os.stat(folder / "index.html").st_mtime_ns)
     except OSError:
         return {}
 
 
 @cache
-def _read(folder: Path, _changed: int) -> Mapping[str, bytes]:
+def _read_files(folder: Path, _modified: int) -> Mapping[str, bytes]:
     assets = sorted((folder / "assets").iterdir()) if os.path.isdir(folder / "assets") else []
     paths = [folder / "index.html", *assets]
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in paths}

@@ -1,4 +1,4 @@
-"""What went wrong, as one answer (RFC 9457), whatever it was."""
+"""Responses to errors of all kinds, in one form (RFC 9457)."""
 
 import logging
 import re
@@ -30,37 +30,37 @@ from argo_planner.service.core.refusals import ChangedSince, EditRefused, StaleR
 from argo_planner.service.web.access import AccessDenied, TokenMissing
 
 _log = logging.getLogger(__name__)
-MEDIA = "application/problem+json"
-_LONGEST = 2_000  # characters of a message
+PROBLEM_MEDIA_TYPE = "application/problem+json"
+_MAX_DETAIL_LENGTH = 2_000  # characters of a message
 
 
 class Problem(Model):
-    """Why a request was refused. Nothing was changed."""
+    """Reason why a request was refused. Nothing was changed."""
 
     status: int
-    """of the HTTP answer"""
+    """status of the HTTP response"""
     code: str
-    """the kind, for programs; stable"""
+    """kind of problem, for programs; it stays the same in later versions"""
     detail: str
-    """for people: the thing, the place and the way out"""
+    """message for people, with the place and the remedy"""
     diagnostics: tuple[Diagnostic, ...] = ()
     remedies: tuple[str, ...] = ()
     place: int | None = None
-    """of the edit that was refused, in its command, from 0"""
+    """index of the refused edit in its command, from 0"""
     newest: int | None = None
-    """with a stale revision: the newest one"""
+    """newest revision, if the request was made on an older one"""
     since: tuple[Revision, ...] | None = Field(default=None)
-    """with a stale revision: what was done since; null: that is not known any more"""
+    """revisions since the one that the request was made on; null: not known, or not relevant"""
 
 
 class RevisionMissing(ArgoError):
-    """A command says not on which revision it was made."""
+    """A request without the revision that it was made on."""
 
     code = "revision-missing"
 
 
 class TooLarge(Invalid):
-    """More was sent than is taken."""
+    """A request or an upload that exceeds the limit of its size."""
 
     code = "too-large"
 
@@ -81,17 +81,17 @@ _STATUS: tuple[tuple[type[ArgoError], HTTPStatus], ...] = (
 )
 
 
-def problem_of(error: ArgoError) -> Problem:
-    """The answer to an error of Argo."""
+def problem_from_error(error: ArgoError) -> Problem:
+    """Return the problem that describes an error of Argo, with its HTTP status."""
     status = next(status for kind, status in _STATUS if isinstance(error, kind))
     diagnostics: tuple[Diagnostic, ...] = ()
     if isinstance(error, DiagnosticError | EditRefused | ChangedSince):
         diagnostics = tuple(error.diagnostics[:100])
-    remedies = [*error.remedies, *(one for found in diagnostics for one in found.remedies)]
+    remedies = [*error.remedies, *(r for diagnostic in diagnostics for r in diagnostic.remedies)]
     return Problem.model_construct(
         status=int(status),
         code=error.code,
-        detail=str(error)[:_LONGEST],
+        detail=str(error)[:_MAX_DETAIL_LENGTH],
         diagnostics=diagnostics,
         remedies=tuple(dict.fromkeys(map(str, remedies))),
         place=error.place if isinstance(error, EditRefused) else None,
@@ -100,61 +100,66 @@ def problem_of(error: ArgoError) -> Problem:
     )
 
 
-def answer(problem: Problem, headers: dict[str, str] | None = None) -> Response:
-    """A problem as a response."""
+def problem_response(problem: Problem, headers: dict[str, str] | None = None) -> Response:
+    """Return the response that sends a problem."""
     body = problem.model_dump_json().encode(errors="replace")
-    return Response(body, problem.status, headers, MEDIA)
+    return Response(body, problem.status, headers, PROBLEM_MEDIA_TYPE)
 
 
-def plain(status: HTTPStatus | int, code: str, detail: str) -> Problem:
-    """A problem that has nothing but words."""
+def plain_problem(status: HTTPStatus | int, code: str, detail: str) -> Problem:
+    """Return a problem without diagnostics and remedies."""
     return Problem.model_construct(
-        status=int(status), code=code, detail=detail[:_LONGEST], diagnostics=(), remedies=()
+        status=int(status),
+        code=code,
+        detail=detail[:_MAX_DETAIL_LENGTH],
+        diagnostics=(),
+        remedies=(),
     )
 
 
-def answer_problems(app: FastAPI) -> None:
-    """Lets the app answer all that goes wrong with a `Problem`."""
+def install_problem_handlers(app: FastAPI) -> None:
+    """Make an app answer all errors with a `Problem`."""
 
-    async def of_argo(_: Request, error: Exception) -> Response:
+    async def handle_argo_error(_: Request, error: Exception) -> Response:
         assert isinstance(error, ArgoError)
-        return answer(problem_of(error))
+        return problem_response(problem_from_error(error))
 
-    async def of_request(_: Request, error: Exception) -> Response:
+    async def handle_invalid_request(_: Request, error: Exception) -> Response:
         assert isinstance(error, RequestValidationError)
-        return answer(plain(HTTPStatus.UNPROCESSABLE_ENTITY, "invalid", _first(error)))
+        return problem_response(_invalid(error))
 
-    async def of_socket(socket: WebSocket, error: Exception) -> None:
+    async def handle_invalid_socket(socket: WebSocket, error: Exception) -> None:
         assert isinstance(error, WebSocketRequestValidationError)
-        said = plain(HTTPStatus.UNPROCESSABLE_ENTITY, "invalid", _first(error))
-        await socket.send_denial_response(answer(said))
+        await socket.send_denial_response(problem_response(_invalid(error)))
 
-    async def of_http(request: Request, error: Exception) -> Response:
+    async def handle_http_error(request: Request, error: Exception) -> Response:
         assert isinstance(error, HTTPException)
         code = {404: "not-found", 405: "method-not-allowed"}.get(error.status_code, "invalid")
         headers = dict(error.headers or {})
         if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
-            headers["allow"] = ", ".join(_methods(request))
-        return answer(plain(error.status_code, code, str(error.detail)), headers)
+            headers["allow"] = ", ".join(_allowed_methods(request))
+        return problem_response(plain_problem(error.status_code, code, str(error.detail)), headers)
 
-    async def of_defect(_: Request, error: Exception) -> Response:
+    async def handle_defect(_: Request, error: Exception) -> Response:
         _log.error("a defect of Argo", exc_info=error)
-        said = "this is a defect of Argo; the service's log has more"
-        return answer(plain(HTTPStatus.INTERNAL_SERVER_ERROR, "defect", said))
+        detail = (
+            "this is a defect of Argo: please report it with the traceback in the service's log"
+        )
+        return problem_response(plain_problem(HTTPStatus.INTERNAL_SERVER_ERROR, "defect", detail))
 
     handlers: dict[Any, Callable[[Request, Exception], Awaitable[Response]]] = {
-        ArgoError: of_argo,
-        RequestValidationError: of_request,
-        HTTPException: of_http,
-        Exception: of_defect,
+        ArgoError: handle_argo_error,
+        RequestValidationError: handle_invalid_request,
+        HTTPException: handle_http_error,
+        Exception: handle_defect,
     }
     for kind, handler in handlers.items():
         app.add_exception_handler(kind, handler)
-    app.add_exception_handler(WebSocketRequestValidationError, of_socket)
+    app.add_exception_handler(WebSocketRequestValidationError, handle_invalid_socket)
 
 
-def _methods(request: Request) -> list[str]:
-    """What can be asked of an address."""
+def _allowed_methods(request: Request) -> list[str]:
+    """Return the HTTP methods of a request's address, by the OpenAPI document."""
     path = request.scope["path"]
     return [
         method.upper()
@@ -164,17 +169,18 @@ def _methods(request: Request) -> list[str]:
     ]
 
 
-def _first(error: ValidationException) -> str:
-    """What is wrong with a request, in one sentence with the place."""
+def _invalid(error: ValidationException) -> Problem:
+    """Return the problem of an invalid request, with its first error and the place of that."""
     faults = error.errors()
     fault = faults[0]
     place = ".".join(str(part) for part in fault["loc"])[:200]
     more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
-    return f"{place}: {fault['msg']}{more}"
+    detail = f"{place}: {fault['msg']}{more}"
+    return plain_problem(HTTPStatus.UNPROCESSABLE_ENTITY, "invalid", detail)
 
 
-def documented(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """Which problems a request may be answered with, for the OpenAPI document."""
+def problem_responses(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """Return the responses with problems of some statuses, for the OpenAPI document."""
     return {
         status: {"model": Problem, "description": HTTPStatus(status).phrase} for status in statuses
     }

@@ -1,4 +1,4 @@
-"""What all routes share: who asks, of what service, on which revision; and how answers are made."""
+"""Parts that all routes share: dependencies of requests, and responses."""
 
 import asyncio
 import re
@@ -23,11 +23,11 @@ from argo_planner.service.rooms.rooms import PlanRooms
 from argo_planner.service.runs.host import RunHost
 from argo_planner.service.storage.folder import PLAN_ID
 from argo_planner.service.web.access import AccessRole, Visitor
-from argo_planner.service.web.problems import RevisionMissing, documented
+from argo_planner.service.web.problems import RevisionMissing, problem_responses
 from argo_planner.service.world.kept import KeptObstacles
 
 JSON = "application/json"
-# A report is one file, with its styles and pictures in it; it runs nothing and loads nothing.
+# A report is one file that contains its styles and pictures; it runs no script and loads nothing.
 REPORT_POLICY = {
     "content-security-policy": "default-src 'none'; style-src 'unsafe-inline'; img-src data:; "
     "frame-ancestors 'none'"
@@ -37,7 +37,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class PlanningService:
-    """What the routes stand on."""
+    """Service that the routes call: a site, a folder of missions, and all that works on them."""
 
     site: OpenedSite
     folder: FilePath
@@ -48,96 +48,99 @@ class PlanningService:
     runs: RunHost
     obstacles: KeptObstacles
     site_thread: Executor
-    """one thread, as a site is used by one at a time"""
+    """executor with one thread, as a site is not safe for concurrent use"""
 
-    async def on_site(self, work: Callable[..., T], *arguments: Any) -> T:
-        """What comes of work on the site, which may take long."""
+    async def run_on_site(self, work: Callable[..., T], *arguments: Any) -> T:
+        """Call a function in the site's thread and return its result; it may take long."""
         loop = asyncio.get_running_loop()
         return await loop.run_in_executor(self.site_thread, partial(work, *arguments))
 
 
 class NameGiven(Model):
-    """A name for something."""
+    """New name of a mission or a version."""
 
     name: str = Field(max_length=1_000)
 
 
-def service_of(request: Request) -> PlanningService:
-    """The service that a request is for."""
+def get_service(request: Request) -> PlanningService:
+    """Return the service of the request's app."""
     service: PlanningService = request.app.state.service
     return service
 
 
-def visitor_of(request: Request) -> Visitor:
-    """Who has sent a request."""
-    found: Visitor = request.scope["visitor"]
-    return found
+def get_visitor(request: Request) -> Visitor:
+    """Return the sender of a request, whom the guard has identified."""
+    visitor: Visitor = request.scope["visitor"]
+    return visitor
 
 
-def _who_may(role: AccessRole) -> Any:
-    def found(request: Request) -> Visitor:
-        visitor = visitor_of(request)
+def _visitor_with(role: AccessRole) -> Any:
+    """Return a dependency: the visitor, whose role must include the given one."""
+
+    def get_permitted_visitor(request: Request) -> Visitor:
+        visitor = get_visitor(request)
         visitor.require(role)
         return visitor
 
-    return Depends(found)
+    return Depends(get_permitted_visitor)
 
 
-Service = Annotated[PlanningService, Depends(service_of)]
-Viewer = Annotated[Visitor, _who_may(AccessRole.VIEW)]
-Planner = Annotated[Visitor, _who_may(AccessRole.PLAN)]
-Operator = Annotated[Visitor, _who_may(AccessRole.OPERATE)]
+Service = Annotated[PlanningService, Depends(get_service)]
+Viewer = Annotated[Visitor, _visitor_with(AccessRole.VIEW)]
+Planner = Annotated[Visitor, _visitor_with(AccessRole.PLAN)]
+Operator = Annotated[Visitor, _visitor_with(AccessRole.OPERATE)]
 PlanId = Annotated[str, Path(pattern=f"^{PLAN_ID}$", description="id of the mission")]
 
-# The guard looks at these before any route; here they are for the document.
-KEYS = [
+# The guard checks these before any route; here they only serve the OpenAPI document.
+AUTHENTICATION = [
     Depends(HTTPBearer(auto_error=False, description="a token of the service")),
     Depends(APIKeyCookie(name="argo", auto_error=False, description="set by the page's address")),
 ]
 
 
-def routes(*tags: str, prefix: str = "/api") -> APIRouter:
-    """A router for a part of what the service offers."""
-    problems = documented(400, 401, 403, 404, 409, 413, 422, 503)
-    return APIRouter(prefix=prefix, tags=[*tags], dependencies=KEYS, responses=problems)
+def make_router(*tags: str, prefix: str = "/api") -> APIRouter:
+    """Return a router whose routes document the authentication and the common problems."""
+    problems = problem_responses(400, 401, 403, 404, 409, 413, 422, 503)
+    return APIRouter(prefix=prefix, tags=[*tags], dependencies=AUTHENTICATION, responses=problems)
 
 
-def answers_file(what: str, *media: str) -> dict[str, Any]:
-    """What the OpenAPI document says of a route that answers with a file."""
+def file_responses(description: str, *media: str) -> dict[str, Any]:
+    """Return the arguments of a route that responds with a file of one of some media types."""
     content = {one: {"schema": {"type": "string", "format": "binary"}} for one in media}
-    told = {200: {"description": what, "content": content}}
-    return {"response_class": Response, "responses": told}
+    responses = {200: {"description": description, "content": content}}
+    return {"response_class": Response, "responses": responses}
 
 
-def _made_on(
+def _parse_if_match(
     if_match: Annotated[
         str | None,
         Header(
             alias="If-Match",
-            description='the revision that the request was made on, as `"12"`, or `*` for '
-            "whichever there is; without it the answer is 428",
+            description='the revision that the request was made on, such as `"12"`, or `*` for '
+            "any revision; without it the answer is 428",
         ),
     ] = None,
 ) -> int | None:
     if if_match is None:
         raise RevisionMissing(
-            'say on which revision this was made: `If-Match: "12"`, as the ETag of the mission has '
-            "it, or `If-Match: *`"
+            "the request does not state the revision that it was made on: send the ETag of the "
+            'mission, as in `If-Match: "12"`, or `If-Match: *`'
         )
     if if_match.strip() == "*":
         return None
-    if not (found := re.fullmatch(r'\s*"(\d{1,12})"\s*', if_match, re.ASCII)):
+    if not (match := re.fullmatch(r'\s*"(\d{1,12})"\s*', if_match, re.ASCII)):
         raise Invalid(f'`If-Match: {if_match[:40]}` is no revision: write it as `"12"`')
-    return int(found[1])
+    return int(match[1])
 
 
-MadeOn = Annotated[int | None, Depends(_made_on)]
+MadeOn = Annotated[int | None, Depends(_parse_if_match)]
+"""revision that the request was made on; None: any"""
 
 
-def said(
+def json_response(
     model: Model, status: int = 200, revision: int | None = None, location: str | None = None
 ) -> Response:
-    """A model as an answer, with its revision as ETag. It is not checked once more."""
+    """Return a model as a response, with its revision as ETag; the model is not validated again."""
     headers: dict[str, str] = {}
     if revision is not None:
         headers["etag"] = f'"{revision}"'
@@ -146,19 +149,23 @@ def said(
     return Response(model.model_dump_json(), status, headers, JSON)
 
 
-def created(model: Mapping[str, Any] | type[Model], links: Mapping[str, Any]) -> dict[str, Any]:
-    """What the OpenAPI document says of an answer that something was made, with its links."""
+def created_response(
+    model: Mapping[str, Any] | type[Model], links: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return a response that something was created, for the OpenAPI document, with its links."""
     return {"model": model, "description": "Created", "links": links, "headers": _LOCATION}
 
 
-_LOCATION = {"Location": {"description": "where it is", "schema": {"type": "string"}}}
+_LOCATION = {
+    "Location": {"description": "address of what was created", "schema": {"type": "string"}}
+}
 
 
 def link(operation: str, **parameters: str) -> dict[str, Any]:
-    """A link of the OpenAPI document: parameters of another operation that the answer has."""
+    """Return an OpenAPI link: another operation, and its parameters as parts of this response."""
     return {"operationId": operation, "parameters": parameters}
 
 
 def links(*operations: str, **parameters: str) -> dict[str, dict[str, Any]]:
-    """Return links to operations that take the same parameters, by their names."""
+    """Return OpenAPI links to operations with the same parameters, by operation."""
     return {name: link(name, **parameters) for name in operations}

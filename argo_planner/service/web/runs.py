@@ -1,4 +1,4 @@
-"""Runs: begun, asked, followed; and those that were."""
+"""Routes for runs: start, control and follow them, read their reports, and connect a robot."""
 
 from collections.abc import Iterable, Sequence
 from typing import Annotated
@@ -18,10 +18,10 @@ from argo_planner.service.runs.requests import AskedOfRun, GoOnEdited, RequestSt
 from argo_planner.service.runs.state import EntryList, RunState
 from argo_planner.service.runs.worker import REMOTE
 from argo_planner.service.web.access import AccessRole
-from argo_planner.service.web.bodies import Sent
-from argo_planner.service.web.live import admitted, carry, socket_client
-from argo_planner.service.web.missions import sound_plan
-from argo_planner.service.web.problems import documented
+from argo_planner.service.web.bodies import JsonBody
+from argo_planner.service.web.live import accept_socket, exchange_messages, next_client_id
+from argo_planner.service.web.missions import open_valid_plan
+from argo_planner.service.web.problems import problem_responses
 from argo_planner.service.web.requests import (
     REPORT_POLICY,
     MadeOn,
@@ -30,36 +30,38 @@ from argo_planner.service.web.requests import (
     PlanningService,
     Service,
     Viewer,
-    answers_file,
-    created,
+    created_response,
+    file_responses,
+    json_response,
     links,
-    routes,
-    said,
+    make_router,
 )
 
-router = routes("runs")
+router = make_router("runs")
 
-RunId = Annotated[str, Path(pattern=r"^[0-9]{8}-[0-9]{6}-[0-9a-f]{4}$", description="of the run")]
+RunId = Annotated[
+    str, Path(pattern=r"^[0-9]{8}-[0-9]{6}-[0-9a-f]{4}$", description="id of the run")
+]
 _RUN = links("read_run", "ask_run", "list_entries", "read_report", run="$response.body#/id")
 _REQUEST = links("read_request", run="$request.path.run", request="$response.body#/id")
-MOST_ENTRIES = 1_000
-"""in one answer"""
+MAX_ENTRIES = 1_000
+"""maximum number of entries in one response"""
 
 
 class RunAsked(Model):
-    """How a mission is to be driven."""
+    """Request for a run: its setup, the simulated world, and the speed."""
 
     drive: str = Field(default="kinematic", max_length=40)
     sensor: str = Field(default="ideal", max_length=40)
     seed: int = Field(default=0, ge=0, le=2**31)
     values: dict[int, float] = Field(default_factory=dict, max_length=1_000)
-    """what checkpoints show, by number, where it is not drawn"""
+    """values of checkpoints, by number; the others are drawn at random"""
     faults: tuple[AnyFault, ...] = Field(default=(), max_length=100)
     speed: Speed = 1.0
 
 
 class PlanGiven(Model):
-    """A request that the run goes on with its mission as it is now."""
+    """Request that the run continues with the present revision of its mission."""
 
     id: CommandId
 
@@ -75,13 +77,13 @@ class RunList(Model):
     operation_id="start_run",
     status_code=201,
     response_model=RunState,
-    responses=documented(412, 428) | {201: created(RunState, _RUN)},
+    responses=problem_responses(412, 428) | {201: created_response(RunState, _RUN)},
 )
 async def start_run(
-    service: Service, visitor: Operator, id: PlanId, run: Sent[RunAsked], made_on: MadeOn
+    service: Service, visitor: Operator, id: PlanId, run: JsonBody[RunAsked], made_on: MadeOn
 ) -> Response:
-    """Begins a run of the mission as it stands; 409 with who has the robot if there is one."""
-    document = await sound_plan(service, id, made_on)
+    """Start a run of the mission; 409 while another run has the robot, with who started it."""
+    document = await open_valid_plan(service, id, made_on)
     plan = document.plan
     _require_known(run, service.site.site)
     order = RunOrder(
@@ -94,19 +96,19 @@ async def start_run(
         **dict(run),
     )
     state = await service.runs.start(order, visitor.author)
-    return said(state, 201, location=f"/api/runs/{state.id}")
+    return json_response(state, 201, location=f"/api/runs/{state.id}")
 
 
 @router.get("/runs", operation_id="list_runs", response_model=RunList)
 async def list_runs(service: Service, _: Viewer) -> Response:
-    """The present run and those before it."""
-    return said(RunList(runs=tuple(await service.runs.all())))
+    """Return the present run and the earlier ones."""
+    return json_response(RunList(runs=tuple(await service.runs.all())))
 
 
 @router.get("/runs/{run}", operation_id="read_run", response_model=RunState)
 async def read_run(service: Service, _: Viewer, run: RunId) -> Response:
-    """How a run stands, or how it ended."""
-    return said(await service.runs.read(run))
+    """Return the state of a run."""
+    return json_response(await service.runs.read(run))
 
 
 @router.post(
@@ -114,15 +116,17 @@ async def read_run(service: Service, _: Viewer, run: RunId) -> Response:
     operation_id="ask_run",
     status_code=202,
     response_model=RequestState,
-    responses={202: created(RequestState, _REQUEST)},
+    responses={202: created_response(RequestState, _REQUEST)},
 )
-async def ask_run(
-    service: Service, visitor: Operator, run: RunId, request: Sent[AskedOfRun]
+async def send_request(
+    service: Service, visitor: Operator, run: RunId, request: JsonBody[AskedOfRun]
 ) -> Response:
-    """Asks something of the present run. That it was accepted does not say that it is so: follow
-    how far it is."""
+    """Send a request to the present run.
+
+    A request that was accepted is not done yet: read its progress.
+    """
     state = await service.runs.ask(run, request, visitor.author)
-    return said(state, 202, location=f"/api/runs/{run}/requests/{state.id}")
+    return json_response(state, 202, location=f"/api/runs/{run}/requests/{state.id}")
 
 
 @router.post(
@@ -130,20 +134,20 @@ async def ask_run(
     operation_id="go_on_edited",
     status_code=202,
     response_model=RequestState,
-    responses=documented(412, 428),
+    responses=problem_responses(412, 428),
 )
-async def go_on_edited(
+async def continue_with_edits(
     service: Service,
     visitor: Operator,
     run: RunId,
-    given: Sent[PlanGiven],
+    given: JsonBody[PlanGiven],
     made_on: MadeOn,
 ) -> Response:
-    """Gives the robot back, and lets the run go on with its mission as it was edited since."""
-    plan = (await sound_plan(service, service.runs.of(run).plan, made_on)).plan
+    """Give the robot back, and continue the run with its edited mission."""
+    plan = (await open_valid_plan(service, service.runs.of(run).plan, made_on)).plan
     request = GoOnEdited(id=given.id, mission=plan.mission, revision=plan.revision)
-    asked = await service.runs.ask(run, request, visitor.author)
-    return said(asked, 202, location=f"/api/runs/{run}/requests/{asked.id}")
+    state = await service.runs.ask(run, request, visitor.author)
+    return json_response(state, 202, location=f"/api/runs/{run}/requests/{state.id}")
 
 
 @router.get(
@@ -155,8 +159,8 @@ async def read_request(
     run: RunId,
     request: Annotated[str, Path(pattern=r"^[A-Za-z0-9._:-]{1,64}$")],
 ) -> Response:
-    """How far a request to the present run is."""
-    return said(service.runs.request(run, request))
+    """Return the progress of a request to the present run."""
+    return json_response(service.runs.request(run, request))
 
 
 @router.get("/runs/{run}/entries", operation_id="list_entries", response_model=EntryList)
@@ -164,22 +168,24 @@ async def list_entries(
     service: Service,
     _: Viewer,
     run: RunId,
-    since: Annotated[int, Query(ge=0, le=10**9, description="so many are known")] = 0,
-    most: Annotated[int, Query(ge=1, le=MOST_ENTRIES)] = MOST_ENTRIES,
+    since: Annotated[
+        int, Query(ge=0, le=10**9, description="number of entries that the client has")
+    ] = 0,
+    most: Annotated[int, Query(ge=1, le=MAX_ENTRIES)] = MAX_ENTRIES,
 ) -> Response:
-    """What has happened in a run."""
-    return said(await service.runs.history(run, since, most))
+    """Return the entries of a run after the first `since`."""
+    return json_response(await service.runs.history(run, since, most))
 
 
 @router.get(
     "/runs/{run}/report/{file}",
     operation_id="read_report",
-    **answers_file("the file", "text/html", "application/json", "image/png"),
+    **file_responses("the file", "text/html", "application/json", "image/png"),
 )
-async def read_report(
+async def read_run_report(
     service: Service, _: Viewer, run: RunId, file: Annotated[str, Path(max_length=40)]
 ) -> Response:
-    """A file of the report of a run that has ended: report.html, report.json or site.png."""
+    """Return report.html, report.json or site.png of a run that has ended."""
     media = {PAGE: "text/html", RECORD: "application/json", "site.png": "image/png"}
     if file not in media:
         raise NotFound(f"the report has no file {file!r}; it has: {', '.join(media)}")
@@ -191,21 +197,23 @@ async def read_report(
 @router.get(
     "/runs/{run}/pictures/{checkpoint}/{milliseconds}",
     operation_id="read_picture",
-    **answers_file("the picture", "image/png"),
+    **file_responses("the picture", "image/png"),
 )
 async def read_picture(
     service: Service,
     _: Viewer,
     run: RunId,
-    checkpoint: Annotated[int, Path(ge=0, le=10**6, description="that was read")],
+    checkpoint: Annotated[int, Path(ge=0, le=10**6, description="number of the checkpoint")],
     milliseconds: Annotated[int, Path(ge=0, le=10**12, description="`t` of the reading, in ms")],
 ) -> Response:
-    """The picture from which a checkpoint was read. Only the sensor `camera` takes pictures."""
+    """Return the picture of a reading; only the sensor `camera` takes pictures."""
     path = picture_of(service.runs.folder.path(run), checkpoint, milliseconds / 1000)
     try:
         content = path.read_bytes()
     except OSError:
-        raise NotFound(f"run {run} has no picture of checkpoint {checkpoint} then") from None
+        raise NotFound(
+            f"run {run} has no picture of checkpoint {checkpoint} at this time"
+        ) from None
     headers = {"cache-control": "private, max-age=31536000, immutable"}
     return Response(content, 200, headers, "image/png")
 
@@ -215,42 +223,41 @@ socket_router = APIRouter()
 
 @socket_router.websocket("/api/robot/live")
 async def follow_robot(socket: WebSocket, since: Annotated[int | None, Query(ge=0)] = None) -> None:
-    """How the present run stands, its entries after that number, then all that happens."""
+    """Send the state of the present run, its entries after the first `since`, then each event."""
     service: PlanningService = socket.app.state.service
-    if not await admitted(socket):
+    if not await accept_socket(socket):
         return
-    client = socket_client()
+    client = next_client_id()
     mailbox = service.runs.follow(client, since)
     try:
-        await carry(socket, mailbox, lambda _: None)
+        await exchange_messages(socket, mailbox, lambda _: None)
     finally:
         service.runs.leave(client)
 
 
 @socket_router.websocket("/api/robot/link")
 async def connect_robot(socket: WebSocket) -> None:
-    """The line of a robot that is somewhere else: it carries the messages of `argo_env.remote`."""
+    """Connect a remote robot: exchange the messages of `argo_env.remote`."""
     service: PlanningService = socket.app.state.service
-    if not await admitted(socket, AccessRole.OPERATE):
+    if not await accept_socket(socket, AccessRole.OPERATE):
         return
-    line = service.runs.robot.connect()
+    link = service.runs.robot.connect()
     try:
-        await carry(socket, line, lambda text: service.runs.hear_robot(line, text))
+        await exchange_messages(socket, link, lambda text: service.runs.hear_robot(link, text))
     finally:
-        service.runs.robot.disconnect(line)
+        service.runs.robot.disconnect(link)
 
 
 def _require_known(run: RunAsked, site: Site) -> None:
-    """Raises Invalid for drives, sensors and checkpoints that there are not, before anything
-    begins."""
+    """Raise Invalid for an unknown drive, sensor or checkpoint, before anything starts."""
     checkpoints = [checkpoint.id for checkpoint in site.checkpoints]
-    _require("drive", [run.drive], [*DRIVES, REMOTE])
-    _require("sensor", [run.sensor], [*SENSORS])
-    _require("values: checkpoint", run.values, checkpoints)
+    _require_in("drive", [run.drive], [*DRIVES, REMOTE])
+    _require_in("sensor", [run.sensor], [*SENSORS])
+    _require_in("checkpoint", run.values, checkpoints)
 
 
-def _require(what: str, given: Iterable[object], known: Sequence[object]) -> None:
+def _require_in(what: str, given: Iterable[object], known: Sequence[object]) -> None:
     if unknown := [f"`{one}`" for one in given if one not in known]:
         raise Invalid(
-            f"{what} {', '.join(unknown)}: there is none; known: {', '.join(map(str, known))}"
+            f"unknown {what} {', '.join(unknown)}: choose from {', '.join(map(str, known))}"
         )

@@ -1,4 +1,4 @@
-"""The service from its beginning to its end."""
+"""Start and end of the service: its parts, its socket and its server."""
 
 import secrets
 import socket
@@ -23,52 +23,52 @@ from argo_planner.service.rooms.rooms import PlanRooms
 from argo_planner.service.runs.host import AfterRestart, RunHost
 from argo_planner.service.storage.folder import PlanFolder
 from argo_planner.service.web.access import TokenBook
-from argo_planner.service.web.app import Opened, make_app
+from argo_planner.service.web.app import OpenService, make_app
 from argo_planner.service.web.connections import raise_file_limit, server_options
-from argo_planner.service.web.guard import Doors, Guard
+from argo_planner.service.web.guard import Guard, GuardSettings
 from argo_planner.service.web.requests import PlanningService
 from argo_planner.service.world.kept import KeptObstacles
 
 
 @dataclass(frozen=True)
-class ServiceOrder:
-    """What is to be served, and to whom."""
+class ServiceSpec:
+    """Options of the service: missions, site, tokens and access."""
 
     plans: PlanFolder
     site: OpenedSite
     tokens: TokenBook
-    doors: Doors
+    guard: GuardSettings
     after_restart: AfterRestart = AfterRestart.WAIT
-    """what becomes of a run that was under way when the service was killed"""
+    """treatment of a run that was running when the service was killed"""
     foxglove: int | None = None
-    """the port at which runs are shown live on this machine; None: they are not"""
+    """port of this machine at which Foxglove shows runs live; None: not shown"""
 
 
-def open_folder(path: Path) -> PlanFolder:
-    """The folder of the plans. Raises what `PlanFolder` raises."""
+def open_plan_folder(path: Path) -> PlanFolder:
+    """Open a folder of mission plans. Raises the errors of `PlanFolder`."""
     return PlanFolder(path, partial(secrets.token_hex, 6))
 
 
-def opened_service(
+def make_service_opener(
     plans: PlanFolder,
     site: OpenedSite,
     after_restart: AfterRestart = AfterRestart.WAIT,
     foxglove: int | None = None,
-) -> Opened:
-    """What opens the service with the plans of a folder, and closes both again."""
+) -> OpenService:
+    """Return a function whose context opens the service, and at its end closes it."""
 
     @asynccontextmanager
-    async def opened() -> AsyncIterator[PlanningService]:
+    async def open_service() -> AsyncIterator[PlanningService]:
         analyst = Analyst(site)
         try:
             rooms = PlanRooms(plans, site.catalog, analyst, _now)
 
-            def tell(job: Job) -> None:
+            def publish_job(job: Job) -> None:
                 if (room := rooms.find_open(job.mission)) is not None:
                     room.publish_job(job)
 
             new_id = partial(secrets.token_hex, 6)
-            jobs = Jobs(tell)
+            jobs = Jobs(publish_job)
             orders = OrderSearches(site.reference, jobs, new_id, _now)
             evaluations = Evaluations(plans.path / "evaluations", jobs, new_id, _now)
             runs = RunHost(plans.path / "runs", after_restart, _now, foxglove)
@@ -96,25 +96,26 @@ def opened_service(
         finally:
             analyst.close()
 
-    return opened
+    return open_service
 
 
 def listen(host: str, port: int) -> socket.socket:
-    """A socket at the address; port 0 takes a free one. Raises Unavailable if it can't be had."""
+    """Open a socket that listens at an address; port 0 takes a free one. Raises Unavailable."""
     try:
         family = socket.getaddrinfo(host or None, port, type=socket.SOCK_STREAM)[0][0]
         return socket.create_server((host, port), family=family, backlog=1024)
     except OSError as error:
         raise Unavailable(
-            f"{host}:{port}: can't be listened at: {error.strerror}; choose another port"
+            f"the service can't listen at {host}:{port}: {error.strerror}; choose another address "
+            "or port"
         ) from None
 
 
-def serve(order: ServiceOrder, listening: socket.socket) -> None:
-    """Serves at a socket until a signal ends it."""
+def serve(spec: ServiceSpec, listening: socket.socket) -> None:
+    """Run the server at a socket until a signal ends it."""
     raise_file_limit()
-    app = make_app(opened_service(order.plans, order.site, order.after_restart, order.foxglove))
-    guard = Guard(app, order.tokens, order.doors)
+    app = make_app(make_service_opener(spec.plans, spec.site, spec.after_restart, spec.foxglove))
+    guard = Guard(app, spec.tokens, spec.guard)
     uvicorn.Server(uvicorn.Config(guard, **server_options())).run(sockets=[listening])
 
 

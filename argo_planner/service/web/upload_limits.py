@@ -1,18 +1,17 @@
-"""Limits of the bytes that a request may bring: uploads, other bodies, and messages."""
+"""Limits on the size of uploads, of other request bodies and of messages, in bytes."""
 
 from argo_compiler.files.mission_file import MAX_BYTES
 
-MOST_UPLOADED = MAX_BYTES
-"""of a mission that is imported: as much as a mission file may have, which
-`argo_compiler/files/mission_file.py` says; scripts have a limit of their own as well, in
-`argo_compiler/script/syntax/reading.py`"""
-MOST_OF_A_BODY = 2_000_000
-"""of any other request's body"""
-MOST_OF_A_MESSAGE = 1_000_000
-"""of a message by WebSocket"""
+MAX_UPLOAD_BYTES = MAX_BYTES
+"""limit of an imported mission, the same as that of a mission file; scripts have a smaller limit of
+their own, in `argo_compiler/script/syntax/reading.py`"""
+MAX_BODY_BYTES = 2_000_000
+"""limit of the body of any other request"""
+MAX_MESSAGE_BYTES = 1_000_000
+"""limit of a message over a WebSocket"""
 _UPLOADS = ("/api/imports",)
 
 
-def most_bytes(path: str) -> int:
-    """Return how many bytes the body of a request for `path` may have."""
-    return MOST_UPLOADED if path in _UPLOADS else MOST_OF_A_BODY
+def max_body_bytes(path: str) -> int:
+    """Return the limit of the body of a request for `path`."""
+    return MAX_UPLOAD_BYTES if path in _UPLOADS else MAX_BODY_BYTES

@@ -1,4 +1,4 @@
-"""Versions of a mission: kept, listed, made the mission again, dropped."""
+"""Routes for versions of a mission: store, list, read, restore and delete them."""
 
 from typing import Annotated
 
@@ -8,9 +8,9 @@ from argo_compiler.base.model import Model
 from argo_planner.service.core.commands import CommandId, ReplaceFrom, ReplacePlan
 from argo_planner.service.core.document import PlanVersion
 from argo_planner.service.rooms.messages import VersionSummary
-from argo_planner.service.web.bodies import Sent
-from argo_planner.service.web.commands import COMMAND, carried_out
-from argo_planner.service.web.problems import documented
+from argo_planner.service.web.bodies import JsonBody
+from argo_planner.service.web.commands import COMMAND_RESPONSE, execute_command
+from argo_planner.service.web.problems import problem_responses
 from argo_planner.service.web.requests import (
     MadeOn,
     NameGiven,
@@ -18,13 +18,13 @@ from argo_planner.service.web.requests import (
     Planner,
     Service,
     Viewer,
-    created,
+    created_response,
+    json_response,
     links,
-    routes,
-    said,
+    make_router,
 )
 
-router = routes("versions")
+router = make_router("versions")
 
 _VERSION = links(
     "read_version",
@@ -36,22 +36,24 @@ _VERSION = links(
 
 
 class RestoredVersion(Model):
-    """A command that makes a version the mission again."""
+    """Command that restores a version."""
 
     id: CommandId
 
 
 class VersionList(Model):
-    """Versions in the order in which they were kept."""
+    """Versions in the order in which they were stored."""
 
     versions: tuple[VersionSummary, ...]
 
 
 @router.get("/missions/{id}/versions", operation_id="list_versions", response_model=VersionList)
 async def list_versions(service: Service, _: Viewer, id: PlanId) -> Response:
-    """The versions that were kept of a mission."""
+    """Return the stored versions of a mission, without their content."""
     document = (await service.rooms.open(id)).document
-    return said(VersionList(versions=tuple(map(VersionSummary.from_version, document.versions))))
+    return json_response(
+        VersionList(versions=tuple(map(VersionSummary.from_version, document.versions)))
+    )
 
 
 @router.post(
@@ -59,56 +61,60 @@ async def list_versions(service: Service, _: Viewer, id: PlanId) -> Response:
     operation_id="keep_version",
     status_code=201,
     response_model=VersionSummary,
-    responses=documented(412, 428) | {201: created(VersionSummary, _VERSION)},
+    responses=problem_responses(412, 428) | {201: created_response(VersionSummary, _VERSION)},
 )
-async def keep_version(
+async def store_mission_version(
     service: Service,
     visitor: Planner,
     id: PlanId,
-    given: Sent[NameGiven],
+    given: JsonBody[NameGiven],
     made_on: MadeOn,
 ) -> Response:
-    """Keeps the mission as it stands under a name."""
+    """Store the present mission under a name."""
     room = await service.rooms.open(id)
     version = await room.store_version(given.name, visitor.author, made_on)
-    return said(version, 201, location=f"/api/missions/{id}/versions/{version.number}")
+    return json_response(version, 201, location=f"/api/missions/{id}/versions/{version.number}")
 
 
-VersionNumber = Annotated[int, Path(ge=1, le=10**9, description="of the version")]
+VersionNumber = Annotated[int, Path(ge=1, le=10**9, description="number of the version")]
 
 
 @router.get(
     "/missions/{id}/versions/{number}", operation_id="read_version", response_model=PlanVersion
 )
 async def read_version(service: Service, _: Viewer, id: PlanId, number: VersionNumber) -> Response:
-    """A version with its mission."""
-    return said((await service.rooms.open(id)).document.version(number))
+    """Return a version with its mission."""
+    return json_response((await service.rooms.open(id)).document.version(number))
 
 
 @router.delete("/missions/{id}/versions/{number}", operation_id="drop_version", status_code=204)
-async def drop_version(service: Service, _: Planner, id: PlanId, number: VersionNumber) -> Response:
-    """Keeps a version no longer."""
+async def delete_mission_version(
+    service: Service, _: Planner, id: PlanId, number: VersionNumber
+) -> Response:
+    """Delete a version."""
     await (await service.rooms.open(id)).delete_version(number)
     return Response(status_code=204)
 
 
-@router.post("/missions/{id}/versions/{number}/restore", operation_id="restore_version", **COMMAND)
+@router.post(
+    "/missions/{id}/versions/{number}/restore", operation_id="restore_version", **COMMAND_RESPONSE
+)
 async def restore_version(
     service: Service,
     visitor: Planner,
     id: PlanId,
     number: VersionNumber,
-    command: Sent[RestoredVersion],
+    command: JsonBody[RestoredVersion],
     made_on: MadeOn,
 ) -> Response:
-    """Makes a version the mission again, as a command that can be undone."""
+    """Replace the mission by a version, as a command that can be undone."""
     room = await service.rooms.open(id)
-    asked = ReplaceFrom(id=command.id, kept_as=f"version {number}")
-    # Before the version is looked for, which may have been dropped since.
-    if (again := room.earlier_answer(asked, visitor.author)) is not None:
-        return said(again, revision=again.newest)
+    request = ReplaceFrom(id=command.id, kept_as=f"version {number}")
+    # This precedes the search for the version, which may have been deleted since.
+    if (again := room.earlier_answer(request, visitor.author)) is not None:
+        return json_response(again, revision=again.newest)
     version = room.document.version(number)
     replaced = ReplacePlan.model_construct(
         id=command.id, mission=version.mission, about=f"version {version.name}"
     )
-    return await carried_out(room, replaced, visitor.author, made_on, asked)
+    return await execute_command(room, replaced, visitor.author, made_on, request)

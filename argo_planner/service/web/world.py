@@ -1,5 +1,4 @@
-"""The world: floors, checkpoints, where the robot can stand, obstacles, and ways before they are
-driven."""
+"""Routes for the world: its description, meshes, maps and obstacles, and previews of paths."""
 
 from collections.abc import Callable
 from typing import Annotated, Any
@@ -11,9 +10,9 @@ from argo_compiler.base.catalog import CheckpointKind
 from argo_compiler.base.errors import Invalid
 from argo_compiler.base.model import Model, Pose
 from argo_compiler.il import Task
-from argo_planner.service.web.bodies import Sent
-from argo_planner.service.web.missions import sound_plan
-from argo_planner.service.web.problems import documented
+from argo_planner.service.web.bodies import JsonBody
+from argo_planner.service.web.missions import open_valid_plan
+from argo_planner.service.web.problems import problem_responses
 from argo_planner.service.web.requests import (
     MadeOn,
     PlanId,
@@ -21,9 +20,9 @@ from argo_planner.service.web.requests import (
     PlanningService,
     Service,
     Viewer,
-    answers_file,
-    routes,
-    said,
+    file_responses,
+    json_response,
+    make_router,
 )
 from argo_planner.service.world.description import WorldDescription, describe, world_digest
 from argo_planner.service.world.kept import ObstacleList
@@ -40,63 +39,68 @@ from argo_planner.service.world.standing import standing_map
 GLB = "model/gltf-binary"
 MAP = "application/octet-stream"
 
-router = routes("world")
+router = make_router("world")
 
 Floor = Annotated[int, Path(ge=-1_000, le=1_000, description="number of the floor")]
 
 
 class ObstaclesGiven(Model):
-    """All obstacles that are to stand on the site."""
+    """All obstacles of the site; they replace the present ones."""
 
     obstacles: tuple[Obstacle, ...] = Field(max_length=MOST_OBSTACLES)
 
 
 class WayAsked(Model):
-    """A way: to a pose, or to a task's place with its action."""
+    """Request for a path: to a pose, or to the pose of a task, with its action."""
 
     start: Pose
     goal: Pose | None = None
     task: Task | None = None
 
 
-def _file(media: str) -> dict[str, Any]:
-    told = answers_file("the file", media)
-    told["responses"][304] = {"description": "as the client has it"}
-    return told
+def _cached_file(media: str) -> dict[str, Any]:
+    """Return the arguments of a route that responds with a file, or that it has not changed."""
+    arguments = file_responses("the file", media)
+    arguments["responses"][304] = {"description": "the client has the present file"}
+    return arguments
 
 
 @router.get("/world", operation_id="read_world", response_model=WorldDescription)
 async def read_world(service: Service, _: Viewer) -> Response:
-    """The site: floors, checkpoints, docks, places, the robot, and the obstacles on it."""
+    """Return the site: floors, checkpoints, docks, named poses, the robot and the obstacles."""
     obstacles = service.obstacles.present.obstacles
-    return said(await service.on_site(describe, service.site, obstacles))
+    return json_response(await service.run_on_site(describe, service.site, obstacles))
 
 
-@router.get("/world/floors/{floor}/mesh/{detail}", operation_id="read_floor_mesh", **_file(GLB))
+@router.get(
+    "/world/floors/{floor}/mesh/{detail}", operation_id="read_floor_mesh", **_cached_file(GLB)
+)
 async def read_floor_mesh(
     request: Request, service: Service, _: Viewer, floor: Floor, detail: Detail
 ) -> Response:
-    """The solids of a floor as GLB."""
-    return await _kept(
+    """Return the solids of a floor as GLB."""
+    return await _respond_with_file(
         request, service, GLB, False, lambda: floor_mesh(service.site, floor, detail)
     )
 
 
-@router.get("/world/robot", operation_id="read_robot_mesh", **_file(GLB))
+@router.get("/world/robot", operation_id="read_robot_mesh", **_cached_file(GLB))
 async def read_robot_mesh(request: Request, service: Service, _: Viewer) -> Response:
-    """The robot as GLB, its arm stowed."""
-    return await _kept(request, service, GLB, False, lambda: robot_mesh(service.site))
+    """Return the robot with its arm stowed, as GLB."""
+    return await _respond_with_file(request, service, GLB, False, lambda: robot_mesh(service.site))
 
 
-@router.get("/world/checkpoints/{kind}", operation_id="read_checkpoint_mesh", **_file(GLB))
+@router.get("/world/checkpoints/{kind}", operation_id="read_checkpoint_mesh", **_cached_file(GLB))
 async def read_checkpoint_mesh(
     request: Request, service: Service, _: Viewer, kind: CheckpointKind
 ) -> Response:
-    """A checkpoint of a kind as GLB."""
-    return await _kept(request, service, GLB, False, lambda: checkpoint_mesh(kind))
+    """Return a checkpoint of a kind as GLB."""
+    return await _respond_with_file(request, service, GLB, False, lambda: checkpoint_mesh(kind))
 
 
-@router.get("/world/floors/{floor}/standing/{heading}", operation_id="read_standing", **_file(MAP))
+@router.get(
+    "/world/floors/{floor}/standing/{heading}", operation_id="read_standing", **_cached_file(MAP)
+)
 async def read_standing(
     request: Request,
     service: Service,
@@ -104,10 +108,12 @@ async def read_standing(
     floor: Floor,
     heading: Annotated[int, Path(ge=0, le=1_000, description="number of the heading")],
 ) -> Response:
-    """Where on a floor the robot can stand with a heading, and get to; the format is in the
-    documentation of the service."""
+    """Return the map of a floor for a heading: where the robot can stand, and what it can reach.
+
+    `docs/service.md` describes the format.
+    """
     obstacles = service.obstacles.present.obstacles
-    return await _kept(
+    return await _respond_with_file(
         request,
         service,
         MAP,
@@ -118,60 +124,70 @@ async def read_standing(
 
 @router.get("/world/obstacles", operation_id="list_obstacles", response_model=ObstacleList)
 async def list_obstacles(service: Service, _: Viewer) -> Response:
-    """The obstacles on the site; their ETag is how often they have changed."""
+    """Return the obstacles of the site; their ETag is the number of their changes."""
     present = service.obstacles.present
-    return said(present, revision=present.revision)
+    return json_response(present, revision=present.revision)
 
 
 @router.put(
     "/world/obstacles",
     operation_id="put_obstacles",
     response_model=ObstacleList,
-    responses=documented(412, 428),
+    responses=problem_responses(412, 428),
 )
 async def put_obstacles(
-    service: Service, _: Planner, given: Sent[ObstaclesGiven], made_on: MadeOn
+    service: Service, _: Planner, given: JsonBody[ObstaclesGiven], made_on: MadeOn
 ) -> Response:
-    """Puts these obstacles in the place of all that there are. Plans and runs go round them."""
+    """Replace all obstacles of the site; previews and runs take them into account."""
     obstacles = given.obstacles
-    await service.on_site(with_obstacles, service.site, obstacles)
-    changed = await service.on_site(service.obstacles.replace, obstacles, made_on)
+    await service.run_on_site(with_obstacles, service.site, obstacles)
+    changed = await service.run_on_site(service.obstacles.replace, obstacles, made_on)
     service.rooms.publish_world(changed.revision)
-    return said(changed, revision=changed.revision)
+    return json_response(changed, revision=changed.revision)
 
 
 @router.post("/world/way", operation_id="preview_way", response_model=PreviewedWay)
-async def preview_a_way(service: Service, _: Viewer, asked: Sent[WayAsked]) -> Response:
-    """The way that the robot would take, with its time, climb and energy."""
+async def preview_a_way(service: Service, _: Viewer, asked: JsonBody[WayAsked]) -> Response:
+    """Return the path that the robot would take, with its time, climb and energy."""
     goal = asked.task or asked.goal
     if goal is None or (asked.task and asked.goal):
-        raise Invalid("say where the way leads: give either a `goal` or a `task`")
+        raise Invalid("the end of the path is not clear: give either a `goal` or a `task`")
     obstacles = service.obstacles.present.obstacles
-    return said(await service.on_site(preview_way, service.site, asked.start, goal, obstacles))
+    return json_response(
+        await service.run_on_site(preview_way, service.site, asked.start, goal, obstacles)
+    )
 
 
 @router.get(
     "/missions/{id}/preview", operation_id="preview_mission", response_model=PreviewedMission
 )
 async def preview_a_mission(service: Service, _: Viewer, id: PlanId) -> Response:
-    """The ways of a mission as they will be driven, with times, climb and energy."""
-    plan = (await sound_plan(service, id)).plan
+    """Return the paths of a mission as they will be driven, with times, climb and energy."""
+    plan = (await open_valid_plan(service, id)).plan
     obstacles = service.obstacles.present.obstacles
-    found = await service.on_site(preview_mission, service.site, plan.mission, obstacles)
-    return said(found, revision=plan.revision)
+    preview = await service.run_on_site(preview_mission, service.site, plan.mission, obstacles)
+    return json_response(preview, revision=plan.revision)
 
 
-async def _kept(
+async def _respond_with_file(
     request: Request,
     service: PlanningService,
     media: str,
     obstacles: bool,
     make: Callable[[], bytes],
 ) -> Response:
-    """A file of the world, which the client keeps as long as the world stays the same."""
-    standing = service.obstacles.present.obstacles if obstacles else ()
-    tag = f'"{await service.on_site(world_digest, service.site, standing)}"'
+    """Return a file of the world, or 304 if the client has it.
+
+    Args:
+        request: Its header `If-None-Match` may name the file that the client has.
+        service: The service with the site and its obstacles.
+        media: Media type of the file.
+        obstacles: True if the file depends on the obstacles.
+        make: Function that makes the file's content; called in the site's thread.
+    """
+    present = service.obstacles.present.obstacles if obstacles else ()
+    tag = f'"{await service.run_on_site(world_digest, service.site, present)}"'
     headers = {"etag": tag, "cache-control": "private, no-cache"}
     if request.headers.get("if-none-match") == tag:
         return Response(status_code=304, headers=headers)
-    return Response(await service.on_site(make), 200, headers, media)
+    return Response(await service.run_on_site(make), 200, headers, media)

@@ -1,4 +1,4 @@
-"""What the tests of the service share."""
+"""Fixtures for tests of the service."""
 
 import pytest
 
@@ -9,7 +9,7 @@ from tests.argo_planner.service.served import Served, served
 
 @pytest.fixture(scope="session", autouse=True)
 def loaded() -> None:
-    """Let services begin processes that have loaded all that they need."""
+    """Let the service fork its processes from one that has loaded all their modules."""
     CONTEXT.set_forkserver_preload(["tests.argo_planner.service.loaded"])
 
 
@@ -20,6 +20,6 @@ def site() -> OpenedSite:
 
 @pytest.fixture(scope="module")
 def service(tmp_path_factory, site) -> Served:
-    """One for all tests of a file."""
-    with served(tmp_path_factory.mktemp("missions"), site) as found:
-        yield found
+    """Service that all tests of a file use."""
+    with served(tmp_path_factory.mktemp("missions"), site) as running:
+        yield running

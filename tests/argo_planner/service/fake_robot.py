@@ -1,4 +1,4 @@
-"""A robot in a process of its own, whose connection to the service breaks off now and then.
+"""Robot in a process of its own, whose connection to the service sometimes breaks.
 
 python -m tests.argo_planner.service.fake_robot ADDRESS TOKEN SEED X Y Z YAW
 """
@@ -15,14 +15,14 @@ from argo_compiler.base.model import Pose
 from tests.argo_env.remote.fakes import FakeRobot
 
 
-class Line:
-    """A link over a WebSocket, as far as there is a connection."""
+class Link:
+    """Link over a WebSocket, which connects again after an interruption."""
 
     def __init__(self, address: str, token: str, rng: random.Random) -> None:
         self._address, self._token, self._rng = address, token, rng
         self._opened = None
 
-    def end(self, _: int) -> "Line":
+    def end(self, _: int) -> "Link":
         return self
 
     def send(self, message: str) -> None:
@@ -34,7 +34,7 @@ class Line:
     def receive(self) -> list[str]:
         texts: list[str] = []
         if self._rng.random() < 0.02:
-            self._break_off()
+            self._disconnect()
         with suppress(OSError, WebSocketException):
             while True:
                 try:
@@ -44,9 +44,9 @@ class Line:
         self._opened = None
         return texts
 
-    def _break_off(self) -> None:
+    def _disconnect(self) -> None:
         if self._opened is not None:
-            self._opened.socket.close()  # without a word
+            self._opened.socket.close()  # without a closing message
             self._opened = None
             time.sleep(self._rng.uniform(0.0, 0.5))
 
@@ -64,7 +64,7 @@ class Line:
 
 def main() -> None:
     address, token, seed, *pose = sys.argv[1:]
-    robot = FakeRobot(Line(address, token, random.Random(int(seed))), time.time)
+    robot = FakeRobot(Link(address, token, random.Random(int(seed))), time.time)
     x, y, z, yaw = map(float, pose)
     robot.pose = Pose(x=x, y=y, z=z, yaw=yaw)
     while True:

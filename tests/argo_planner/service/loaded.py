@@ -1,6 +1,6 @@
 """Module whose import prepares the process that those of a service under test are forked from.
 
-Without it they do the same, and take longer: each loads modules late and finds its paths anew.
+Without it the processes behave alike but take longer: each loads modules late and computes paths.
 """
 
 from argo_compiler.script import import_script
@@ -15,7 +15,7 @@ SCRIPT = (
     "3. Check valve R25.\n4. Return to the docking station in starting area 1.\n"
 )
 
-draw_small_overviews()  # at which these tests do not look
+draw_small_overviews()  # these tests do not check it
 load_late_modules()
 _site = open_site("umad").prepare()
 _mission = import_script(SCRIPT, _site.catalog).mission

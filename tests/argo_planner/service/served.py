@@ -1,4 +1,4 @@
-"""A service under test: a real server on a socket of its own, in a thread of this process."""
+"""Service under test: a real server with its own socket, in a thread of this process."""
 
 import asyncio
 import json
@@ -19,8 +19,8 @@ from argo_planner.service.rooms.mailbox import Mailbox
 from argo_planner.service.web.access import AccessRole, AccessToken, TokenBook
 from argo_planner.service.web.app import make_app
 from argo_planner.service.web.connections import server_options
-from argo_planner.service.web.guard import LOOPBACK, Doors, Guard
-from argo_planner.service.web.serving import listen, open_folder, opened_service
+from argo_planner.service.web.guard import LOOPBACK, Guard, GuardSettings
+from argo_planner.service.web.serving import listen, make_service_opener, open_plan_folder
 
 ALL = "all-may-be-done-with-this"
 SECRETS = {
@@ -32,7 +32,7 @@ _IDS = count(1)
 
 
 class Served:
-    """A service that is there. `client` may do everything, as `ann`."""
+    """Running service, with clients for it. `client` has all rights, and the name `ann`."""
 
     def __init__(self, folder: Path, address: str) -> None:
         self.folder = folder
@@ -50,7 +50,7 @@ class Served:
         return self.socket(f"/api/missions/{id}/live{query}", {"authorization": f"Bearer {ALL}"})
 
     def socket(self, path: str, headers: dict[str, str]) -> ClientConnection:
-        """A WebSocket, which is closed at the end if nobody has done so before."""
+        """Return a WebSocket, which is closed at the end of the tests at the latest."""
         opening = connect(
             f"ws://{self.address}{path}", additional_headers=headers, max_size=None, proxy=None
         )
@@ -58,9 +58,9 @@ class Served:
 
     def create(self, name: str = "Round", mission: Any = None) -> str:
         body = {"name": name} | ({} if mission is None else {"mission": mission})
-        made = self.client.post("/api/missions", json=body)
-        assert made.status_code == 201, made.text
-        id: str = made.json()["id"]
+        answer = self.client.post("/api/missions", json=body)
+        assert answer.status_code == 201, answer.text
+        id: str = answer.json()["id"]
         return id
 
     def command(
@@ -69,14 +69,16 @@ class Served:
         revision: int | str,
         *edits: Any,
         client: httpx.Client | None = None,
-        **said: Any,
+        **fields: Any,
     ) -> httpx.Response:
-        body = {"kind": "edit", "id": f"k{next(_IDS)}"} | ({"edits": edits} if edits else {}) | said
+        body = (
+            {"kind": "edit", "id": f"k{next(_IDS)}"} | ({"edits": edits} if edits else {}) | fields
+        )
         used = client or self.client
         return used.post(f"/api/missions/{id}/commands", json=body, headers=_if_match(revision))
 
     def post(self, path: str, revision: int | str | None = None, **body: Any) -> httpx.Response:
-        """Post a body, which was made on the revision if one is given."""
+        """Post a body, with the revision it was made on, if one is given."""
         headers = {} if revision is None else _if_match(revision)
         return self.client.post(path, json=body, headers=headers)
 
@@ -84,22 +86,22 @@ class Served:
         return self.client.get(f"/api/missions/{id}").json()["mission"]
 
     def imported(self, script: str, filename: str = "m.txt", **areas: int) -> str:
-        """Import a script; return the id of its mission."""
+        """Import a script, and return the id of its mission."""
         params = {"filename": filename} | areas
-        made = self.client.post("/api/imports", params=params, content=script)
-        assert made.status_code == 201, made.text
-        id: str = made.json()["id"]
+        answer = self.client.post("/api/imports", params=params, content=script)
+        assert answer.status_code == 201, answer.text
+        id: str = answer.json()["id"]
         return id
 
     def run(
         self, id: str, revision: int | str = "*", client: httpx.Client | None = None, **order: Any
     ) -> httpx.Response:
-        """Ask for a run of a mission."""
+        """Request a run of a mission."""
         used = client or self.client
         return used.post(f"/api/missions/{id}/runs", json=order, headers=_if_match(revision))
 
     def put_obstacles(self, *obstacles: Any, revision: int | str = "*") -> httpx.Response:
-        """Ask for obstacles instead of those that there are."""
+        """Replace the obstacles."""
         body = {"obstacles": obstacles}
         return self.client.put("/api/world/obstacles", json=body, headers=_if_match(revision))
 
@@ -110,19 +112,19 @@ def _if_match(revision: int | str) -> dict[str, str]:
 
 @contextmanager
 def served(folder: Path, site: OpenedSite) -> Iterator[Served]:
-    """A service with the missions of a folder; all its threads end with the context."""
+    """Serve the missions of a folder; all threads end with the context."""
     tokens = [AccessToken(ALL), *(AccessToken(s, role, str(role)) for role, s in SECRETS.items())]
-    app = make_app(opened_service(open_folder(folder), site))
-    guard = Guard(app, TokenBook(tokens), Doors(frozenset(LOOPBACK)))
+    app = make_app(make_service_opener(open_plan_folder(folder), site))
+    guard = Guard(app, TokenBook(tokens), GuardSettings(frozenset(LOOPBACK)))
     listening = listen("127.0.0.1", 0)
     server = uvicorn.Server(uvicorn.Config(guard, **server_options()))
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]}, daemon=True)
     thread.start()
     try:
         _wait(lambda: server.started or not thread.is_alive())
-        assert thread.is_alive(), "the service has not begun"
-        with (found := Served(folder, f"127.0.0.1:{listening.getsockname()[1]}")).closing:
-            yield found
+        assert thread.is_alive(), "the service has not started"
+        with (running := Served(folder, f"127.0.0.1:{listening.getsockname()[1]}")).closing:
+            yield running
     finally:
         server.should_exit = True
         thread.join(30)
@@ -135,8 +137,8 @@ def _wait(done: Callable[[], bool]) -> None:
         threading.Event().wait(0.01)
 
 
-def raw(address: str, content: bytes, most: int = 1_000_000) -> bytes:
-    """What the service answers to bytes that no HTTP library would send."""
+def send_raw(address: str, content: bytes, most: int = 1_000_000) -> bytes:
+    """Send bytes that no HTTP library would send, and return the answer."""
     host, _, port = address.partition(":")
     with socket.create_connection((host, int(port)), timeout=30) as connection:
         with suppress(BrokenPipeError, ConnectionResetError):
@@ -148,13 +150,13 @@ def raw(address: str, content: bytes, most: int = 1_000_000) -> bytes:
         return answer
 
 
-async def taken(mailbox: Mailbox, kind: str) -> list[dict[str, Any]]:
-    """All messages of a kind that wait."""
-    found = []
+async def waiting_messages(mailbox: Mailbox, kind: str) -> list[dict[str, Any]]:
+    """Return all waiting messages of a kind."""
+    messages = []
     while True:
         try:
             message = json.loads(await asyncio.wait_for(mailbox.next_message(), 0.05))
         except TimeoutError:
-            return found
+            return messages
         if message["kind"] == kind:
-            found.append(message)
+            messages.append(message)

@@ -17,7 +17,7 @@ from argo_planner.service.evaluations.evaluations import EvaluationFolder
 from argo_planner.service.jobs.job import EvaluationJob
 from argo_planner.service.web.access import AccessRole
 from tests.argo_planner.service.served import SECRETS, Served, served
-from tests.argo_planner.service.test_http import begun, problem
+from tests.argo_planner.service.test_http import new_resource, problem
 from tests.argo_planner.service.test_jobs import import_script, wait_for_end, wait_until
 
 FAULTS = [{"kind": "low_battery", "charge": 0.01}]
@@ -33,7 +33,7 @@ def request_evaluation(service: Served, id: str, revision: int | str = "*", **re
 
 
 def start_evaluation(service: Served, id: str, **request: object) -> str:
-    return begun(request_evaluation(service, id, **request), 202, "/api/jobs")["id"]
+    return new_resource(request_evaluation(service, id, **request), 202, "/api/jobs")["id"]
 
 
 @pytest.mark.long
@@ -125,7 +125,7 @@ def test_a_cancelled_evaluation_has_a_valid_interval_and_a_report(service: Serve
     assert standing["rate"]["method"] == "confidence sequence"
     assert {one["rate"]["method"] for one in standing["by_faults"]} == {"confidence sequence"}
     assert sum(standing["outcomes"].values()) == standing["done"] >= standing["rate"]["runs"]
-    assert standing["rate"]["runs"] % 2 == 0, "of whole worlds"
+    assert standing["rate"]["runs"] % 2 == 0, "only complete worlds count"
     report = service.client.get(f"/api/jobs/{job}/report")
     assert report.status_code == 200
     assert "The evaluation was ended early" in report.text
@@ -190,20 +190,22 @@ def test_evaluations_outlive_the_service(tmp_path: Path, site: OpenedSite) -> No
         id = import_script(first)
         done = start_evaluation(first, id, worlds=3)
         assert wait_for_end(first, done)["state"] == "done"
-        cut_short = start_evaluation(first, id, worlds=150)
-        known = wait_until(first, cut_short, lambda read: read["standing"] is not None)["standing"]
+        ended_early = start_evaluation(first, id, worlds=150)
+        known = wait_until(first, ended_early, lambda read: read["standing"] is not None)[
+            "standing"
+        ]
     with served(tmp_path, site) as second:
         states = {job["id"]: job["state"] for job in second.client.get("/api/jobs").json()["jobs"]}
-        assert states == {done: "done", cut_short: "interrupted"}
-        standing = second.client.get(f"/api/jobs/{cut_short}").json()["standing"]
+        assert states == {done: "done", ended_early: "interrupted"}
+        standing = second.client.get(f"/api/jobs/{ended_early}").json()["standing"]
         assert standing["done"] >= known["done"]
         assert standing["rate"]["method"] == "confidence sequence"
         assert second.client.get(f"/api/jobs/{done}").json()["standing"]["done"] == 3
         assert second.client.get(f"/api/jobs/{done}/report").status_code == 200
-        assert second.client.post(f"/api/jobs/{cut_short}/go_on").status_code == 202
-        complete = wait_for_end(second, cut_short)
+        assert second.client.post(f"/api/jobs/{ended_early}/go_on").status_code == 202
+        complete = wait_for_end(second, ended_early)
         assert (complete["state"], complete["standing"]["done"]) == ("done", 150)
-        assert len(read_rows(tmp_path / "evaluations" / cut_short)) == 150
+        assert len(read_rows(tmp_path / "evaluations" / ended_early)) == 150
 
 
 @pytest.mark.long
@@ -229,11 +231,11 @@ def test_obstacles_are_in_the_worlds(tmp_path: Path, site: OpenedSite) -> None:
             for one in (without, job)
         ]
         assert len(keys[0]) == len(keys[1]) == 2
-        assert not keys[0] & keys[1], "runs among other obstacles are other runs"
+        assert not keys[0] & keys[1], "runs with other obstacles must have other keys"
 
 
 def test_invalid_requests_are_refused_before_anything_runs(service: Served, id: str) -> None:
-    for request, why in (
+    for request, reason in (
         ({"require": ["good >= 1"]}, "no quantity `good`"),
         ({"without_faults": False}, "nothing is to be run"),
         ({"worlds": 10_000, "faults": FAULTS * 20}, "too many"),
@@ -245,7 +247,7 @@ def test_invalid_requests_are_refused_before_anything_runs(service: Served, id: 
         ({"variation": {"values": {"1": {"start": [1, 1e300]}}}}, "checkpoint 1"),
     ):
         assert (
-            why in problem(request_evaluation(service, id, **request), 422, "invalid")["detail"]
+            reason in problem(request_evaluation(service, id, **request), 422, "invalid")["detail"]
         ), request
     problem(request_evaluation(service, id, revision=77), 412, "stale-revision")
     empty = service.create()
@@ -256,7 +258,7 @@ def test_invalid_requests_are_refused_before_anything_runs(service: Served, id: 
 
 
 @pytest.mark.long
-def test_searches_are_no_evaluations(service: Served, id: str) -> None:
+def test_a_search_is_not_an_evaluation(service: Served, id: str) -> None:
     order = service.client.post(f"/api/missions/{id}/orders", json={"time_limit": 1}).json()["id"]
     for answer in (
         service.client.post(f"/api/jobs/{order}/go_on"),

@@ -1,4 +1,4 @@
-"""What comes from strangers is refused in one clear answer, and the service goes on serving."""
+"""Requests of attackers: each is refused with one clear answer, and the service still works."""
 
 import json
 import socket
@@ -8,14 +8,14 @@ import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection
 
-from argo_planner.service.web.connections import MOST_CONNECTIONS, raise_file_limit
-from tests.argo_planner.service.served import ALL, Served, raw
+from argo_planner.service.web.connections import MAX_CONNECTIONS, raise_file_limit
+from tests.argo_planner.service.served import ALL, Served, send_raw
 from tests.argo_planner.service.test_http import data, problem
 
 
 @pytest.fixture(autouse=True)
-def goes_on(service: Served):
-    """After each of these tests the service serves as before."""
+def service_still_works(service: Served):
+    """Check after each test that the service works."""
     yield
     id = service.create(mission=data("a", "b"))
     assert service.command(id, 1, {"kind": "remove_task", "name": "b"}).status_code == 200
@@ -35,7 +35,9 @@ def goes_on(service: Served):
         {"sec-fetch-site": "cross-site"},
     ],
 )
-def test_who_comes_from_elsewhere_is_refused(service: Served, headers: dict[str, str]) -> None:
+def test_requests_from_other_hosts_or_origins_are_refused(
+    service: Served, headers: dict[str, str]
+) -> None:
     for answer in (
         service.client.get("/api/missions", headers=headers),
         service.client.post("/api/missions", json={"name": "x"}, headers=headers),
@@ -43,7 +45,7 @@ def test_who_comes_from_elsewhere_is_refused(service: Served, headers: dict[str,
         assert answer.status_code == 403
         assert answer.json()["code"] in ("foreign-host", "foreign-origin")
         assert "content-security-policy" in answer.headers
-    if "host" not in headers:  # the library sends its own
+    if "host" not in headers:  # the WebSocket library always sends its own host
         path = f"/api/missions/{service.create()}/live"
         with pytest.raises(InvalidStatus, match="403"):
             service.socket(path, {"authorization": f"Bearer {ALL}"} | headers)
@@ -59,7 +61,9 @@ def test_who_comes_from_elsewhere_is_refused(service: Served, headers: dict[str,
         {"authorization": "Bearer é"},
     ],
 )
-def test_without_a_token_nothing_is_told(service: Served, headers: dict[str, str]) -> None:
+def test_requests_without_a_valid_token_are_refused(
+    service: Served, headers: dict[str, str]
+) -> None:
     sent = {k: v.encode() for k, v in headers.items()}
     for path in ("/", "/api/missions", "/api/openapi.json", "/api/nothing"):
         answer = service.client.get(path, headers=sent)
@@ -83,7 +87,7 @@ def test_the_address_with_the_token_sets_a_cookie(service: Served) -> None:
         assert page.status_code == 200
         assert "unsafe-eval" not in page.headers["content-security-policy"]
         away = f"GET //evil.example/x?token={ALL} HTTP/1.1\r\nHost: localhost\r\n"
-        answer = raw(service.address, f"{away}Connection: close\r\n\r\n".encode())
+        answer = send_raw(service.address, f"{away}Connection: close\r\n\r\n".encode())
         assert b"\r\nlocation: /evil.example/x\r\n" in answer
         problem(client.get("/", params={"token": "wrong"}), 401, "token-missing")
     finally:
@@ -105,7 +109,7 @@ def test_the_address_with_the_token_sets_a_cookie(service: Served) -> None:
 )
 def test_no_path_leads_out_of_the_folder(service: Served, path: str) -> None:
     for method in ("GET", "DELETE", "POST"):
-        answer = raw(
+        answer = send_raw(
             service.address,
             f"{method} {path} HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer {ALL}\r\n"
             "Connection: close\r\nContent-Length: 0\r\n\r\n".encode(),
@@ -133,23 +137,23 @@ def test_a_link_out_of_the_folder_is_not_followed(service: Served, tmp_path) -> 
     assert (tmp_path / "elsewhere").exists()
 
 
-def test_bodies_of_100_mb_are_not_taken(service: Served) -> None:
+def test_bodies_of_100_mb_are_refused(service: Served) -> None:
     problem(service.client.post("/api/missions", content=b"x" * 3_000_000), 413, "too-large")
     head = f"POST /api/missions HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer {ALL}\r\n"
-    said = raw(service.address, f"{head}Content-Length: 100000000\r\n\r\n".encode())
-    assert b" 413 " in said.split(b"\r\n")[0]
+    with_size = send_raw(service.address, f"{head}Content-Length: 100000000\r\n\r\n".encode())
+    assert b" 413 " in with_size.split(b"\r\n")[0]
     chunk = b"10000\r\n" + b"x" * 65_536 + b"\r\n"
-    unsaid = raw(
+    without_size = send_raw(
         service.address,
         head.encode()
         + b"Connection: close\r\nTransfer-Encoding: chunked\r\n\r\n"
         + chunk * 1_600
         + b"0\r\n\r\n",
     )
-    assert unsaid.split()[1] in (b"413", b"400"), unsaid[:300]
+    assert without_size.split()[1] in (b"413", b"400"), without_size[:300]
 
 
-def test_missions_that_are_too_large_are_not_taken(service: Served) -> None:
+def test_missions_that_are_too_large_are_refused(service: Served) -> None:
     tasks = b",".join(
         b'{"name":"t%d","action":"MEASURE","object_id":"1"}' % k for k in range(1_000_000)
     )
@@ -164,7 +168,7 @@ def test_missions_that_are_too_large_are_not_taken(service: Served) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "why"),
+    ("name", "reason"),
     [
         ("x" * 1_000_000, "at most"),
         ("x" * 201, "at most 200"),
@@ -173,7 +177,7 @@ def test_missions_that_are_too_large_are_not_taken(service: Served) -> None:
         ("", "needs a name"),
     ],
 )
-def test_what_can_be_no_name_is_refused(service: Served, name: str, why: str) -> None:
+def test_texts_that_can_not_be_names_are_refused(service: Served, name: str, reason: str) -> None:
     id = service.create(mission=data("a", "b"))
     for answer in (
         service.client.post("/api/missions", json={"name": name}),
@@ -182,10 +186,10 @@ def test_what_can_be_no_name_is_refused(service: Served, name: str, why: str) ->
     ):
         assert answer.status_code in (409, 422), answer.text[:300]
         assert len(answer.content) < 5_000
-        assert why in answer.text or "empty" in answer.text or "is to be" in answer.text
+        assert reason in answer.text or "empty" in answer.text or "is to be" in answer.text
 
 
-def test_names_are_texts(service: Served) -> None:
+def test_a_name_with_markup_is_returned_as_text(service: Served) -> None:
     name = "<img src=x onerror=alert(1)> גשר"
     id = service.create(name)
     answer = service.client.get(f"/api/missions/{id}")
@@ -206,7 +210,7 @@ def test_names_are_texts(service: Served) -> None:
         b"null",
     ],
 )
-def test_bodies_that_make_no_sense_are_refused(service: Served, body: bytes) -> None:
+def test_malformed_bodies_are_refused(service: Served, body: bytes) -> None:
     answer = service.client.post(
         "/api/missions", content=body, headers={"content-type": "application/json"}
     )
@@ -215,7 +219,7 @@ def test_bodies_that_make_no_sense_are_refused(service: Served, body: bytes) -> 
 
 
 @pytest.mark.parametrize(
-    "said",
+    "text",
     [
         "nothing",
         "[" * 50_000,
@@ -225,64 +229,64 @@ def test_bodies_that_make_no_sense_are_refused(service: Served, body: bytes) -> 
         b"\x00\xff",
     ],
 )
-def test_messages_that_make_no_sense_end_the_connection(service: Served, said: str) -> None:
+def test_malformed_messages_end_the_connection(service: Served, text: str) -> None:
     id = service.create(mission=data("a"))
     page = service.follow(id)
     page.recv()
     with pytest.raises(ConnectionClosed):
-        talk(page, said)
+        send_and_receive_all(page, text)
     assert page.close_code in (4400, 1009)
 
 
 def test_a_message_of_two_megabytes_ends_the_connection(service: Served) -> None:
     page = service.follow(service.create(mission=data("a")))
     page.recv()
-    with pytest.raises(ConnectionClosed):  # also while it is sent; then no close code can be read
-        talk(page, "x" * 2_000_000)
+    with pytest.raises(ConnectionClosed):  # perhaps while it is sent; then there is no close code
+        send_and_receive_all(page, "x" * 2_000_000)
 
 
-def test_a_message_is_too_long_by_what_its_head_says(service: Served) -> None:
+def test_a_message_whose_header_states_too_long_a_text_ends_the_connection(service: Served) -> None:
     page = service.follow(service.create(mission=data("a")))
     page.recv()
     text, masked_of_64_bits = 0x81, 0x80 | 127
     head = bytes([text, masked_of_64_bits]) + (2_000_000).to_bytes(8, "big") + bytes(4)
-    page.socket.sendall(head)  # of a message whose rest is not awaited
+    page.socket.sendall(head)  # the service does not wait for the rest of the message
     with pytest.raises(ConnectionClosed):
-        hear_all(page)
+        receive_all(page)
     assert page.close_code == 1009
 
 
-def talk(page: ClientConnection, said: str) -> None:
-    """Send something, and hear all that comes."""
-    page.send(said)
-    hear_all(page)
+def send_and_receive_all(page: ClientConnection, text: str) -> None:
+    """Send a text, and receive all messages."""
+    page.send(text)
+    receive_all(page)
 
 
-def hear_all(page: ClientConnection) -> None:
+def receive_all(page: ClientConnection) -> None:
     while True:
         page.recv(timeout=30)
 
 
 @pytest.mark.long
-def test_ten_thousand_connections_do_not_lock_others_out(service: Served) -> None:
+def test_ten_thousand_connections_do_not_block_other_clients(service: Served) -> None:
     raise_file_limit()
     host, _, port = service.address.partition(":")
-    held: list[socket.socket] = []
+    connections: list[socket.socket] = []
     try:
         for k in range(10_000):
-            held.append(socket.create_connection((host, int(port)), timeout=60))
-            if len(held) > MOST_CONNECTIONS + 500:
-                held.pop(0).close()
+            connections.append(socket.create_connection((host, int(port)), timeout=60))
+            if len(connections) > MAX_CONNECTIONS + 500:
+                connections.pop(0).close()
             if k % 1_000 == 0:
                 assert service.as_("ann").get("/api/missions").status_code == 200
         assert service.as_("ann").get("/api/missions").status_code == 200
     finally:
-        for one in held:
+        for one in connections:
             one.close()
 
 
-def test_more_pages_than_there_may_be_are_told_so(service: Served, monkeypatch) -> None:
-    monkeypatch.setattr("argo_planner.service.web.live.MOST_SOCKETS", 3)
+def test_a_page_beyond_the_limit_of_connections_is_refused(service: Served, monkeypatch) -> None:
+    monkeypatch.setattr("argo_planner.service.web.live.MAX_SOCKETS", 3)
     id = service.create(mission=data("a"))
     pages = [service.follow(id) for _ in range(3)]
     with pytest.raises(InvalidStatus, match="503"):

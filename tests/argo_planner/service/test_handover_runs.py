@@ -1,5 +1,7 @@
-"""The law of handover through the service: what was done before, by hand and after is what the
-mission would have done."""
+"""Law of handover, through the service.
+
+The tasks done before, by hand and after a handover are those that the mission would have done.
+"""
 
 import random
 import time
@@ -13,14 +15,14 @@ from argo_env.planning.opening import OpenedSite
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec
 from tests.argo_planner.service.served import Served
-from tests.argo_planner.service.test_http import begun
-from tests.argo_planner.service.test_runs import ask, settled, state, wait
+from tests.argo_planner.service.test_http import new_resource
+from tests.argo_planner.service.test_runs import ask, state, wait_for, wait_for_answer
 from tests.conftest import seeds
 from tests.yard import from_place
 
 
 def random_mission(rng: random.Random, site: OpenedSite) -> Mission:
-    """Some checkpoints of one floor, a part of them in a round."""
+    """Return a mission with some checkpoints of one floor, some of which may form a group."""
     floor = rng.choice(sorted({c.floor for c in site.site.checkpoints}))
     numbers = [c.id for c in site.site.checkpoints if c.floor == floor]
     chosen = rng.sample(numbers, min(len(numbers), rng.randint(2, 4)))
@@ -35,25 +37,25 @@ def random_mission(rng: random.Random, site: OpenedSite) -> Mission:
     return from_place(dock, *tasks, groups=groups)
 
 
-def visits(mission: Mission, site: OpenedSite) -> Counter[str]:
-    """What is done when nobody interrupts the mission."""
+def count_visits(mission: Mission, site: OpenedSite) -> Counter[str]:
+    """Return the number of visits of each task if nobody interrupts the mission."""
     spec = RunSpec(mission=mission, site=site.reference, drive="route")
     with Simulation(Executor(lower(mission)), site, spec) as simulation:
         simulation.run()
         return Counter({t.task: t.done for t in simulation.machine.progress().tallies})
 
 
-def play(service: Served, site: OpenedSite, seed: int) -> str:
-    """One random run with a person in it; what was played."""
+def run_randomly(service: Served, site: OpenedSite, seed: int) -> str:
+    """Run a random mission in which a person takes over; return the person's actions."""
     rng = random.Random(seed)
     mission = random_mission(rng, site)
-    expected = visits(mission, site)
+    expected = count_visits(mission, site)
     id = service.create(f"Run {seed}", mission.model_dump(mode="json"))
-    run = begun(service.run(id, drive="route", speed=60.0), 201, "/api/runs")["id"]
+    run = new_resource(service.run(id, drive="route", speed=60.0), 201, "/api/runs")["id"]
     until = rng.uniform(0.0, 60.0)
     while (now := state(service, run))["t"] < until and now["status"] != "ended":
         time.sleep(0.02)
-    played = []
+    actions = []
     if ask(service, run, "take_over")["progress"] == "confirmed":
         ask(service, run, "speed", speed=None)
         counts = Counter({t["task"]: t["done"] for t in state(service, run)["tasks"]})
@@ -61,37 +63,37 @@ def play(service: Served, site: OpenedSite, seed: int) -> str:
         for name in rng.sample(left, rng.randint(0, len(left))):
             kind = rng.choice(["do_task", "skip"])
             assert ask(service, run, kind, task=name)["progress"] == "confirmed"
-            played.append(kind)
+            actions.append(kind)
         if rng.random() < 0.5:
             task = rng.choice(mission.tasks[1:]).name
             edit = {"kind": "change_task", "name": task, "velocity": 0.25}
             assert service.command(id, 1, edit).status_code == 200
-            found = settled(service, service.post(f"/api/runs/{run}/plan", 2, id="edited"))
-            if found["progress"] == "refused":
-                assert "nothing" in found["reason"]  # is left that could go on
+            answer = wait_for_answer(service, service.post(f"/api/runs/{run}/plan", 2, id="edited"))
+            if answer["progress"] == "refused":
+                assert "nothing" in answer["reason"]  # nothing is left to continue with
                 assert ask(service, run, "give_back")["progress"] == "confirmed"
             else:
-                assert found["progress"] == "confirmed", found
+                assert answer["progress"] == "confirmed", answer
                 assert state(service, run)["revision"] == 2
-            played.append("edited")
+            actions.append("edited")
         else:
             assert ask(service, run, "give_back")["progress"] == "confirmed"
-            played.append("given back")
-    ended = wait(service, run, status="ended")
-    made = Counter({t["task"]: t["done"] + t["by_hand"] for t in ended["tasks"]})
-    assert made == expected, (seed, played)
+            actions.append("given back")
+    ended = wait_for(service, run, status="ended")
+    counts = Counter({t["task"]: t["done"] + t["by_hand"] for t in ended["tasks"]})
+    assert counts == expected, (seed, actions)
     count = service.client.get(f"/api/runs/{run}/entries", params={"since": 10**6}).json()["count"]
     assert count == ended["entries"]
-    return " ".join(played)
+    return " ".join(actions)
 
 
 @pytest.mark.long
-def test_by_hand_and_by_edit(service: Served, site: OpenedSite) -> None:
-    assert {seed: play(service, site, seed).split()[-1:] for seed in (0, 3)}
+def test_tasks_by_hand_and_an_edited_mission(service: Served, site: OpenedSite) -> None:
+    assert {seed: run_randomly(service, site, seed).split()[-1:] for seed in (0, 3)}
 
 
 @pytest.mark.long
 def test_many_random_runs(service: Served, site: OpenedSite) -> None:
-    tried = seeds(8)
-    played = Counter(word for seed in tried for word in play(service, site, seed).split())
-    assert len(tried) < 8 or {"do_task", "skip", "edited", "given", "back"} <= played.keys()
+    tested = seeds(8)
+    actions = Counter(word for seed in tested for word in run_randomly(service, site, seed).split())
+    assert len(tested) < 8 or {"do_task", "skip", "edited", "given", "back"} <= actions.keys()

@@ -26,16 +26,18 @@ def problem(answer: httpx.Response, status: int, code: str) -> dict:
     return answer.json()
 
 
-def begun(answer: httpx.Response, status: int, place: str) -> dict:
-    """Return the body of an answer, which says that something new is at `place` under its id."""
+def new_resource(answer: httpx.Response, status: int, address: str) -> dict:
+    """Check an answer that something was created, with its id, at an address; return its body."""
     assert answer.status_code == status, answer.text
-    assert answer.headers["location"] == f"{place}/{answer.json()['id']}"
+    assert answer.headers["location"] == f"{address}/{answer.json()['id']}"
     return answer.json()
 
 
-def test_a_mission_from_its_making_to_its_end(service: Served) -> None:
+def test_a_mission_is_created_renamed_copied_deleted_and_restored(service: Served) -> None:
     client = service.client
-    id = begun(client.post("/api/missions", json={"name": "Round"}), 201, "/api/missions")["id"]
+    id = new_resource(client.post("/api/missions", json={"name": "Round"}), 201, "/api/missions")[
+        "id"
+    ]
     read = client.get(f"/api/missions/{id}")
     assert read.headers["etag"] == '"1"'
     assert read.json()["mission"]["tasks"] == []
@@ -110,7 +112,7 @@ def test_a_command_makes_a_revision(service: Served) -> None:
     problem(service.client.get(f"/api/missions/{id}/revisions?since=99"), 404, "not-found")
 
 
-def test_commands_say_on_which_revision_they_were_made(service: Served) -> None:
+def test_commands_must_state_the_revision_that_they_were_made_on(service: Served) -> None:
     id = service.create(mission=data("a", "b", "c"))
     body = {"kind": "edit", "id": "x", "edits": [{"kind": "remove_task", "name": "b"}]}
     url = f"/api/missions/{id}/commands"
@@ -118,9 +120,9 @@ def test_commands_say_on_which_revision_they_were_made(service: Served) -> None:
     problem(service.client.post(url, json=body, headers={"if-match": "2"}), 422, "invalid")
     service.command(id, 1, {"kind": "rename_task", "name": "a", "new_name": "A"})
     stale = service.client.post(url, json=body, headers={"if-match": '"1"'})
-    told = problem(stale, 412, "stale-revision")
-    assert told["newest"] == 2
-    assert [r["edits"][0]["new_name"] for r in told["since"]] == ["A"]
+    error = problem(stale, 412, "stale-revision")
+    assert error["newest"] == 2
+    assert [r["edits"][0]["new_name"] for r in error["since"]] == ["A"]
     done = service.client.post(url, json=body, headers={"if-match": "*"})
     assert done.json()["revision"]["number"] == 3
     again = service.client.post(url, json=body, headers={"if-match": '"1"'})
@@ -130,25 +132,25 @@ def test_commands_say_on_which_revision_they_were_made(service: Served) -> None:
     problem(taken, 409, "command-id-taken")
 
 
-def test_what_is_refused_changes_nothing(service: Served) -> None:
+def test_a_refused_command_changes_nothing(service: Served) -> None:
     id = service.create(mission=data("a", "b", "c"))
     refused = service.command(
         id, 1, {"kind": "remove_task", "name": "a"}, {"kind": "remove_task", "name": "nobody"}
     )
-    told = problem(refused, 409, "edit-refused")
-    assert told["place"] == 1
-    assert told["diagnostics"][0]["code"] == "edit.unknown-task"
+    error = problem(refused, 409, "edit-refused")
+    assert error["place"] == 1
+    assert error["diagnostics"][0]["code"] == "edit.unknown-task"
     wrong = service.command(id, 1, {"kind": "remove_task"})
     assert "name" in problem(wrong, 422, "invalid")["detail"]
     assert service.client.get(f"/api/missions/{id}").headers["etag"] == '"1"'
     bob = service.as_("bob")
     service.command(id, 1, {"kind": "change_task", "name": "a", "velocity": 0.2})
     service.command(id, 2, {"kind": "change_task", "name": "a", "velocity": 0.3}, client=bob)
-    told = problem(service.command(id, 3, kind="undo"), 409, "changed-since")
-    assert "changed later, by bob in revision 3" in told["detail"]
+    error = problem(service.command(id, 3, kind="undo"), 409, "changed-since")
+    assert "changed later, by bob in revision 3" in error["detail"]
 
 
-def test_versions_are_kept_and_come_back(service: Served) -> None:
+def test_versions_are_stored_and_restored(service: Served) -> None:
     client = service.client
     id = service.create(mission=data("a", "b"))
     at = f"/api/missions/{id}/versions"
@@ -170,7 +172,7 @@ def test_versions_are_kept_and_come_back(service: Served) -> None:
     problem(client.get(f"{at}/1"), 404, "not-found")
 
 
-def test_a_script_takes_the_place_of_a_mission_and_is_undone(service: Served) -> None:
+def test_a_script_replaces_a_mission_and_is_undone(service: Served) -> None:
     id = service.create(mission=data("a", "b"))
     text = SCRIPT + "3. Return to the docking station in starting area 2.\n"
     written = service.client.put(
@@ -182,7 +184,7 @@ def test_a_script_takes_the_place_of_a_mission_and_is_undone(service: Served) ->
     assert [task["name"] for task in service.mission(id)["tasks"]] == ["a", "b"]
 
 
-def test_who_may_do_what(service: Served) -> None:
+def test_each_role_has_its_rights(service: Served) -> None:
     id = service.create(mission=data("a", "b"))
     by_role = {role: service.as_("x", secret) for role, secret in SECRETS.items()}
     assert by_role["view"].get("/api/service").json() | {"argo": ""} == {
@@ -195,14 +197,14 @@ def test_who_may_do_what(service: Served) -> None:
     assert by_role["view"].get(f"/api/missions/{id}").json()["revision"] == 2
 
 
-def test_the_analysis_follows(service: Served) -> None:
+def test_an_imported_mission_is_analysed(service: Served) -> None:
     id = service.imported(SCRIPT, end_area=2)
     with service.follow(id) as socket:
         for message in socket:
-            told = json.loads(message)
-            if told["kind"] == "analysis":
+            received = json.loads(message)
+            if received["kind"] == "analysis":
                 break
-    assert told["analysis"]["revision"] == 1
-    assert told["analysis"]["analysis"]["duration"]["least"]["value"] > 0
+    assert received["analysis"]["revision"] == 1
+    assert received["analysis"]["analysis"]["duration"]["least"]["value"] > 0
     read = service.client.get(f"/api/missions/{id}/analysis").json()
-    assert read == told["analysis"]
+    assert read == received["analysis"]

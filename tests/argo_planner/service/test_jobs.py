@@ -9,7 +9,7 @@ from argo_env.planning.opening import OpenedSite
 from argo_planner.use_cases.importing import ImportedMission
 from argo_planner.use_cases.routing import suggest_order
 from tests.argo_planner.service.served import Served
-from tests.argo_planner.service.test_http import begun, problem
+from tests.argo_planner.service.test_http import new_resource, problem
 
 SCRIPT = (
     "Mission Protocol #2\nOrder: any\n"
@@ -25,7 +25,7 @@ def import_script(service: Served) -> str:
 
 def start_search(service: Served, id: str, time_limit: float = 5) -> str:
     answer = service.client.post(f"/api/missions/{id}/orders", json={"time_limit": time_limit})
-    return begun(answer, 202, "/api/jobs")["id"]
+    return new_resource(answer, 202, "/api/jobs")["id"]
 
 
 def wait_until(service: Served, job: str, condition: Callable[[dict], bool]) -> dict:
@@ -80,11 +80,11 @@ def test_an_order_of_an_earlier_revision_is_not_accepted(service: Served) -> Non
     assert "made on revision 5" in problem(early, 412, "stale-revision")["detail"]
     edit = {"kind": "set_header", "designation": "other"}
     assert service.command(id, 1, edit).status_code == 200
-    for revision in (1, 2, "*"):
-        stale = service.post(f"/api/jobs/{job}/accept", revision, id="o")
+    for made_on in (1, 2, "*"):
+        stale = service.post(f"/api/jobs/{job}/accept", made_on, id="o")
         error = problem(stale, 412, "stale-revision")
         assert error["newest"] == 2
-        assert [made["number"] for made in error["since"]] == [2]
+        assert [revision["number"] for revision in error["since"]] == [2]
 
 
 def test_a_search_is_cancelled(service: Served) -> None:

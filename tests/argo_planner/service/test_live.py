@@ -1,4 +1,4 @@
-"""A mission as it changes: who joins late, comes back, or is too slow ends with the same state."""
+"""Event feed of a mission: clients that join late or reconnect reach the same state."""
 
 import json
 from typing import Any
@@ -14,15 +14,17 @@ from tests.argo_planner.service.test_plan import Follower
 
 
 class Listener:
-    """Knows of a mission what it was told, from a snapshot on."""
+    """Copy of a mission that is built from the messages of its event feed."""
 
     revision: int | None = None
     follower: Follower | None = None
 
-    def told_that(self, message: dict[str, Any]) -> None:
+    def apply_message(self, message: dict[str, Any]) -> None:
         if message["kind"] == "snapshot":
             state = message["state"]
-            assert state["revision"] >= (self.revision or 0), "what was told is not so any more"
+            assert state["revision"] >= (self.revision or 0), (
+                "the snapshot is older than the known state"
+            )
             self.follower = Follower(Mission.model_validate(state["mission"]))
             self.revision = state["revision"]
         elif message["kind"] == "revision":
@@ -34,27 +36,27 @@ class Listener:
 
 
 class Page(Listener):
-    """Follows a mission as a page would."""
+    """Client that follows a mission as a page does."""
 
     def __init__(self, service: Served, id: str, author: str = "ann") -> None:
         self.service, self.id, self.author = service, id, author
         self.members: list[dict[str, Any]] = []
-        self.told: list[str] = []
+        self.kinds: list[str] = []
         self.connect()
 
     def connect(self) -> None:
         self.socket = self.service.follow(self.id, self.author, self.revision)
 
-    def hear(self, until: int) -> None:
-        """Hears until it knows a revision."""
-        while (self.revision or 0) < until:
+    def receive_until(self, revision: int) -> None:
+        """Receive messages until a revision is known."""
+        while (self.revision or 0) < revision:
             message = json.loads(self.socket.recv(timeout=30))
-            self.told.append(message["kind"])
-            self.told_that(message)
+            self.kinds.append(message["kind"])
+            self.apply_message(message)
             self.members = message.get("members", self.members)
 
-    def hear_of(self, kind: str) -> dict[str, Any]:
-        """The next message of a kind."""
+    def receive_kind(self, kind: str) -> dict[str, Any]:
+        """Return the next message of a kind."""
         while True:
             message: dict[str, Any] = json.loads(self.socket.recv(timeout=30))
             if message["kind"] == kind:
@@ -66,67 +68,67 @@ def rename(service: Served, id: str, revision: int, old: str, new: str) -> None:
     assert service.command(id, revision, edit).status_code == 200
 
 
-def test_all_see_the_same(service: Served) -> None:
+def test_all_clients_have_the_same_state(service: Served) -> None:
     id = service.create(mission=data("a", "b", "c"))
     pages = [Page(service, id, author) for author in ("ann", "bob", "cid")]
     for k in range(1, 6):
         rename(service, id, k, "a" if k == 1 else f"a{k - 1}", f"a{k}")
     pages.append(Page(service, id, "dan"))
     for page in pages:
-        page.hear(6)
+        page.receive_until(6)
         assert page.follower is not None
         assert page.follower.state == service.mission(id)
         page.socket.close()
-    assert pages[3].told == ["snapshot"]
+    assert pages[3].kinds == ["snapshot"]
 
 
-def test_who_comes_back_hears_what_was_missed(service: Served) -> None:
+def test_a_reconnected_client_receives_the_missed_revisions(service: Served) -> None:
     id = service.create(mission=data("a", "b", "c"))
     page = Page(service, id)
-    page.hear(1)
+    page.receive_until(1)
     page.socket.close()
     rename(service, id, 1, "a", "A")
     rename(service, id, 2, "b", "B")
     page.connect()
-    page.hear(3)
-    assert "snapshot" not in page.told[1:]
-    assert page.told.count("revision") == 2
+    page.receive_until(3)
+    assert "snapshot" not in page.kinds[1:]
+    assert page.kinds.count("revision") == 2
     assert page.follower is not None
     assert page.follower.state == service.mission(id)
     page.socket.close()
-    page.revision = 99  # that is not known
+    page.revision = 99  # an unknown revision
     page.connect()
     assert json.loads(page.socket.recv())["kind"] == "snapshot"
     page.socket.close()
 
 
-def test_who_is_there_and_what_they_have_selected(service: Served) -> None:
+def test_members_and_their_selections_are_sent(service: Served) -> None:
     id = service.create(mission=data("a", "b"))
     ann, bob = Page(service, id, "ann"), None
-    ann.hear(1)
+    ann.receive_until(1)
     bob = Page(service, id, "bob")
-    bob.hear(1)
+    bob.receive_until(1)
     assert [member["author"] for member in bob.members] == ["ann", "bob"]
-    joined = ann.hear_of("members")
+    joined = ann.receive_kind("members")
     assert [member["author"] for member in joined["members"]] == ["ann", "bob"]
     bob.socket.send(json.dumps({"kind": "select", "names": ["b"]}))
-    selected = ann.hear_of("members")["members"]
+    selected = ann.receive_kind("members")["members"]
     assert [member["selection"] for member in selected] == [[], ["b"]]
     bob.socket.close()
-    assert [member["author"] for member in ann.hear_of("members")["members"]] == ["ann"]
+    assert [member["author"] for member in ann.receive_kind("members")["members"]] == ["ann"]
     ann.socket.close()
 
 
-def test_names_and_versions_are_told_and_the_end(service: Served) -> None:
+def test_names_versions_and_the_deletion_are_sent(service: Served) -> None:
     id = service.create(mission=data("a", "b"))
     page = Page(service, id)
-    page.hear(1)
+    page.receive_until(1)
     service.client.put(f"/api/missions/{id}/name", json={"name": "Tour"})
-    assert page.hear_of("name")["name"] == "Tour"
+    assert page.receive_kind("name")["name"] == "Tour"
     service.post(f"/api/missions/{id}/versions", "*", name="v")
-    assert [v["name"] for v in page.hear_of("versions")["versions"]] == ["v"]
+    assert [v["name"] for v in page.receive_kind("versions")["versions"]] == ["v"]
     service.client.delete(f"/api/missions/{id}")
-    assert page.hear_of("deleted")
+    assert page.receive_kind("deleted")
     with pytest.raises(ConnectionClosed):
         page.socket.recv(timeout=30)
     assert page.socket.close_code == 4404

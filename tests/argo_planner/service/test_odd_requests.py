@@ -1,4 +1,4 @@
-"""What strangers send: each gets one clear answer, and nothing is lost."""
+"""Unusual requests: each gets one clear answer, and nothing is lost."""
 
 import json
 import math
@@ -26,19 +26,21 @@ def plan(service: Served) -> str:
     return id
 
 
-def test_whoever_missed_more_than_waits_for_anybody_resumes(service, plan, monkeypatch) -> None:
+def test_a_client_resumes_although_it_missed_more_messages_than_may_wait(
+    service, plan, monkeypatch
+) -> None:
     for k in range(2, 14):
         edit = {"kind": "change_task", "name": "a", "retries": k}
         assert service.command(plan, k, edit).status_code == 200
     monkeypatch.setattr(mailbox, "MOST_MESSAGES", 3)
     monkeypatch.setattr(mailbox, "MOST_CHARACTERS", 100)
     following = service.follow(plan, since=2)
-    told = [following.recv(timeout=10) for _ in range(13)]
-    assert '"resumed"' in told[0]
-    assert all('"revision"' in text for text in told[1:])
+    messages = [following.recv(timeout=10) for _ in range(13)]
+    assert '"resumed"' in messages[0]
+    assert all('"revision"' in text for text in messages[1:])
 
 
-def test_listing_missions_writes_nothing(service, plan) -> None:
+def test_listing_missions_writes_no_files(service, plan) -> None:
     folder: Path = service.folder
     (folder / "aaaaaaaaaaaa.plan").write_bytes(b"no plan\n")
     torn = (folder / f"{plan}.plan").read_bytes()[:-20]
@@ -46,13 +48,13 @@ def test_listing_missions_writes_nothing(service, plan) -> None:
     before = {path.name: path.stat().st_mtime_ns for path in folder.iterdir()}
     listed = service.client.get("/api/missions").json()["missions"]
     assert {path.name: path.stat().st_mtime_ns for path in folder.iterdir()} == before
-    found = {one["id"]: one for one in listed}
-    assert "damaged" in found["aaaaaaaaaaaa"]["problem"]
-    assert found[plan]["tasks"] == 1
+    by_id = {one["id"]: one for one in listed}
+    assert "damaged" in by_id["aaaaaaaaaaaa"]["problem"]
+    assert by_id[plan]["tasks"] == 1
     assert [one["tasks"] for one in listed if one["revision"] == 1 and not one["problem"]] == [0]
 
 
-def test_the_list_says_what_the_mission_is(service, plan) -> None:
+def test_the_list_shows_the_present_name_tasks_and_revision(service, plan) -> None:
     other = {**TASK, "name": "b"}
     assert service.command(plan, 2, {"kind": "add_task", "task": other}).status_code == 200
     assert service.command(plan, 3, {"kind": "remove_task", "name": "a"}).status_code == 200
@@ -72,17 +74,17 @@ def test_odd_origins_are_refused(service, origin) -> None:
     problem(answer, 403, "foreign-origin")
 
 
-def test_a_body_of_unsaid_size_that_is_too_large_is_called_so(service) -> None:
+def test_a_body_without_a_stated_size_that_is_too_large_is_refused(service) -> None:
     def parts() -> Iterator[bytes]:
         for _ in range(30):
             yield b" " * 100_000
 
-    told = {"content-type": "application/json"}
-    answer = service.client.post("/api/missions", content=parts(), headers=told)
+    headers = {"content-type": "application/json"}
+    answer = service.client.post("/api/missions", content=parts(), headers=headers)
     problem(answer, 413, "too-large")
 
 
-def test_what_is_wrong_with_an_edit_is_said_of_that_kind_of_edit(service, plan) -> None:
+def test_an_error_in_an_edit_names_only_that_kind_of_edit(service, plan) -> None:
     wrong = {"kind": "add_task", "task": {**TASK, "pose": {"x": "1", "y": 0, "z": 0}}}
     detail = service.command(plan, 2, wrong).json()["detail"]
     assert "edits.0.add_task.task.pose.x" in detail
@@ -95,38 +97,38 @@ def test_what_is_wrong_with_an_edit_is_said_of_that_kind_of_edit(service, plan) 
 
 
 @pytest.mark.parametrize("since", ["abc", "-1", "", "1.5"])
-def test_a_socket_asked_for_since_no_number_says_so(service, plan, since) -> None:
+def test_a_socket_refuses_since_without_a_number(service, plan, since) -> None:
     for path in (f"/api/missions/{plan}/live", "/api/robot/live"):
         with pytest.raises(InvalidStatus) as refused:
             service.socket(f"{path}?since={since}", {"authorization": f"Bearer {ALL}"})
         assert refused.value.response.status_code == 422
-        told = json.loads(refused.value.response.body)
-        assert told["code"] == "invalid"
-        assert told["detail"].startswith("query.since: ")
+        error = json.loads(refused.value.response.body)
+        assert error["code"] == "invalid"
+        assert error["detail"].startswith("query.since: ")
 
 
-def test_what_a_socket_says_to_know_and_nobody_can_know_gets_a_snapshot(service, plan) -> None:
+def test_a_client_that_states_an_unknown_revision_gets_a_snapshot(service, plan) -> None:
     for since in (99, 10**30):
         assert '"snapshot"' in service.follow(plan, since=since).recv(timeout=10)[:30]
 
 
-def test_a_stale_version_says_what_was_done_since(service, plan) -> None:
+def test_a_version_of_an_old_revision_is_refused_with_the_later_revisions(service, plan) -> None:
     url = f"/api/missions/{plan}/versions"
     answer = service.client.post(url, json={"name": "v"}, headers={"if-match": '"1"'})
-    told = problem(answer, 412, "stale-revision")
-    assert told["newest"] == 2
-    assert [made["number"] for made in told["since"]] == [2]
+    error = problem(answer, 412, "stale-revision")
+    assert error["newest"] == 2
+    assert [revision["number"] for revision in error["since"]] == [2]
 
 
-def test_putting_a_version_back_is_answered_again_when_the_version_is_gone(service, plan) -> None:
+def test_a_repeated_restoration_is_answered_although_the_version_was_deleted(service, plan) -> None:
     url = f"/api/missions/{plan}/versions"
-    kept = service.client.post(url, json={"name": "v"}, headers={"if-match": "*"}).json()
+    stored = service.client.post(url, json={"name": "v"}, headers={"if-match": "*"}).json()
     assert service.command(plan, 2, CHANGE).status_code == 200
-    restore = f"{url}/{kept['number']}/restore"
+    restore = f"{url}/{stored['number']}/restore"
     body, made_on = {"id": "once-more"}, {"if-match": '"3"'}
     first = service.client.post(restore, json=body, headers=made_on)
     assert first.status_code == 200
-    service.client.delete(f"{url}/{kept['number']}")
+    service.client.delete(f"{url}/{stored['number']}")
     again = service.client.post(restore, json=body, headers=made_on)
     assert again.status_code == 200
     assert again.json()["revision"] == first.json()["revision"]
@@ -136,13 +138,13 @@ def test_putting_a_version_back_is_answered_again_when_the_version_is_gone(servi
     problem(taken, 409, "command-id-taken")
     assert service.command(plan, 4, {**CHANGE, "retries": 9}).status_code == 200
     second = service.client.post(url, json={"name": "w"}, headers={"if-match": "*"}).json()
-    assert second["number"] == kept["number"]
+    assert second["number"] == stored["number"]
     again = service.client.post(restore, json=body, headers=made_on)
     assert again.json()["revision"] == first.json()["revision"]
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "message"),
     [
         (
             {"name": "\u200b\u200b"},
@@ -162,20 +164,20 @@ def test_putting_a_version_back_is_answered_again_when_the_version_is_gone(servi
         ({"size": [1, 1, 1e6]}, "less than or equal to 20"),
     ],
 )
-def test_odd_obstacles_are_refused(service, change, said) -> None:
+def test_odd_obstacles_are_refused(service, change, message) -> None:
     box = {"id": "1", "name": "box", "pose": {"x": 3, "y": 3, "z": 0}, "size": [1, 1, 1]}
     answer = service.client.put(
         "/api/world/obstacles",
-        content=json.dumps({"obstacles": [box | change]}),  # NaN too, which httpx does not send
+        content=json.dumps({"obstacles": [box | change]}),  # httpx does not send NaN
         headers={"if-match": "*", "content-type": "application/json"},
     )
     detail = problem(answer, 422, "invalid")["detail"]
     assert detail.startswith("body.obstacles.0.")
-    assert said in detail
+    assert message in detail
 
 
 @pytest.mark.parametrize(
-    ("asked", "said"),
+    ("asked", "message"),
     [
         ({"start": {"x": 1e9, "y": 0, "z": 0}, "goal": TASK["pose"]}, "the start stands farther"),
         ({"goal": {"x": 0, "y": -1e308, "z": 0}}, "the goal stands farther"),
@@ -191,12 +193,12 @@ def test_odd_obstacles_are_refused(service, change, said) -> None:
         ({"task": {"name": "a", "action": "WAIT"}}, "how long"),
     ],
 )
-def test_a_way_of_what_makes_no_sense_is_refused(service, asked, said) -> None:
+def test_a_preview_of_an_invalid_path_is_refused(service, asked, message) -> None:
     answer = service.client.post("/api/world/way", json={"start": TASK["pose"]} | asked)
-    assert said in problem(answer, 422, "invalid")["detail"]
+    assert message in problem(answer, 422, "invalid")["detail"]
 
 
-def test_a_way_to_a_task_does_not_ask_what_comes_behind_it(service) -> None:
+def test_a_path_to_a_task_does_not_depend_on_what_follows_it(service) -> None:
     dock = service.client.get("/api/world").json()["docks"][0]["pose"]
     onward = {"transitions": [{"target": "b"}], "on_failure": "branch", "failure_target": "c"}
     for task in (TASK, TASK | onward, TASK | {"group": "g"}):
@@ -209,16 +211,16 @@ def test_a_way_to_a_task_does_not_ask_what_comes_behind_it(service) -> None:
     assert "takes longer than any mission" in slow.json()["problem"]
 
 
-def test_a_mission_that_leads_out_of_the_world_is_previewed(service, plan) -> None:
+def test_a_mission_with_poses_outside_the_site_is_previewed(service, plan) -> None:
     for k, pose in enumerate([{"x": 1e308, "y": 0, "z": 0}, {**TASK["pose"], "yaw": 1e308}]):
         far = {**TASK, "name": f"far {k}", "pose": pose}
         assert service.command(plan, "*", {"kind": "add_task", "task": far}).status_code == 200
-    found = service.client.get(f"/api/missions/{plan}/preview")
-    assert found.status_code == 200, found.text
-    assert len(found.json()["problems"]) == 2
+    preview = service.client.get(f"/api/missions/{plan}/preview")
+    assert preview.status_code == 200, preview.text
+    assert len(preview.json()["problems"]) == 2
 
 
-def test_a_way_leads_to_one_thing(service) -> None:
+def test_a_path_has_either_a_goal_or_a_task(service) -> None:
     start = TASK["pose"]
     for ends in ({}, {"goal": start, "task": TASK}):
         answer = service.client.post("/api/world/way", json={"start": start, **ends})
@@ -236,13 +238,13 @@ def test_a_way_leads_to_one_thing(service) -> None:
         {"likelihoods": [{"task": "a", "target": "nothing", "probability": 0.5}]},
     ],
 )
-def test_an_order_of_what_is_not_there_is_refused_at_once(service, plan, requirements) -> None:
+def test_requirements_on_unknown_tasks_are_refused_at_once(service, plan, requirements) -> None:
     at = f"/api/missions/{plan}/orders"
     answer = service.post(at, requirements=requirements, time_limit=1)
     assert "'nothing'" in problem(answer, 422, "invalid")["detail"]
 
 
-def test_a_file_of_few_large_records_does_not_grow_without_end(service, plan, monkeypatch) -> None:
+def test_the_file_of_a_plan_with_large_records_stays_small(service, plan, monkeypatch) -> None:
     monkeypatch.setattr(plan_file, "MAX_GROWTH", 100_000)
     monkeypatch.setattr(plan_file, "KEPT_RECORDS", 5)
     path = service.folder / f"{plan}.plan"
@@ -255,14 +257,14 @@ def test_a_file_of_few_large_records_does_not_grow_without_end(service, plan, mo
     assert service.client.get(f"/api/missions/{plan}").json()["revision"] == 62
 
 
-def test_a_mission_that_can_not_be_binned_stays_open(service, plan, monkeypatch) -> None:
+def test_a_mission_that_can_not_be_moved_to_the_bin_stays_open(service, plan, monkeypatch) -> None:
     following = service.follow(plan)
     following.recv(timeout=10)
     monkeypatch.setattr(folder, "MOST_PLANS", 0)
     assert service.client.delete(f"/api/missions/{plan}").status_code == 409
     monkeypatch.undo()
     assert service.command(plan, "*", CHANGE).status_code == 200
-    told = ""
-    while '"revision"' not in told.partition(",")[0]:
-        told = following.recv(timeout=10)
+    message = ""
+    while '"revision"' not in message.partition(",")[0]:
+        message = following.recv(timeout=10)
     assert service.client.delete(f"/api/missions/{plan}").status_code == 204

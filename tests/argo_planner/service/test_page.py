@@ -1,9 +1,11 @@
-"""The page is served with what keeps it safe, and says where it has not been built."""
+"""The page and its files are served, or a hint on how to build it."""
 
 from argo_planner.service.web import page
 
 
-def test_where_it_is_not_built_the_page_says_how(service, monkeypatch, tmp_path) -> None:
+def test_without_a_built_page_the_service_shows_how_to_build_it(
+    service, monkeypatch, tmp_path
+) -> None:
     monkeypatch.setattr(page, "page_folder", lambda: tmp_path)
     answer = service.client.get("/")
     assert answer.status_code == 200
@@ -23,13 +25,13 @@ def test_the_page_and_its_files_are_served(service, monkeypatch, tmp_path) -> No
     assert "immutable" in script.headers["cache-control"]
 
 
-def test_what_the_page_does_not_have_is_not_found(service) -> None:
+def test_a_file_that_the_page_does_not_have_is_not_found(service) -> None:
     for name in ("nothing.js", "..%2f..%2fpyproject.toml", "%2e%2e%2findex.html"):
         answer = service.client.get(f"/assets/{name}")
         assert answer.status_code == 404
         assert answer.json()["code"] == "not-found"
 
 
-def test_who_has_no_token_does_not_get_the_page(service) -> None:
-    stranger = service.as_("eve", secret="not-the-token-at-all")
-    assert stranger.get("/").status_code == 401
+def test_a_client_without_a_token_does_not_get_the_page(service) -> None:
+    client = service.as_("eve", secret="not-the-token-at-all")
+    assert client.get("/").status_code == 401

@@ -17,7 +17,7 @@ from argo_planner.service.rooms.room import PlanRoom
 from argo_planner.service.rooms.rooms import PlanRooms
 from argo_planner.service.storage import folder as folders
 from argo_planner.service.storage.folder import PlanFolder
-from tests.argo_planner.service.served import taken
+from tests.argo_planner.service.served import waiting_messages
 from tests.argo_planner.service.test_plan import mission
 
 pytestmark = pytest.mark.anyio
@@ -62,14 +62,14 @@ async def test_a_slow_client_is_disconnected_delays_nobody_and_resumes(rooms, mo
     messages = []
     for k in range(1, 21):
         await room.execute(rename_command(k), "ann", k)
-        messages += await taken(quick, "revision")
+        messages += await waiting_messages(quick, "revision")
     assert [message["revision"]["number"] for message in messages] == [*range(2, 22)]
     with pytest.raises(MailboxClosed) as closed:
         await slow.next_message()
     assert closed.value.too_slow
     room.leave("1")
     monkeypatch.setattr(mailboxes, "MOST_MESSAGES", 100)
-    again = await taken(room.join("3", "ann", since=11), "revision")
+    again = await waiting_messages(room.join("3", "ann", since=11), "revision")
     assert [message["revision"]["number"] for message in again] == [*range(12, 22)]
 
 
@@ -97,7 +97,7 @@ async def test_a_command_is_completed_although_its_sender_is_gone(rooms) -> None
         await sending
     done = await room.execute(rename_command(2), "ann", 2)
     assert done.newest == 3
-    assert len(await taken(page, "revision")) == 2
+    assert len(await waiting_messages(page, "revision")) == 2
 
 
 async def test_simultaneous_commands_are_executed_one_after_the_other(rooms) -> None:
@@ -152,6 +152,6 @@ async def test_a_client_that_joins_during_a_command_gets_its_revision_once(rooms
         await sending
         first = [json.loads(await page.next_message())]
         known = first[0]["state"]["revision"]
-        later = [m["revision"]["number"] for m in await taken(page, "revision")]
+        later = [m["revision"]["number"] for m in await waiting_messages(page, "revision")]
         assert later == [*range(known + 1, k + 2)]
         room.leave(str(k))

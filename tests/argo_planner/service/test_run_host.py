@@ -1,4 +1,4 @@
-"""Runs in processes of their own: what they are asked, what they tell, and what kills leave."""
+"""Runs in separate processes: requests, messages, and runs whose process was killed."""
 
 import asyncio
 import json
@@ -25,7 +25,7 @@ from argo_planner.service.runs.folder import RunFolder
 from argo_planner.service.runs.host import AfterRestart, RunHost
 from argo_planner.service.runs.requests import RunOrder
 from argo_planner.service.runs.state import RunMode, RunStatus
-from tests.argo_planner.service.served import taken
+from tests.argo_planner.service.served import waiting_messages
 
 pytestmark = pytest.mark.anyio
 
@@ -48,8 +48,8 @@ def order(site: OpenedSite, **other: object) -> RunOrder:
 
 
 @asynccontextmanager
-async def hosted(folder: Path, after: str = "wait") -> AsyncIterator[RunHost]:
-    """A host, which is closed in the end."""
+async def open_host(folder: Path, after: str = "wait") -> AsyncIterator[RunHost]:
+    """Open a host of runs, and close it at the end."""
     host = RunHost(folder, AfterRestart(after), now)
     await host.open()
     try:
@@ -60,45 +60,45 @@ async def hosted(folder: Path, after: str = "wait") -> AsyncIterator[RunHost]:
 
 
 def send_signal(number: signal.Signals, run: str = "") -> None:
-    """To the process of the run, or of the only one."""
+    """Send a signal to the process of a run, by default to that of the only run."""
     name = f"run {run}"
     [process] = [one for one in multiprocessing.active_children() if one.name.startswith(name)]
     assert process.pid is not None
     os.kill(process.pid, number)
 
 
-async def until(so: Callable[[], bool]) -> None:
-    while not so():
+async def wait_until(condition: Callable[[], bool]) -> None:
+    while not condition():
         await asyncio.sleep(0.01)
 
 
-async def done(host: RunHost, request: asked.RunRequest, by: str = "ann") -> str:
-    """Asks for something; how it has ended."""
+async def ask_and_wait(host: RunHost, request: asked.RunRequest, by: str = "ann") -> str:
+    """Send a request to the run, and return its final progress."""
     state = host.state
     assert state is not None
     await host.ask(state.id, request, by)
-    await until(lambda: host.request(state.id, request.id).over)
+    await wait_until(lambda: host.request(state.id, request.id).over)
     return host.request(state.id, request.id).progress
 
 
-async def begun(host: RunHost, site: OpenedSite, after: float = 3.0, **other: object) -> str:
-    """Begins a run, and waits until some of its time is over."""
+async def start_run(host: RunHost, site: OpenedSite, after: float = 3.0, **other: object) -> str:
+    """Start a run, wait until its time exceeds `after` s, and return its id."""
     run = (await host.start(order(site, **({"speed": 20.0} | other)), "ann")).id
-    await until(lambda: bool(host.state and host.state.t > after))
+    await wait_until(lambda: bool(host.state and host.state.t > after))
     return run
 
 
-async def interrupted(host: RunHost) -> None:
-    """Kills the process of the run, and waits until that is known."""
+async def interrupt(host: RunHost) -> None:
+    """Kill the process of the run, and wait until the host knows it."""
     send_signal(signal.SIGKILL)
-    await until(lambda: host.state.status is RunStatus.INTERRUPTED)
+    await wait_until(lambda: host.state.status is RunStatus.INTERRUPTED)
 
 
-def ended(host: RunHost) -> Callable[[], bool]:
+def has_ended(host: RunHost) -> Callable[[], bool]:
     return lambda: host.state is not None and host.state.status is RunStatus.ENDED
 
 
-async def reported(host: RunHost) -> RunRecord:
+async def read_record(host: RunHost) -> RunRecord:
     assert host.state is not None
     while True:
         with suppress(NotFound):
@@ -108,100 +108,102 @@ async def reported(host: RunHost) -> RunRecord:
     return RunRecord.model_validate_json(await host.report(host.state.id, "report.json"))
 
 
-async def done_by_itself(host: RunHost) -> str:
-    await until(ended(host))
+async def wait_for_headline(host: RunHost) -> str:
+    await wait_until(has_ended(host))
     assert host.state is not None
     assert host.state.headline is not None
     return host.state.headline.word
 
 
 @pytest.mark.long
-async def test_a_run_is_that_of_the_simulation(tmp_path, site) -> None:
-    wanted = order(site)
-    spec = RunSpec(mission=wanted.mission, site=site.reference, drive="route", seed=4)
+async def test_a_run_equals_that_of_the_library(tmp_path, site) -> None:
+    requested = order(site)
+    spec = RunSpec(mission=requested.mission, site=site.reference, drive="route", seed=4)
     alone = simulate(spec, site)
 
-    async with hosted(tmp_path) as host:
+    async with open_host(tmp_path) as host:
         follower = host.follow("1")
-        begun = await host.start(wanted, "ann")
-        assert begun.status is RunStatus.PREPARING
-        await until(ended(host))
+        started = await host.start(requested, "ann")
+        assert started.status is RunStatus.PREPARING
+        await wait_until(has_ended(host))
         state = host.state
         assert state is not None
         assert state.headline == alone.headline
         assert {t.task: t.done for t in state.tasks} == {
-            run.task: 1 for run in alone.tasks if run.task in {t.name for t in wanted.mission.tasks}
+            run.task: 1
+            for run in alone.tasks
+            if run.task in {t.name for t in requested.mission.tasks}
         }
         assert [r.value for r in state.readings] == [r.value for r in alone.readings]
-        entries = await taken(follower, "entry")
+        entries = await waiting_messages(follower, "entry")
         assert [entry["number"] for entry in entries] == [*range(1, state.entries + 1)]
-        assert await reported(host) == alone
+        assert await read_record(host) == alone
 
 
 @pytest.mark.long
 async def test_the_end_of_a_process_does_not_end_the_next_run(tmp_path, site, monkeypatch) -> None:
-    as_before, reads, go_on = RunFolder.entries, threading.Event(), threading.Event()
+    original, is_reading, may_continue = RunFolder.entries, threading.Event(), threading.Event()
 
     def entries(folder: RunFolder, run: str) -> tuple[Entry, ...]:
-        reads.set()
-        assert go_on.wait(60)
-        return as_before(folder, run)
+        is_reading.set()
+        assert may_continue.wait(60)
+        return original(folder, run)
 
-    async with hosted(tmp_path) as host:
+    async with open_host(tmp_path) as host:
         await host.start(order(site), "ann")
-        await until(ended(host))
-        # The host reads them when the process has ended.
+        await wait_until(has_ended(host))
+        # The host reads the entries when the process has ended.
         monkeypatch.setattr(RunFolder, "entries", entries)
-        await until(reads.is_set)
+        await wait_until(is_reading.is_set)
         starting = asyncio.create_task(host.start(order(site, speed=20.0), "bob"))
         await asyncio.sleep(0.1)
-        go_on.set()
+        may_continue.set()
         second = await starting
-        await until(lambda: host.state.status is not RunStatus.PREPARING)
+        await wait_until(lambda: host.state.status is not RunStatus.PREPARING)
         assert (host.state.id, host.state.status) == (second.id, RunStatus.RUNNING)
-        assert await done(host, asked.EndRun(id="stop")) == "confirmed"
+        assert await ask_and_wait(host, asked.EndRun(id="stop")) == "confirmed"
 
 
 @pytest.mark.long
-async def test_a_second_run_is_refused_with_who_has_the_robot(tmp_path, site) -> None:
-    async with hosted(tmp_path) as host:
+async def test_a_second_run_is_refused_with_the_name_of_who_has_the_robot(tmp_path, site) -> None:
+    async with open_host(tmp_path) as host:
         await host.start(order(site, speed=1.0), "ann")
         with pytest.raises(Conflict, match="ann has begun run"):
             await host.start(order(site), "bob")
         assert host.state is not None
-        await until(lambda: host.state.status is RunStatus.RUNNING)
-        assert await done(host, asked.EndRun(id="s")) == "confirmed"
-        await until(ended(host))
+        await wait_until(lambda: host.state.status is RunStatus.RUNNING)
+        assert await ask_and_wait(host, asked.EndRun(id="s")) == "confirmed"
+        await wait_until(has_ended(host))
         await host.start(order(site), "bob")
-        await until(ended(host))
+        await wait_until(has_ended(host))
         assert host.state.by == "bob"
         assert [state.by for state in await host.all()] == ["bob", "ann"]
 
 
 @pytest.mark.long
-async def test_paused_is_said_only_when_nothing_moves(tmp_path, site) -> None:
-    async with hosted(tmp_path) as host:
+async def test_a_pause_is_confirmed_only_when_nothing_moves(tmp_path, site) -> None:
+    async with open_host(tmp_path) as host:
         await host.start(order(site, speed=20.0), "ann")
-        await until(lambda: bool(host.state and host.state.moving and host.state.t > 5))
+        await wait_until(lambda: bool(host.state and host.state.moving and host.state.t > 5))
         run = host.state.id
         follower = host.follow("1", host.state.entries)
         accepted = await host.ask(run, asked.PauseRun(id="p"), "ann")
         assert accepted.progress == "accepted"
         again = await host.ask(run, asked.PauseRun(id="p"), "ann")
         assert again.id == "p"
-        await until(lambda: host.request(run, "p").over)
-        steps = [m["request"]["progress"] for m in await taken(follower, "request")]
+        await wait_until(lambda: host.request(run, "p").over)
+        steps = [m["request"]["progress"] for m in await waiting_messages(follower, "request")]
         assert steps == ["accepted", "under way", "confirmed"]
         assert host.state.mode is RunMode.PAUSED
         assert not host.state.moving
         with pytest.raises(Conflict, match="id p"):
             await host.ask(run, asked.TakeRobot(id="p"), "ann")
-        assert await done(host, asked.ChangeSpeed(id="f", speed=None)) == "confirmed"
+        assert await ask_and_wait(host, asked.ChangeSpeed(id="f", speed=None)) == "confirmed"
         at = host.state.t
         await asyncio.sleep(0.5)
-        assert host.state.t < at + 5, "time runs away while a person is waited for"
-        assert await done(host, asked.GoOnWithRun(id="g")) == "confirmed"
-        await until(ended(host))
+        assert host.state.t < at + 5, "time must not pass quickly while a person is waited for"
+        assert await ask_and_wait(host, asked.GoOnWithRun(id="g")) == "confirmed"
+        await wait_until(has_ended(host))
         assert host.state.headline is not None
         assert host.state.headline.word == "Success"
         with pytest.raises(Conflict, match="is over"):
@@ -209,54 +211,57 @@ async def test_paused_is_said_only_when_nothing_moves(tmp_path, site) -> None:
 
 
 async def test_a_person_takes_over_drives_measures_skips_and_gives_back(tmp_path, site) -> None:
-    async with hosted(tmp_path) as host:
-        wanted = order(site, speed=None)
+    async with open_host(tmp_path) as host:
+        requested = order(site, speed=None)
         await host.start(order(site, speed=20.0), "ann")
-        await until(lambda: bool(host.state and host.state.moving and host.state.t > 3))
+        await wait_until(lambda: bool(host.state and host.state.moving and host.state.t > 3))
         refused = [
             asked.SkipTask(id="1", task="MEASURE 1"),
             asked.DoTask(id="2", task="MEASURE 1"),
             asked.StopByHandNow(id="3"),
         ]
         for request in refused:
-            assert await done(host, request) == "refused", request
-        assert await done(host, asked.TakeRobot(id="t")) == "confirmed"
-        assert await done(host, asked.ChangeSpeed(id="f", speed=None)) == "confirmed"
-        first, second = [t for t in wanted.mission.tasks if t.action == "MEASURE"]
-        assert await done(host, asked.DoTask(id="4", task="nobody")) == "refused"
-        assert await done(host, asked.DoTask(id="5", task=first.name)) == "confirmed"
-        assert await done(host, asked.MeasureAt(id="6", checkpoint=second.object_id)) == "confirmed"
-        assert await done(host, asked.SkipTask(id="7", task=second.name)) == "confirmed"
+            assert await ask_and_wait(host, request) == "refused", request
+        assert await ask_and_wait(host, asked.TakeRobot(id="t")) == "confirmed"
+        assert await ask_and_wait(host, asked.ChangeSpeed(id="f", speed=None)) == "confirmed"
+        first, second = [t for t in requested.mission.tasks if t.action == "MEASURE"]
+        assert await ask_and_wait(host, asked.DoTask(id="4", task="nobody")) == "refused"
+        assert await ask_and_wait(host, asked.DoTask(id="5", task=first.name)) == "confirmed"
+        assert (
+            await ask_and_wait(host, asked.MeasureAt(id="6", checkpoint=second.object_id))
+            == "confirmed"
+        )
+        assert await ask_and_wait(host, asked.SkipTask(id="7", task=second.name)) == "confirmed"
         assert host.state.skipped == (second.name,)
         assert host.state.mode is RunMode.SUPERVISED
         assert len(host.state.readings) == 2
-        assert await done(host, asked.GoOnWithRun(id="8")) == "refused"
-        assert await done(host, asked.GiveRobotBack(id="9")) == "confirmed"
-        await until(ended(host))
+        assert await ask_and_wait(host, asked.GoOnWithRun(id="8")) == "refused"
+        assert await ask_and_wait(host, asked.GiveRobotBack(id="9")) == "confirmed"
+        await wait_until(has_ended(host))
         assert {t.task: (t.done, t.by_hand) for t in host.state.tasks if t.by_hand} == {
             first.name: (0, 1),
             second.name: (0, 1),
         }
-        record = await reported(host)
+        record = await read_record(host)
         assert sum(run.by_hand for run in record.tasks) == 2
 
 
 @pytest.mark.long
-async def test_a_run_goes_on_when_its_process_was_killed(tmp_path, site) -> None:
+async def test_a_run_whose_process_was_killed_is_resumed(tmp_path, site) -> None:
     spec = RunSpec(mission=order(site).mission, site=site.reference, drive="route", seed=4)
     alone = simulate(spec, site)
 
-    async with hosted(tmp_path) as host:
-        await begun(host, site, after=10.0, speed=50.0)
-        await interrupted(host)
+    async with open_host(tmp_path) as host:
+        await start_run(host, site, after=10.0, speed=50.0)
+        await interrupt(host)
         assert "signal 9" in host.state.problem
         with pytest.raises(Conflict, match="interrupted"):
             await host.ask(host.state.id, asked.PauseRun(id="p"), "ann")
         with pytest.raises(Conflict, match="ann has begun"):
             await host.start(order(site), "bob")
-        assert await done(host, asked.GoOnWithRun(id="g")) == "confirmed"
-        await until(ended(host))
-        record = await reported(host)
+        assert await ask_and_wait(host, asked.GoOnWithRun(id="g")) == "confirmed"
+        await wait_until(has_ended(host))
+        record = await read_record(host)
         assert [(r.task, r.value) for r in record.readings] == [
             (r.task, r.value) for r in alone.readings
         ]
@@ -265,17 +270,17 @@ async def test_a_run_goes_on_when_its_process_was_killed(tmp_path, site) -> None
 
 @pytest.mark.long
 @pytest.mark.parametrize("after", ["go-on", "wait"])
-async def test_a_service_that_begins_again_finds_its_run(tmp_path, site, after: str) -> None:
-    async with hosted(tmp_path) as host:
-        await begun(host, site, after=10.0, speed=50.0)
-    async with hosted(tmp_path, after) as host:
+async def test_a_restarted_service_finds_its_run(tmp_path, site, after: str) -> None:
+    async with open_host(tmp_path) as host:
+        await start_run(host, site, after=10.0, speed=50.0)
+    async with open_host(tmp_path, after) as host:
         state = host.state
         assert state is not None
         if after == "wait":
             assert state.status is RunStatus.INTERRUPTED
             assert "the service has ended" in state.problem
-            assert await done(host, asked.GoOnWithRun(id="g")) == "confirmed"
-        assert await done_by_itself(host) == "Success"
+            assert await ask_and_wait(host, asked.GoOnWithRun(id="g")) == "confirmed"
+        assert await wait_for_headline(host) == "Success"
         history = await host.history(state.id, 0, 10**6)
         assert history.count == len(history.entries) == host.state.entries
         with pytest.raises(NotFound):
@@ -283,77 +288,79 @@ async def test_a_service_that_begins_again_finds_its_run(tmp_path, site, after: 
 
 
 @pytest.mark.long
-async def test_what_can_not_be_run_has_ended_with_its_reason(tmp_path, site) -> None:
-    async with hosted(tmp_path) as host:
+async def test_a_run_that_can_not_start_ends_with_a_reason(tmp_path, site) -> None:
+    async with open_host(tmp_path) as host:
         run = (await host.start(order(site, drive="flying"), "ann")).id
-        await until(ended(host))
+        await wait_until(has_ended(host))
         assert "no drive `flying`" in host.state.problem
         with pytest.raises(NotFound, match="before anything had happened"):
             await host.report(run, "report.html")
         await host.start(order(site), "bob")
-        await until(ended(host))
+        await wait_until(has_ended(host))
         assert host.state.problem is None
 
 
-# A person has the robot: what can be asked twice, and what only in its time.
+# Requests while the mission is paused or a person has the robot.
 
 
 @pytest.mark.long
 async def test_a_pause_during_a_pause_changes_nothing(tmp_path, site) -> None:
-    async with hosted(tmp_path) as host:
-        await begun(host, site)
-        assert await done(host, asked.PauseRun(id="p")) == "confirmed"
+    async with open_host(tmp_path) as host:
+        await start_run(host, site)
+        assert await ask_and_wait(host, asked.PauseRun(id="p")) == "confirmed"
         entries = [e.events for e in (await host.history(host.state.id, 0, 10**6)).entries]
-        assert await done(host, asked.PauseRun(id="q")) == "confirmed"
+        assert await ask_and_wait(host, asked.PauseRun(id="q")) == "confirmed"
         assert host.state.mode is RunMode.PAUSED
         later = [e.events for e in (await host.history(host.state.id, 0, 10**6)).entries]
         assert [*filter(None, later)] == [*filter(None, entries)]
-        assert await done(host, asked.ChangeSpeed(id="f", speed=None)) == "confirmed"
-        assert await done(host, asked.GoOnWithRun(id="g")) == "confirmed"
-        assert await done_by_itself(host) == "Success"
+        assert await ask_and_wait(host, asked.ChangeSpeed(id="f", speed=None)) == "confirmed"
+        assert await ask_and_wait(host, asked.GoOnWithRun(id="g")) == "confirmed"
+        assert await wait_for_headline(host) == "Success"
 
 
 @pytest.mark.long
-async def test_who_has_the_robot_neither_pauses_nor_skips_twice(tmp_path, site) -> None:
+async def test_a_person_who_has_the_robot_can_neither_pause_nor_skip_twice(tmp_path, site) -> None:
     name = next(t.name for t in order(site).mission.tasks if t.action == "MEASURE")
 
-    async with hosted(tmp_path) as host:
-        run = await begun(host, site)
-        assert await done(host, asked.GiveRobotBack(id="1")) == "refused"
+    async with open_host(tmp_path) as host:
+        run = await start_run(host, site)
+        assert await ask_and_wait(host, asked.GiveRobotBack(id="1")) == "refused"
         assert "nobody has the robot" in host.request(run, "1").reason
-        assert await done(host, asked.PauseRun(id="p")) == "confirmed"
-        assert await done(host, asked.GiveRobotBack(id="2")) == "refused"
+        assert await ask_and_wait(host, asked.PauseRun(id="p")) == "confirmed"
+        assert await ask_and_wait(host, asked.GiveRobotBack(id="2")) == "refused"
         assert host.state.mode is RunMode.PAUSED
-        assert await done(host, asked.TakeRobot(id="t")) == "confirmed"
+        assert await ask_and_wait(host, asked.TakeRobot(id="t")) == "confirmed"
         assert host.state.mode is RunMode.SUPERVISED
-        assert await done(host, asked.PauseRun(id="3")) == "refused"
+        assert await ask_and_wait(host, asked.PauseRun(id="3")) == "refused"
         assert "until they give it back" in host.request(run, "3").reason
-        assert await done(host, asked.SkipTask(id="4", task=name)) == "confirmed"
-        assert await done(host, asked.SkipTask(id="5", task=name)) == "refused"
+        assert await ask_and_wait(host, asked.SkipTask(id="4", task=name)) == "confirmed"
+        assert await ask_and_wait(host, asked.SkipTask(id="5", task=name)) == "refused"
         assert "skipped already" in host.request(run, "5").reason
         assert host.state.skipped == (name,)
-        assert await done(host, asked.ChangeSpeed(id="f", speed=None)) == "confirmed"
-        assert await done(host, asked.GiveRobotBack(id="b")) == "confirmed"
-        assert host.state.mode is not RunMode.PAUSED, "the pause before is over as well"
-        assert await done_by_itself(host) != "No success"
+        assert await ask_and_wait(host, asked.ChangeSpeed(id="f", speed=None)) == "confirmed"
+        assert await ask_and_wait(host, asked.GiveRobotBack(id="b")) == "confirmed"
+        assert host.state.mode is not RunMode.PAUSED, (
+            "giving the robot back also ends the earlier pause"
+        )
+        assert await wait_for_headline(host) != "No success"
         assert {t.task: t.by_hand for t in host.state.tasks}[name] == 1
 
 
-async def test_the_state_is_told_before_what_has_brought_it_about(tmp_path, site) -> None:
+async def test_a_new_state_is_sent_before_the_confirmation_of_its_request(tmp_path, site) -> None:
     name = next(t.name for t in order(site).mission.tasks if t.action == "MEASURE")
 
-    async with hosted(tmp_path) as host:
-        await begun(host, site)
+    async with open_host(tmp_path) as host:
+        await start_run(host, site)
         follower = host.follow("1", host.state.entries)
         for request, mode, skipped in (
             (asked.PauseRun(id="p"), "paused", []),
             (asked.TakeRobot(id="t"), "supervised", []),
             (asked.SkipTask(id="s", task=name), "supervised", [name]),
         ):
-            assert await done(host, request) == "confirmed"
-            heard = []
-            while not heard or heard[-1].get("request", {}).get("progress") != "confirmed":
-                heard.append(json.loads(await follower.next_message()))
-            states = [message["state"] for message in heard if message["kind"] == "state"]
+            assert await ask_and_wait(host, request) == "confirmed"
+            messages = []
+            while not messages or messages[-1].get("request", {}).get("progress") != "confirmed":
+                messages.append(json.loads(await follower.next_message()))
+            states = [message["state"] for message in messages if message["kind"] == "state"]
             assert states[-1]["mode"] == mode
             assert states[-1]["skipped"] == skipped

@@ -1,4 +1,4 @@
-"""Runs over HTTP and WebSockets, from their beginning to their report."""
+"""Runs over HTTP and WebSockets, from their start to their report."""
 
 import json
 import time
@@ -8,7 +8,7 @@ import pytest
 from websockets.exceptions import InvalidStatus
 
 from tests.argo_planner.service.served import ALL, SECRETS, Served
-from tests.argo_planner.service.test_http import begun, problem
+from tests.argo_planner.service.test_http import new_resource, problem
 from tests.argo_planner.service.test_run_host import SCRIPT
 
 
@@ -18,45 +18,47 @@ def id(service: Served) -> str:
 
 
 def start(service: Served, id: str, **other: object) -> dict:
-    return begun(service.run(id, 1, **({"drive": "route", "seed": 4} | other)), 201, "/api/runs")
+    return new_resource(
+        service.run(id, 1, **({"drive": "route", "seed": 4} | other)), 201, "/api/runs"
+    )
 
 
 def state(service: Served, run: str) -> dict:
     return service.client.get(f"/api/runs/{run}").json()
 
 
-def wait(service: Served, run: str, **wanted: object) -> dict:
+def wait_for(service: Served, run: str, **wanted: object) -> dict:
     while True:
-        found = state(service, run)
-        if all(found[name] == value for name, value in wanted.items()):
-            return found
-        assert found["status"] != "interrupted", found
+        run_state = state(service, run)
+        if all(run_state[name] == value for name, value in wanted.items()):
+            return run_state
+        assert run_state["status"] != "interrupted", run_state
         time.sleep(0.05)
 
 
 def ask(service: Served, run: str, kind: str, **fields: object) -> dict:
-    """Asks for something and waits for how it ends."""
+    """Send a request to a run, and return its final state."""
     request = {"kind": kind, "id": f"{kind}-{time.monotonic_ns()}"} | fields
-    return settled(service, service.client.post(f"/api/runs/{run}/requests", json=request))
+    return wait_for_answer(service, service.client.post(f"/api/runs/{run}/requests", json=request))
 
 
-def settled(service: Served, accepted: httpx.Response) -> dict:
-    """Waits for how what was asked for ends."""
+def wait_for_answer(service: Served, accepted: httpx.Response) -> dict:
+    """Wait until an accepted request is completed, and return its final state."""
     assert accepted.status_code == 202, accepted.text
     while True:
-        found = service.client.get(accepted.headers["location"]).json()
-        if found["progress"] not in ("accepted", "under way"):
-            return found
+        request_state = service.client.get(accepted.headers["location"]).json()
+        if request_state["progress"] not in ("accepted", "under way"):
+            return request_state
         time.sleep(0.02)
 
 
-def test_a_run_is_begun_followed_steered_and_reported(service: Served, id: str) -> None:
+def test_a_run_is_started_followed_controlled_and_reported(service: Served, id: str) -> None:
     live = service.socket("/api/robot/live", {"authorization": f"Bearer {ALL}"})
     assert json.loads(live.recv())["kind"] == "state"
     run = start(service, id, speed=20.0)["id"]
     refused = service.run(id, client=service.as_("bob"))
     assert "ann has begun run" in problem(refused, 409, "conflict")["detail"]
-    wait(service, run, moving=True)
+    wait_for(service, run, moving=True)
     assert ask(service, run, "pause")["progress"] == "confirmed"
     paused = state(service, run)
     assert (paused["mode"], paused["moving"]) == ("paused", False)
@@ -66,7 +68,7 @@ def test_a_run_is_begun_followed_steered_and_reported(service: Served, id: str) 
     assert "99" in wrong["reason"]
     assert ask(service, run, "give_back")["progress"] == "confirmed"
     assert ask(service, run, "speed", speed=None)["progress"] == "confirmed"
-    ended = wait(service, run, status="ended")
+    ended = wait_for(service, run, status="ended")
     assert ended["headline"]["word"] == "Success"
     kinds = set()
     numbers: list[int] = []
@@ -78,8 +80,8 @@ def test_a_run_is_begun_followed_steered_and_reported(service: Served, id: str) 
     assert numbers == [*range(1, ended["entries"] + 1)]
     assert kinds >= {"state", "pose", "entry", "request"}
     late = service.socket(f"/api/robot/live?since={ended['entries'] - 3}", auth())
-    heard = [json.loads(late.recv(timeout=30)) for _ in range(4)]
-    assert [message.get("number") for message in heard] == [None, *numbers[-3:]]
+    messages = [json.loads(late.recv(timeout=30)) for _ in range(4)]
+    assert [message.get("number") for message in messages] == [None, *numbers[-3:]]
     entries = service.client.get(f"/api/runs/{run}/entries", params={"since": 2, "most": 3}).json()
     assert entries["count"] == ended["entries"]
     assert len(entries["entries"]) == 3
@@ -100,7 +102,9 @@ def auth() -> dict[str, str]:
     return {"authorization": f"Bearer {ALL}"}
 
 
-def test_what_there_is_not_is_said_before_anything_begins(service: Served, id: str) -> None:
+def test_unknown_drives_sensors_and_checkpoints_are_refused_at_once(
+    service: Served, id: str
+) -> None:
     before = service.client.get("/api/runs").json()["runs"]
     for wrong, named, known in (
         ({"drive": "flying"}, "`flying`", "kinematic"),
@@ -113,26 +117,28 @@ def test_what_there_is_not_is_said_before_anything_begins(service: Served, id: s
     assert service.client.get("/api/runs").json()["runs"] == before
 
 
-def test_why_there_is_no_report_yet_is_said(service: Served, id: str) -> None:
+def test_a_missing_report_is_explained(service: Served, id: str) -> None:
     run = start(service, id, speed=1.0)["id"]
     missing = service.client.get(f"/api/runs/{run}/report/report.html")
     detail = problem(missing, 404, "not-found")["detail"]
     assert "when it has ended" in detail
     assert f"/api/runs/{run}/entries" in detail
-    wait(service, run, status="running")
+    wait_for(service, run, status="running")
     assert ask(service, run, "stop")["progress"] == "confirmed"
-    assert state(service, run)["status"] == "ended", "known before it is confirmed"
+    assert state(service, run)["status"] == "ended", (
+        "the run must have ended before the request is confirmed"
+    )
 
 
 @pytest.mark.long
-def test_the_run_goes_on_when_nobody_looks(service: Served, id: str) -> None:
+def test_a_run_continues_without_followers(service: Served, id: str) -> None:
     live = service.socket("/api/robot/live", auth())
     run = start(service, id, speed=None)["id"]
     live.close()
-    wait(service, run, status="ended")
+    wait_for(service, run, status="ended")
 
 
-def test_only_operators_steer(service: Served, id: str) -> None:
+def test_only_operators_control_runs(service: Served, id: str) -> None:
     planner = service.as_("x", SECRETS["plan"])
     problem(service.run(id, client=planner), 403, "access-denied")
     asked = planner.post(
@@ -142,7 +148,7 @@ def test_only_operators_steer(service: Served, id: str) -> None:
     assert planner.get("/api/runs").status_code == 200
 
 
-def test_what_is_no_run_is_said(service: Served, id: str) -> None:
+def test_unknown_runs_and_missions_that_can_not_run_are_refused(service: Served, id: str) -> None:
     client = service.client
     problem(client.get("/api/runs/20200101-000000-0000"), 404, "not-found")
     problem(client.get("/api/runs/20200101-000000-0000/entries"), 404, "not-found")

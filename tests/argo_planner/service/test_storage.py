@@ -119,8 +119,8 @@ def test_the_last_valid_state_of_a_damaged_file_is_opened(folder):
             assert file.document.plan.history == document.plan.history[: line - 1]
             assert file.recovery is not None
             assert f"revision {line}" in file.recovery.message
-            kept = path.with_name(file.recovery.damaged_name)
-            assert kept.read_bytes() == damaged
+            damaged_path = path.with_name(file.recovery.damaged_name)
+            assert damaged_path.read_bytes() == damaged
         with folder.open(id) as file:
             assert file.recovery is None
 

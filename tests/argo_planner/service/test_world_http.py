@@ -1,4 +1,4 @@
-"""The world over HTTP: meshes, maps, obstacles, and ways before they are driven."""
+"""World over HTTP: meshes, maps, obstacles and previews of paths."""
 
 import json
 
@@ -9,7 +9,7 @@ from argo_planner.service.world.standing import Ground, read_standing_map
 from tests.argo_planner.service.served import Served
 from tests.argo_planner.service.test_http import problem
 from tests.argo_planner.service.test_run_host import SCRIPT
-from tests.argo_planner.service.test_runs import start, wait
+from tests.argo_planner.service.test_runs import start, wait_for
 
 
 @pytest.fixture(autouse=True)
@@ -22,7 +22,9 @@ def box(x: float, y: float, z: float, edge: float = 0.8) -> dict:
     return {"id": "box", "name": "a box", "pose": {"x": x, "y": y, "z": z}, "size": [edge] * 3}
 
 
-def test_the_world_is_told_with_meshes_and_maps(service: Served, site: OpenedSite) -> None:
+def test_the_description_meshes_and_maps_agree_with_the_site(
+    service: Served, site: OpenedSite
+) -> None:
     client = service.client
     world = client.get("/api/world").json()
     assert len(world["floors"]) == len(site.site.spec.floors)
@@ -38,8 +40,8 @@ def test_the_world_is_told_with_meshes_and_maps(service: Served, site: OpenedSit
     assert client.get("/api/world/robot").content[:4] == b"glTF"
     for kind in {c["kind"] for c in world["checkpoints"]}:
         assert client.get(f"/api/world/checkpoints/{kind}").content[:4] == b"glTF"
-    found = client.get(f"/api/world/floors/{floor}/standing/0")
-    standing = read_standing_map(found.content)
+    answer = client.get(f"/api/world/floors/{floor}/standing/0")
+    standing = read_standing_map(answer.content)
     dock = world["docks"][0]["pose"]
     number = next(f["number"] for f in world["floors"] if abs(f["z"] - dock["z"]) < 0.1)
     heading = min(
@@ -53,7 +55,7 @@ def test_the_world_is_told_with_meshes_and_maps(service: Served, site: OpenedSit
     problem(client.get("/api/world/floors/1/mesh/none"), 422, "invalid")
 
 
-def test_obstacles_close_the_ground_and_are_kept(service: Served) -> None:
+def test_obstacles_change_paths_and_are_stored(service: Served) -> None:
     client = service.client
     id = service.imported(SCRIPT, start_area=1)
     preview = client.get(f"/api/missions/{id}/preview").json()
@@ -64,9 +66,9 @@ def test_obstacles_close_the_ground_and_are_kept(service: Served) -> None:
     page = service.follow(id)
     given = service.put_obstacles(box(*middle[1:4]))
     assert given.status_code == 200, given.text
-    while (told := json.loads(page.recv(timeout=30)))["kind"] != "world":
+    while (message := json.loads(page.recv(timeout=30)))["kind"] != "world":
         pass
-    assert told["revision"] == given.json()["revision"]
+    assert message["revision"] == given.json()["revision"]
     around = client.get(f"/api/missions/{id}/preview").json()
     assert around["time"] > preview["time"] or around["problems"]
     world = client.get("/api/world").json()
@@ -79,7 +81,7 @@ def test_obstacles_close_the_ground_and_are_kept(service: Served) -> None:
 
 
 @pytest.mark.long
-def test_runs_go_round_obstacles(service: Served) -> None:
+def test_runs_avoid_obstacles(service: Served) -> None:
     client = service.client
     id = service.imported(SCRIPT, start_area=1)
     way = client.get(f"/api/missions/{id}/preview").json()["ways"][1]["way"]
@@ -87,7 +89,7 @@ def test_runs_go_round_obstacles(service: Served) -> None:
     service.put_obstacles(box(*middle[1:4], edge=0.4))
     around = client.get(f"/api/missions/{id}/preview").json()
     run = start(service, id, speed=None)["id"]
-    ended = wait(service, run, status="ended")
+    ended = wait_for(service, run, status="ended")
     if around["problems"]:
         assert ended["headline"]["word"] != "Success"
     else:
@@ -95,7 +97,7 @@ def test_runs_go_round_obstacles(service: Served) -> None:
         assert ended["t"] == pytest.approx(around["time"], rel=0.05)
 
 
-def test_a_way_is_previewed(service: Served) -> None:
+def test_a_path_is_previewed(service: Served) -> None:
     client = service.client
     world = client.get("/api/world").json()
     dock = world["docks"][0]["pose"]
@@ -107,5 +109,7 @@ def test_a_way_is_previewed(service: Served) -> None:
     nowhere = {"start": dock, "goal": {"x": 1e3, "y": 1e3, "z": 0}}
     assert client.post("/api/world/way", json=nowhere).json()["problem"]
     problem(client.post("/api/world/way", json={"start": dock}), 422, "invalid")
-    words = {"start": dock, "goal": dock | {"x": "1.5"}}
-    assert "goal.x" in problem(client.post("/api/world/way", json=words), 422, "invalid")["detail"]
+    with_text = {"start": dock, "goal": dock | {"x": "1.5"}}
+    assert (
+        "goal.x" in problem(client.post("/api/world/way", json=with_text), 422, "invalid")["detail"]
+    )

@@ -1,4 +1,4 @@
-"""The meshes of a site for a page, read by a library that knows nothing of Argo."""
+"""Meshes of a site for the page, read by an independent library."""
 
 import io
 
@@ -15,19 +15,19 @@ from argo_env.site.storeys import storeys
 from argo_planner.service.world.meshes import Detail, checkpoint_mesh, floor_mesh, robot_mesh
 
 
-def upright(content):
-    """The parts of a GLB by name, z up again."""
+def read_meshes(content):
+    """Return the meshes of a GLB by their names, with z upwards."""
     scene = trimesh.load(io.BytesIO(content), file_type="glb")
     turned = trimesh.transformations.rotation_matrix(np.pi / 2, [1, 0, 0])
-    found = {}
+    meshes = {}
     for node in scene.graph.nodes_geometry:
         transform, geometry = scene.graph[node]
         mesh = scene.geometry[geometry].copy()
         mesh.apply_transform(turned @ transform)
-        # Of a node with several colours the library makes several, below it or named by numbers.
+        # The library splits a node with several colours into several, below it or numbered.
         name = node if node.split("_")[0] not in set(Role) else node.split("_")[0]
-        found.setdefault(name, []).append(mesh)
-    return found
+        meshes.setdefault(name, []).append(mesh)
+    return meshes
 
 
 def volume(solid, sides):
@@ -37,18 +37,18 @@ def volume(solid, sides):
 
 
 def corners_of(content):
-    return np.vstack([m.vertices for meshes in upright(content).values() for m in meshes])
+    return np.vstack([m.vertices for meshes in read_meshes(content).values() for m in meshes])
 
 
 @pytest.mark.parametrize("floor", range(1, 7))
 def test_each_solid_of_a_floor_is_in_its_full_mesh(site, floor):
-    found = upright(floor_mesh(site, floor))
+    meshes = read_meshes(floor_mesh(site, floor))
     expected = {}
     for element in storeys(site.site)[floor]:
         expected.setdefault(element.role.value, []).extend(element.solids)
-    assert set(found) == set(expected)
+    assert set(meshes) == set(expected)
     for role, solids in expected.items():
-        parts = [p for mesh in found[role] for p in mesh.split(only_watertight=False)]
+        parts = [p for mesh in meshes[role] for p in mesh.split(only_watertight=False)]
         assert len(parts) == len(solids)
         assert sum(p.volume for p in parts) == pytest.approx(
             sum(volume(s, 24) for s in solids), rel=1e-4
@@ -59,12 +59,12 @@ def test_each_solid_of_a_floor_is_in_its_full_mesh(site, floor):
             assert np.abs(where - at).max(axis=1).min() < 1e-4
 
 
-def test_the_floors_have_all_solids_of_the_site_and_none_twice(site):
+def test_the_floors_together_have_each_solid_of_the_site_once(site):
     whole = sum(volume(s, 24) for e in site.site.elements for s in e.solids)
     drawn = sum(
         mesh.volume
         for floor in range(1, 7)
-        for meshes in upright(floor_mesh(site, floor)).values()
+        for meshes in read_meshes(floor_mesh(site, floor)).values()
         for mesh in meshes
     )
     assert drawn == pytest.approx(whole, rel=1e-4)
@@ -72,33 +72,33 @@ def test_the_floors_have_all_solids_of_the_site_and_none_twice(site):
 
 @pytest.mark.parametrize("detail", [Detail.MEDIUM, Detail.COARSE])
 @pytest.mark.parametrize("floor", [1, 3])
-def test_less_detail_is_smaller_and_as_large_in_space(site, floor, detail):
-    full, less = floor_mesh(site, floor), floor_mesh(site, floor, detail)
-    assert len(less) < 0.9 * len(full)
-    all_of, some_of = upright(full), upright(less)
-    assert set(all_of) == set(some_of)
-    for role in all_of:
+def test_a_mesh_with_less_detail_is_a_smaller_file_of_the_same_extent(site, floor, detail):
+    full, simple = floor_mesh(site, floor), floor_mesh(site, floor, detail)
+    assert len(simple) < 0.9 * len(full)
+    full_meshes, simple_meshes = read_meshes(full), read_meshes(simple)
+    assert set(full_meshes) == set(simple_meshes)
+    for role in full_meshes:
         for corner in (np.min, np.max):
             a, b = (
                 corner([corner(m.vertices, axis=0) for m in meshes], axis=0)
-                for meshes in (all_of[role], some_of[role])
+                for meshes in (full_meshes[role], simple_meshes[role])
             )
             assert np.abs(a - b).max() < 0.15
 
 
 def test_stairs_have_each_step_and_rails_each_bar_in_the_coarse_mesh(site):
-    found = upright(floor_mesh(site, 2, Detail.COARSE))
+    meshes = read_meshes(floor_mesh(site, 2, Detail.COARSE))
     elements = storeys(site.site)[2]
     steps = [s for e in elements if e.role is Role.STAIR for s in e.solids]
-    assert sum(len(m.faces) for m in found["stair"]) == 4 * len(steps)
-    tops = np.array([m for mesh in found["stair"] for m in mesh.triangles_center])
+    assert sum(len(m.faces) for m in meshes["stair"]) == 4 * len(steps)
+    tops = np.array([m for mesh in meshes["stair"] for m in mesh.triangles_center])
     for solid in steps:
         height = solid.center[2] + half_extents(solid)[2]
         near = np.abs(tops[:, :2] - solid.center[:2]).max(axis=1) < 1.0
         assert np.abs(tops[near, 2] - height).min() < 1e-3
 
 
-def test_a_floor_that_is_not_there_is_refused(site):
+def test_an_unknown_floor_is_refused(site):
     with pytest.raises(NotFound, match="no floor 9"):
         floor_mesh(site, 9)
 
@@ -115,7 +115,7 @@ def test_the_robot_is_as_large_as_its_footprint(site):
     assert low[2] > -0.01
 
 
-def test_each_link_of_the_robot_is_where_its_joints_put_it(site):
+def test_each_link_of_the_robot_has_the_pose_of_its_joints(site):
     model = yourdfpy.URDF.load(robot_folder() / site.robot.urdf, load_meshes=False)
     angles = {name: np.deg2rad(angle) for name, angle in site.robot.arm_stowed.items()}
     model.update_cfg(angles)
@@ -127,7 +127,7 @@ def test_each_link_of_the_robot_is_where_its_joints_put_it(site):
 
 
 @pytest.mark.parametrize("kind", CheckpointKind)
-def test_checkpoints_look_along_x(kind):
+def test_checkpoints_face_along_x(kind):
     corners = corners_of(checkpoint_mesh(kind))
     assert corners[:, 0].max() < 0.06
     assert np.ptp(corners, axis=0).max() < 0.6

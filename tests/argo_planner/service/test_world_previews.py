@@ -1,4 +1,4 @@
-"""Previews say what the drive that knows no forces does, with obstacles and without."""
+"""Previews agree with the drive without forces, with and without obstacles."""
 
 import math
 from itertools import pairwise
@@ -45,15 +45,15 @@ def random_tasks(site, rng, count):
             yield waypoint(f"T{k}", pose=pose, velocity=velocity)
 
 
-def driven(site, mission, drive="route"):
+def simulate_mission(site, mission, drive="route"):
     spec = RunSpec(mission=mission, site=site.reference, drive=drive, seed=1)
     return simulate(spec, site)
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_the_times_are_those_of_the_drive(site, seed):
+def test_previewed_times_are_those_of_the_drive(site, seed):
     mission = chain(*random_tasks(site, np.random.default_rng(seed), 8))
-    seen, record = preview_mission(site, mission), driven(site, mission)
+    seen, record = preview_mission(site, mission), simulate_mission(site, mission)
     assert not seen.at_least
     assert [way.target for way in seen.ways] == [run.task for run in record.tasks]
     for way, run in zip(seen.ways, record.tasks, strict=True):
@@ -64,7 +64,7 @@ def test_the_times_are_those_of_the_drive(site, seed):
     assert seen.time == pytest.approx(record.tasks[-1].end, abs=0.1)
 
 
-def test_a_way_is_drawn_from_where_the_robot_is_to_where_it_ends(site):
+def test_a_path_is_drawn_from_the_start_of_the_robot_to_its_end(site):
     dock = site.site.docks[1]
     way = preview_way(site, dock, measure(20))
     assert math.dist(way.points[0][1:4], (dock.x, dock.y, dock.z)) < 0.3
@@ -76,7 +76,7 @@ def test_a_way_is_drawn_from_where_the_robot_is_to_where_it_ends(site):
     assert preview_way(site, dock, way.end).work == 0
 
 
-def test_what_cant_be_reached_says_why(site):
+def test_an_unreachable_pose_is_reported_with_a_reason(site):
     nowhere = Pose(x=100, y=0, z=0)
     way = preview_way(site, site.site.docks[1], nowhere)
     assert way.time is None
@@ -87,7 +87,7 @@ def test_what_cant_be_reached_says_why(site):
     assert seen.ways[1].way.time > 0
 
 
-def test_branches_rounds_and_waits_are_told_apart(site):
+def test_branches_rounds_and_waits_are_distinguished(site):
     hot = Condition(type=ConditionType.ABNORMAL, object_id="1")
     tasks = (
         measure(1, Transition(target="M3", conditions=(hot,)), "M2"),
@@ -98,8 +98,8 @@ def test_branches_rounds_and_waits_are_told_apart(site):
     )
     groups = (Group(name="round", start="M1", end="M2", max_repeat_count=3),)
     seen = preview_mission(site, Mission(site="umad", tasks=tasks, groups=groups))
-    told = {(w.source, w.target): w.kind for w in seen.ways}
-    assert told == {
+    kinds = {(w.source, w.target): w.kind for w in seen.ways}
+    assert kinds == {
         (None, "M1"): WayKind.DEFAULT,
         ("M1", "M2"): WayKind.DEFAULT,
         ("M2", "rest"): WayKind.DEFAULT,
@@ -113,7 +113,7 @@ def test_branches_rounds_and_waits_are_told_apart(site):
     assert back == next(w.way for w in seen.ways if w.kind is WayKind.ROUND)
 
 
-def test_totals_that_leave_something_open_say_so(site):
+def test_totals_state_which_times_are_unknown(site):
     waiting = wait("wait", "M1", event="all_clear", limit=60.0)
     late = measure(1, "wait", window=TimeWindow(earliest=500.0))
     seen = preview_mission(site, Mission(site="umad", tasks=(late, waiting)))
@@ -124,7 +124,7 @@ def test_totals_that_leave_something_open_say_so(site):
         preview_mission(site, Mission(site="umad", tasks=(broken,)))
 
 
-def test_ways_and_runs_go_round_an_obstacle_alike(site):
+def test_previews_and_runs_avoid_an_obstacle_alike(site):
     start, goal = Pose(x=4.0, y=1.5, z=0.0), Pose(x=4.0, y=10.0, z=0.0, yaw=1.57)
     free = preview_way(site, start, goal)
     middle = next(p for p in free.points if p[0] > free.time / 2)
@@ -134,22 +134,22 @@ def test_ways_and_runs_go_round_an_obstacle_alike(site):
     round_it = preview_way(site, start, goal, crates)
     assert round_it.time > free.time
     tasks = starting("START", pose=start), waypoint("there", pose=goal)
-    mission, altered = chain(*tasks), with_obstacles(site, crates)
+    mission, changed_site = chain(*tasks), with_obstacles(site, crates)
     seen = preview_mission(site, mission, crates)
     for drive in ("route", "kinematic"):
-        record = driven(altered, mission, drive)
+        record = simulate_mission(changed_site, mission, drive)
         (run,) = record.tasks
         assert run.outcome == "done"
         assert run.end - run.start == pytest.approx(seen.ways[0].way.time, abs=0.1)
         assert not record.contacts
         assert not record.anomalies
-    # A plan that does not know of it leads into what is solid there.
-    unaware = OpenedSite.of_navigator(site.navigator.with_blockages((), altered.site))
-    touched = driven(unaware, mission, "kinematic").contacts
+    # Without the obstacle in the plan the robot touches it.
+    unaware = OpenedSite.of_navigator(site.navigator.with_blockages((), changed_site.site))
+    touched = simulate_mission(unaware, mission, "kinematic").contacts
     assert {contact.element for contact in touched} == {"obstacle a"}
 
 
-def test_checkpoints_behind_obstacles_are_told(site):
+def test_checkpoints_behind_obstacles_are_reported(site):
     whole = describe(site)
     assert all(c.problem is None and c.stands is not None for c in whole.checkpoints)
     feet = (
@@ -157,33 +157,33 @@ def test_checkpoints_behind_obstacles_are_told(site):
         for tower in site.site.spec.towers
     )
     wall = tuple(crate(f"{name} 1", x, y, 0.0, (2.5, 2.5, 2.0), 0.0) for name, (x, y, _) in feet)
-    told = describe(site, wall)
-    assert told.obstacles == wall
-    assert told.digest == world_digest(site, wall) != whole.digest
-    for before, after in zip(whole.checkpoints, told.checkpoints, strict=True):
+    description = describe(site, wall)
+    assert description.obstacles == wall
+    assert description.digest == world_digest(site, wall) != whole.digest
+    for before, after in zip(whole.checkpoints, description.checkpoints, strict=True):
         if before.floor > 1:
             assert after.stands is None
-            assert "can't be" in after.problem or "no way" in after.problem
+            assert "can't be" in after.problem or "no path" in after.problem
             way = preview_way(site, site.site.docks[1], measure(before.id), wall)
             assert way.problem
-    assert any(c.stands for c in told.checkpoints if c.floor == 1)
+    assert any(c.stands for c in description.checkpoints if c.floor == 1)
 
 
-def test_the_description_is_that_of_the_site(site):
-    told = describe(site)
-    assert told.model_validate_json(told.model_dump_json()) == told
-    assert [f.number for f in told.floors] == [1, 2, 3, 4, 5, 6]
-    for floor in told.floors:
+def test_the_description_agrees_with_the_site(site):
+    description = describe(site)
+    assert description.model_validate_json(description.model_dump_json()) == description
+    assert [f.number for f in description.floors] == [1, 2, 3, 4, 5, 6]
+    for floor in description.floors:
         x0, y0, x1, y1 = floor.bounds
         area = sum((p[2] - p[0]) * (p[3] - p[1]) for p in floor.plates)
         assert 0 < area <= (x1 - x0) * (y1 - y0) + 1e-6
-    for checkpoint in told.checkpoints:
+    for checkpoint in description.checkpoints:
         away = math.dist(checkpoint.position[:2], (checkpoint.stands.x, checkpoint.stands.y))
         assert away < site.robot.sensor.max_range + 1.0
         assert site.site.floor_at(checkpoint.stands.z) == checkpoint.floor
 
 
-def test_a_run_goes_on_among_the_same_obstacles_only(site, tmp_path):
+def test_a_run_is_resumed_only_with_the_same_obstacles(site, tmp_path):
     place = site.navigator.turning_poses(1)[5].tolist()
     one, other = (
         with_obstacles(site, (crate("a", *place[:3], (0.4, 0.4, high)),)) for high in (0.8, 0.9)

@@ -1,4 +1,4 @@
-"""Maps of where the robot can stand say what the navigator says."""
+"""Maps of where the robot can stand agree with the navigator."""
 
 import json
 import math
@@ -27,7 +27,7 @@ def crate(id, x, y, z, size=(0.5, 0.4, 1.0), yaw=0.0):
 
 @pytest.fixture(scope="module")
 def crates(site):
-    """Some on the walkways of several floors, one of which closes a way for good."""
+    """Four crates at random poses on the deck of floor 2."""
     rng = np.random.default_rng(5)
     places = site.navigator.turning_poses(2)
     chosen = places[rng.choice(len(places), 4, replace=False)]
@@ -37,12 +37,12 @@ def crates(site):
 
 
 def maps_of(site, obstacles=()):
-    made = {
+    maps = {
         (floor, heading): standing_map(site, floor, heading, obstacles)
         for floor in FLOORS
         for heading in range(HEADINGS)
     }
-    return {key: read_standing_map(one.to_bytes()) for key, one in made.items()}
+    return {key: read_standing_map(one.to_bytes()) for key, one in maps.items()}
 
 
 @pytest.fixture(scope="module")
@@ -51,7 +51,7 @@ def maps(site):
 
 
 def cells_of(one):
-    """All cells with ground: poses and codes."""
+    """Return the positions and the codes of all cells with ground."""
     layer, row, column = np.nonzero(one.codes)
     x = one.origin[0] + (column + 0.5) * one.cell
     y = one.origin[1] + (row + 0.5) * one.cell
@@ -60,7 +60,10 @@ def cells_of(one):
 
 
 def poses_of(maps, rng, count):
-    """Poses over the middles of cells drawn from all maps, each code alike, with the code."""
+    """Yield poses above random cells of random maps, with their codes and maps.
+
+    Each code of a map is equally likely.
+    """
     for _ in range(count):
         one = maps[int(rng.choice(FLOORS)), int(rng.integers(HEADINGS))]
         places, codes = cells_of(one)
@@ -87,7 +90,7 @@ def test_all_cells_of_the_surface_are_on_one_floor(site, maps):
         assert reached == int((lattice.heading == heading).sum())
 
 
-def test_the_robot_stands_where_the_navigator_says(site, maps):
+def test_the_map_has_the_poses_of_the_navigator(site, maps):
     rng, lattice = np.random.default_rng(1), site.navigator.lattice
     seen = set()
     for pose, code, one in poses_of(maps, rng, 300):
@@ -97,13 +100,13 @@ def test_the_robot_stands_where_the_navigator_says(site, maps):
     assert seen >= {Ground.TOO_NEAR, Ground.TOO_STEEP, Ground.CUT_OFF, Ground.REACHED}
 
 
-def test_what_is_cut_off_can_be_stood_on_and_what_is_near_or_steep_not(site, maps):
+def test_the_robot_could_stand_where_it_is_cut_off_but_not_too_near_or_too_steep(site, maps):
     everything = build_lattice(site.navigator.surface, site.robot)
     for pose, code, _ in poses_of(maps, np.random.default_rng(2), 200):
         assert is_state(everything, pose) == (code in (Ground.CUT_OFF, Ground.REACHED))
 
 
-def test_the_robot_gets_to_what_is_reached(site, maps):
+def test_the_robot_reaches_the_poses_that_are_marked_so(site, maps):
     dock = site.site.docks[1]
     reached = 0
     for pose, code, _ in poses_of(maps, np.random.default_rng(3), 60):
@@ -115,7 +118,7 @@ def test_the_robot_gets_to_what_is_reached(site, maps):
     assert reached > 10
 
 
-def test_a_pose_is_taken_where_something_reached_is_near(site, maps):
+def test_a_pose_is_accepted_near_a_reached_one(site, maps):
     rng = np.random.default_rng(4)
     near = [cells_of(one) for one in maps.values()]
     places = np.vstack([p[c == Ground.REACHED] for p, c in near])
@@ -137,7 +140,7 @@ def test_a_pose_is_taken_where_something_reached_is_near(site, maps):
     assert taken == {True, False}
 
 
-def test_with_obstacles_the_map_says_what_plans_say(site, crates):
+def test_with_obstacles_the_map_agrees_with_planned_paths(site, crates):
     maps, navigator = maps_of(site, crates), with_obstacles(site, crates).navigator
     dock, seen = site.site.docks[1], set()
     for pose, code, _ in poses_of(maps, np.random.default_rng(6), 250):
@@ -156,7 +159,7 @@ def test_with_obstacles_the_map_says_what_plans_say(site, crates):
     assert {code for code, _ in seen} >= {Ground.CLOSED, Ground.REACHED}
 
 
-def test_an_obstacle_closes_no_more_than_what_the_robot_would_touch(site):
+def test_an_obstacle_closes_only_poses_at_which_the_robot_would_touch_it(site):
     x, y, z, _ = site.navigator.turning_poses(3)[40].tolist()
     box = crate("a", x, y, z, (0.6, 0.3, 0.5), yaw=0.7)
     robot = site.robot.footprint
@@ -173,13 +176,13 @@ def test_an_obstacle_closes_no_more_than_what_the_robot_would_touch(site):
         assert (codes[places[:, 2] < z - 1.0] != Ground.CLOSED).all()
 
 
-def test_what_lies_over_the_robot_closes_nothing(site):
+def test_an_obstacle_above_the_robot_closes_nothing(site):
     x, y, z, _ = site.navigator.turning_poses(6)[10].tolist()
     beam = crate("beam", x, y, z + site.robot.driving_height + 0.1, (1.0, 1.0, 0.3))
     assert (standing_map(site, 6, 0, (beam,)).codes == standing_map(site, 6, 0).codes).all()
 
 
-def test_what_is_not_there_is_refused(site):
+def test_unknown_floors_headings_and_maps_are_refused(site):
     with pytest.raises(NotFound):
         standing_map(site, 8, 0)
     with pytest.raises(Invalid, match="no heading 8"):
@@ -192,7 +195,7 @@ def test_what_is_not_there_is_refused(site):
 
 
 @pytest.mark.skipif(shutil.which("node") is None, reason="needs node")
-def test_a_page_reads_a_map_as_the_documentation_shows(site, tmp_path):
+def test_the_documented_reader_of_a_map_is_right(site, tmp_path):
     page = Path(__file__).parents[3] / "docs" / "service.md"
     (reader,) = re.findall("```js\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
     one = standing_map(site, 1, 3)
@@ -208,10 +211,10 @@ readMap("map").then((map) => {{
 }});
 """
     (tmp_path / "read.js").write_text(script, encoding="utf-8")
-    told = subprocess.run(
+    output = subprocess.run(
         ["node", tmp_path / "read.js"], capture_output=True, text=True, check=True
     ).stdout
-    cells = json.loads(told)
+    cells = json.loads(output)
     assert len(cells) > 500
     for k, code, height in cells:
         assert code == one.codes.ravel()[k]

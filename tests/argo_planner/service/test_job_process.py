@@ -79,14 +79,14 @@ def test_nothing_else_waits_while_a_process_starts(
     site: OpenedSite,
     slow_start: threading.Event,
 ) -> None:
-    async def beside() -> None:
+    async def check() -> None:
         task = asyncio.ensure_future(begin(site))
         assert await ticks(10) == 10
         assert not task.done()
         slow_start.set()
         assert await task
 
-    asyncio.run(beside())
+    asyncio.run(check())
 
 
 def test_work_is_ended_while_it_starts_and_while_it_runs(slow_start: threading.Event) -> None:

@@ -1,11 +1,11 @@
-"""What is looked at before something is decided: pictures, suggested orders, notes of imports."""
+"""Previews of suggested orders, notes of imports, and pictures of readings."""
 
 import pytest
 
 from tests.argo_planner.service.served import Served
 from tests.argo_planner.service.test_http import problem
 from tests.argo_planner.service.test_jobs import import_script, start_search, wait_for_end
-from tests.argo_planner.service.test_runs import start, wait
+from tests.argo_planner.service.test_runs import start, wait_for
 
 NEAR = (
     "Mission Protocol #1\n1. Set the starting point in starting area 1.\n"
@@ -13,19 +13,19 @@ NEAR = (
 )
 
 
-def test_a_suggested_order_is_looked_at(service: Served) -> None:
+def test_a_suggested_order_has_a_preview(service: Served) -> None:
     id = import_script(service)
     job = start_search(service, id)
     found = wait_for_end(service, job)["found"]
     preview = service.client.get(f"/api/jobs/{job}/preview").json()
-    after = [task["name"] for task in found["mission"]["tasks"] if task["action"] != "START"]
+    order = [task["name"] for task in found["mission"]["tasks"] if task["action"] != "START"]
     driven = [way["target"] for way in preview["ways"] if way["kind"] == "default"]
-    assert driven == after
+    assert driven == order
     assert preview["time"] <= service.client.get(f"/api/missions/{id}/preview").json()["time"]
     problem(service.client.get(f"/api/jobs/{'0' * 12}/preview"), 404, "not-found")
 
 
-def test_notes_of_an_import_stay_until_the_mission_is_gone_for_good(service: Served) -> None:
+def test_notes_of_an_import_stay_until_the_mission_is_destroyed(service: Served) -> None:
     client = service.client
     id = service.imported(NEAR.replace("Check", "Chek"), start_area=1)
     notes = client.get(f"/api/missions/{id}/notes").json()
@@ -53,7 +53,7 @@ def test_a_reading_of_the_camera_has_its_picture(service: Served) -> None:
     pytest.importorskip("cv2")
     id = service.imported(NEAR, start_area=1, end_area=1)
     run = start(service, id, drive="kinematic", sensor="camera", speed=None)["id"]
-    (reading,) = wait(service, run, status="ended")["readings"]
+    (reading,) = wait_for(service, run, status="ended")["readings"]
     at = f"/api/runs/{run}/pictures/{reading['checkpoint']}"
     picture = service.client.get(f"{at}/{round(1000 * reading['t'])}")
     assert picture.headers["content-type"] == "image/png"

@@ -96,9 +96,9 @@ class RouteVectorEnv(Copyable, VectorEnv[Observation, NDArray[np.int64], NDArray
         options: dict[str, Any] | None = None,
     ) -> tuple[Observation, dict[str, Any]]:
         """Reset all routes; an int seeds them with seed, seed + 1 and so on."""
+        seeds = expand_seeds(seed, self.num_envs)
         if options is not None:
             self._episodes.apply_options(read_route_options(options, self._episodes, self.num_envs))
-        seeds = expand_seeds(seed, self.num_envs)
         self._episode += 1
         for k, one in enumerate(seeds):
             if one is not None or not self._seeded[k]:

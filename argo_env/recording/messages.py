@@ -4,7 +4,6 @@ from collections.abc import Iterable
 
 from foxglove_schemas_protobuf.Color_pb2 import Color
 from foxglove_schemas_protobuf.Log_pb2 import Log
-from foxglove_schemas_protobuf.Point3_pb2 import Point3
 from foxglove_schemas_protobuf.Pose_pb2 import Pose as PoseMessage
 from foxglove_schemas_protobuf.PosesInFrame_pb2 import PosesInFrame
 from foxglove_schemas_protobuf.Quaternion_pb2 import Quaternion as QuaternionMessage
@@ -65,11 +64,6 @@ def attitude(body: BodyPose) -> Quaternion:
 def make_colour(c: Colour) -> Color:
     """Return the message for a colour."""
     return Color(r=c[0], g=c[1], b=c[2], a=c[3])
-
-
-def make_point(v: Vector) -> Point3:
-    """Return the message for a point, in m."""
-    return Point3(x=v[0], y=v[1], z=v[2])
 
 
 def make_path(poses: Iterable[Pose], t: float) -> PosesInFrame:

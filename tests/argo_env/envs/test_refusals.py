@@ -57,6 +57,15 @@ def test_observations_do_not_depend_on_cached_sites(yard_file):
     assert kept() is None
 
 
+def test_a_refused_number_of_seeds_leaves_the_options():
+    batch = RouteVectorEnv(2, checkpoints=4)
+    _, before = batch.reset(seed=1)
+    with pytest.raises(ValueError, match="2 environments"):
+        batch.reset(seed=[1, 2, 3], options={"instance": 7})
+    _, info = batch.reset(seed=1)
+    assert info["instance"].tolist() == before["instance"].tolist() != [7, 7]
+
+
 def test_drive_continues_after_refused_options(yard_file):
     env = DriveEnv(yard_file)
     env.reset(seed=1)

@@ -94,7 +94,7 @@ class DriveSite(Closing):
         joints = {f"{side}_flipper_joint": flipper for side in ("left", "right")}
         self._scene.place_robot(pose, self.robot.arm_stowed | joints)
         camera = self._camera.next_camera(pose)
-        return self._scene.render_view(camera), camera
+        return self._scene.render_from(camera), camera
 
     def reset_camera(self) -> None:
         """Choose the best viewpoint for the next picture, without regard to earlier ones."""

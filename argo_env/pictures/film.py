@@ -194,7 +194,7 @@ def draw_frame(record: RunRecord, scene: Scene, shot: FilmShot, end: float) -> I
     """Return the frame of a shot; at the `end` (s) of the run it contains the verdict."""
     scene.show_floors(shot.floor, _DECKS)
     scene.place_robot(shot.pose, shot.joints)
-    view = scene.render_view(shot.camera)
+    view = scene.render_from(shot.camera)
     brightness = depth_shading(view, shot.camera.size[1] / 50, 0.45)
     frame = add_caption(Image.fromarray(shade_view(view, brightness)), record, shot.t, shot.floor)
     return add_verdict(frame, record) if shot.t >= end else frame

@@ -58,9 +58,9 @@ def site_view(site: Site, robot: RobotSpec, camera: Camera, sun: Camera) -> LitV
     """Return the view of the site without the robot, from the cache if it was rendered before."""
     key = (_digest_of_code(), repr(site.elements), repr(site.checkpoints), repr((camera, sun)))
 
-    def render() -> dict[str, NDArray[Any]]:
+    def render_site() -> dict[str, NDArray[Any]]:
         with Scene(site, robot) as scene:
-            seen, lit = scene.render_view(camera), scene.render_view(sun)
+            seen, lit = scene.render_from(camera), scene.render_from(sun)
         # The renderer has single precision.
         return {
             "colours": seen.colours,
@@ -69,14 +69,14 @@ def site_view(site: Site, robot: RobotSpec, camera: Camera, sun: Camera) -> LitV
             "dark": shadow_mask(camera, seen.depth, sun, lit.depth),
         }
 
-    arrays = cache.entry_for(key).load_or_make("overview", render)
+    arrays = cache.entry_for(key).load_or_make("overview", render_site)
     view = CameraView(arrays["colours"], arrays["depth"].astype(np.float64))
     return LitView(view, arrays["lit_depth"].astype(np.float64), arrays["dark"])
 
 
 def add_robot(site_only: LitView, robot: Scene, camera: Camera, sun: Camera) -> LitView:
     """Return the view with the robot of a scene that contains nothing else."""
-    seen, lit = robot.render_view(camera), robot.render_view(sun)
+    seen, lit = robot.render_from(camera), robot.render_from(sun)
     front = seen.depth < site_only.view.depth
     colours = np.where(front[:, :, None], seen.colours, site_only.view.colours)
     depth = np.where(front, seen.depth, site_only.view.depth)

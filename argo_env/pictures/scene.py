@@ -93,7 +93,7 @@ class Scene(Connection):
         """Hide the robot until it is placed again."""
         self._place(self._robot_body, _HIDDEN, (0.0, 0.0, 0.0))
 
-    def render_view(self, camera: Camera) -> CameraView:
+    def render_from(self, camera: Camera) -> CameraView:
         """Return the camera's view, without shadows."""
         colours, buffer = self._render(camera.view_matrix, camera.projection_matrix, camera.size)
         return CameraView(colours, depth_in_metres(buffer, camera))

@@ -89,14 +89,14 @@ def test_floors_above_are_hidden(scene):
     heights = {}
     for top in (6, 2, 1):
         scene.show_floors(top)
-        heights[top] = 30.0 - np.median(scene.render_view(camera).depth)
+        heights[top] = 30.0 - np.median(scene.render_from(camera).depth)
     assert heights == pytest.approx({6: 12.5, 2: 2.5, 1: 0.0}, abs=0.1)
 
 
 def test_projection_inverts_unprojection(scene):
     scene.show_floors(6)
     camera = Camera((-16.0, -22.0, 17.0), (8.0, 5.0, 6.0), (200, 150), 40.0, near=5.0)
-    view = scene.render_view(camera)
+    view = scene.render_from(camera)
     row, column = np.indices((150, 200)).reshape(2, -1)
     depth = np.where(np.isfinite(view.depth), view.depth, 50.0)[row, column]
     pixels = camera.project(camera.unproject(column, row, depth)).reshape(150, 200, 3)
@@ -110,9 +110,9 @@ def test_the_robot_is_in_the_middle_of_the_frame(scene, robot):
     scene.show_floors(1, 2)
     scene.hide_robot()
     camera = chase.next_camera(pose)
-    without = scene.render_view(camera).colours
+    without = scene.render_from(camera).colours
     scene.place_robot(pose, robot.arm_stowed)
-    changed = np.abs(scene.render_view(camera).colours.astype(int) - without).sum(axis=2) > 30
+    changed = np.abs(scene.render_from(camera).colours.astype(int) - without).sum(axis=2) > 30
     rows, columns = np.nonzero(changed)
     assert changed[40, 60]
     assert columns.mean() == pytest.approx(60, abs=8)
@@ -283,7 +283,7 @@ def test_a_composed_view_is_equal_to_a_rendered_one(umad, robot, whole, alone, x
     for scene in (whole, alone):
         scene.place_robot(BodyPose(x, y, z, yaw), robot.arm_raised)
     composed = add_robot(site_only, alone, camera, sun)
-    seen, lit = whole.render_view(camera), whole.render_view(sun)
+    seen, lit = whole.render_from(camera), whole.render_from(sun)
     # Where two surfaces are equally near, either may be visible.
     assert (composed.view.colours != seen.colours).any(axis=2).mean() < 1e-3
     finite = np.isfinite(seen.depth)

@@ -20,11 +20,11 @@ from argo_compiler.il import Action, Mission, Task, Transition
 from argo_env.navigation.stencil import HEADINGS
 from argo_env.planning import open_site
 from argo_env.planning.opening import OpenedSite
-from argo_planner.service.world.description import describe
+from argo_planner.service.world.description import describe_world
 from argo_planner.service.world.meshes import Detail, floor_mesh, robot_mesh
 from argo_planner.service.world.obstacles import Obstacle, with_obstacles
 from argo_planner.service.world.previews import preview_mission
-from argo_planner.service.world.standing import standing_map
+from argo_planner.service.world.standing_map import standing_map
 
 LARGE = "generated:floors=12,size=40x40,checkpoints=500,seed=7"
 TASKS = 40
@@ -49,14 +49,16 @@ def measure_site(reference: str) -> None:
     floors = [floor.number for floor in site.site.spec.floors]
     crates = make_crates(site, floors)
     mission = make_mission(site)
-    print_line("description", lambda: [describe(site).model_dump_json().encode()])
+    print_line("description", lambda: [describe_world(site).model_dump_json().encode()])
     for detail in Detail:
         print_line(f"meshes, {detail}", lambda d=detail: [floor_mesh(site, f, d) for f in floors])
     print_line("mesh of the robot", lambda: [robot_mesh(site)])
     print_line("maps", lambda: make_maps(site, floors))
     print_line("three obstacles", lambda: [with_obstacles(site, crates).name.encode()])
     print_line("maps with them", lambda: make_maps(site, floors, crates))
-    print_line("description with them", lambda: [describe(site, crates).model_dump_json().encode()])
+    print_line(
+        "description with them", lambda: [describe_world(site, crates).model_dump_json().encode()]
+    )
     print_line(f"preview of {TASKS} tasks", lambda: [make_preview(site, mission)])
     print_line("preview with obstacles", lambda: [make_preview(site, mission, crates)])
 

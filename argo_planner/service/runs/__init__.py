@@ -1,1 +1,1 @@
-"""The runs of the service's robot: one at a time, each in a process of its own."""
+"""Runs of the service's robot: one at a time, each in a separate process."""

@@ -1,4 +1,4 @@
-"""Drives one simulation: lets time pass at its speed, does what people ask, tells what happens."""
+"""Execution of one simulation: its pace, people's requests, and messages to the service."""
 
 from collections.abc import Callable, Sequence
 
@@ -33,57 +33,71 @@ from argo_planner.service.runs.state import (
     TaskCount,
 )
 
-POSES = 30.0
-"""a second of the clock, at most"""
-STATES = 2.0
-"""likewise, of those that tell nothing but how time goes on"""
-LAG = 0.5
-"""s by which a slow machine may be late before it does not make up for it"""
+POSE_RATE = 30.0
+"""highest number of poses, and of states with new entries, per second of real time"""
+STATE_RATE = 2.0
+"""highest number of states per second of real time while there are no new entries"""
+MAX_LAG = 0.5
+"""s of real time; a simulation that lags behind by more does not catch up"""
 
-Tell = Callable[[Model], None]
+SendMessage = Callable[[Model], None]
+"""function that sends a message to the service"""
 
 
-class RunTeller(Observer):
-    """Tells the entries of a run, with their numbers. Holds the last readings."""
+class EntryReporter(Observer):
+    """Observer that sends the entries of a run to the service, with their numbers.
 
-    def __init__(self, run: str, tell: Tell, past: tuple[Entry, ...] = ()) -> None:
-        self._run, self._tell = run, tell
+    Holds the last reading of each checkpoint.
+    """
+
+    def __init__(self, run: str, send: SendMessage, past: tuple[Entry, ...] = ()) -> None:
+        """Create the reporter of a run; `past` entries are counted, but not sent."""
+        self._run, self._send = run, send
         self.count = 0
+        """number of entries"""
         self.readings: dict[int, Reading] = {}
-        self.fresh = True
-        """whether something has been told since this was last set to False"""
+        self.has_news = True
+        """whether there was an entry since this was last set to False"""
         for entry in past:
-            self._note(entry)
+            self._add(entry)
 
     def on_change(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
-        """An entry was made, and the machine has it."""
-        self._note(entry)
-        self._tell(EntryTold.model_construct(run=self._run, number=self.count, entry=entry))
+        """Send a new entry."""
+        self._add(entry)
+        self._send(EntryTold.model_construct(run=self._run, number=self.count, entry=entry))
 
-    def _note(self, entry: Entry) -> None:
+    def _add(self, entry: Entry) -> None:
         self.count += 1
-        self.fresh = True
+        self.has_news = True
         if entry.reading is not None:
             self.readings[entry.reading.checkpoint] = entry.reading
 
 
 class Pace:
-    """How fast simulated time goes. Holds where both clocks stood when that changed last."""
+    """Speed of simulated time, with both clocks' times when the speed last changed."""
 
     def __init__(self, speed: float | None, simulated: float, now: float) -> None:
-        """`speed`: simulated seconds a second; None: as fast as possible. Both times in s."""
+        """Start at a simulated and a real time, both in s.
+
+        Args:
+            speed: Simulated seconds per second; None: as fast as possible.
+            simulated: Simulated time in s.
+            now: Real time in s.
+        """
         self.speed = speed
         self._waits = False
         self._simulated, self._now = simulated, now
 
-    def change(self, speed: float | None, simulated: float, now: float) -> None:
-        """From now on time goes at that speed."""
+    def set_speed(self, speed: float | None, simulated: float, now: float) -> None:
+        """Change the speed from now on; arguments as in the constructor."""
         self.speed = speed
         self._simulated, self._now = simulated, now
 
-    def left(self, simulated: float, now: float, waits: bool) -> float:
-        """How long (s) until the next step is due; 0 or less: now. While the run `waits` for a
-        person, time goes no faster than theirs."""
+    def time_to_step(self, simulated: float, now: float, waits: bool) -> float:
+        """Return the real time until the next step is due, in s; 0 or less: it is due.
+
+        While the run `waits` for a person, simulated time is not faster than real time.
+        """
         if waits is not self._waits:
             self._waits = waits
             self._simulated, self._now = simulated, now
@@ -93,33 +107,44 @@ class Pace:
         if speed is None:
             return 0.0
         due = self._now + (simulated - self._simulated) / speed
-        if now - due > LAG:
+        if now - due > MAX_LAG:
             self._simulated, self._now = simulated, now
             return 0.0
         return due - now
 
 
 class SupervisedRun:
-    """A run that a person may take over. Holds what they have skipped since they did."""
+    """A run that a person may take over, with the tasks that the person has skipped."""
 
     def __init__(self, simulation: Simulation, skipped: Sequence[str]) -> None:
-        """`skipped`: before its process died; it counts if they have the robot still."""
+        """Wrap a simulation.
+
+        Args:
+            simulation: Simulation of the run.
+            skipped: Tasks that were skipped before the run's process died; they count only if a
+                person still has the robot.
+        """
         self._simulation = simulation
         self._skipped = [*skipped] if simulation.taken_over else []
 
     @property
     def skipped(self) -> tuple[str, ...]:
-        """The tasks whose next visit is left out when the robot is given back."""
+        """Tasks whose next visit is left out when the robot is given back."""
         return tuple(self._skipped)
 
     def skip(self, name: str) -> None:
-        """Leaves out the next visit of a task. Raises Conflict if nobody has the robot or that is
-        skipped already, NotFound for what can't be skipped."""
+        """Skip the next visit of a task.
+
+        Raises Conflict if nobody has the robot or the task is already skipped, NotFound if there is
+        no such task that can be skipped.
+        """
         if not self._simulation.taken_over:
-            raise Conflict("a task is skipped by a person who has the robot: take it over first")
+            raise Conflict(
+                "only a person who has the robot can skip a task: take the robot over first"
+            )
         task = self._simulation.spec.mission.task(name)
         if task is None or task.action is Action.START:
-            raise NotFound(f"the mission has no task '{name}' that could be skipped")
+            raise NotFound(f"the mission has no task '{name}' that can be skipped")
         if name in self._skipped:
             raise Conflict(
                 f"the next visit of '{name}' is skipped already; it is left out when the robot is "
@@ -127,23 +152,23 @@ class SupervisedRun:
             )
         self._skipped.append(name)
 
-    def done(self, mission: Mission) -> tuple[ByHand, ...]:
-        """Return what the person has done and skipped so far, to be given back with a mission.
+    def done_and_skipped(self, mission: Mission) -> tuple[ByHand, ...]:
+        """Return the tasks that the person has done and skipped, to be given back with a mission.
 
-        The mission may have been edited: a task that was skipped and is another one in it, under
-        the same name, is not skipped.
+        The mission may have been edited. A skipped task is left out of the result if the mission
+        has a different task of the same name.
         """
         old = self._simulation.spec.mission
-        skipped = (name for name in self._skipped if _same(old.task(name), mission.task(name)))
-        left_out = (ByHand(task=name, skipped=True) for name in skipped)
-        return (*self._simulation.done_by_hand, *left_out)
+        names = (name for name in self._skipped if _is_same(old.task(name), mission.task(name)))
+        skipped = (ByHand(task=name, skipped=True) for name in names)
+        return (*self._simulation.done_by_hand, *skipped)
 
-    def forget(self) -> None:
-        """The robot was given back."""
+    def clear_skipped(self) -> None:
+        """Clear the skipped tasks, after the robot was given back."""
         self._skipped.clear()
 
-    def task(self, request: asked.DoTask | asked.DriveTo | asked.MeasureAt) -> Task:
-        """Return the task that a person asks for: one of the mission, or one made for the request.
+    def requested_task(self, request: asked.DoTask | asked.DriveTo | asked.MeasureAt) -> Task:
+        """Return the task for a request: one of the mission, or one made for the request.
 
         Raises NotFound if the mission has no task of that name.
         """
@@ -162,99 +187,118 @@ class SupervisedRun:
         return Task(name=name, action=Action.MEASURE, object_id=request.checkpoint)
 
 
-def _same(old: Task | None, new: Task | None) -> bool:
-    """Return whether two tasks of one name are the same task; True if one of them is missing, which
-    is reported elsewhere."""
+def _is_same(old: Task | None, new: Task | None) -> bool:
+    """Return True if two tasks of one name have the same action, checkpoint and pose.
+
+    A missing task counts as the same, as that is reported elsewhere.
+    """
     if old is None or new is None:
         return True
     return (old.action, old.object_id, old.pose) == (new.action, new.object_id, new.pose)
 
 
 class RunDriver:
-    """One run under way. Holds the simulation's requests and its pace."""
+    """One simulation under way, with its pace and the requests to it."""
 
     def __init__(
         self,
         simulation: Simulation,
         first: RunState,
-        teller: RunTeller,
-        tell: Tell,
+        reporter: EntryReporter,
+        send: SendMessage,
         clock: Callable[[], float],
         requests: Sequence[RequestState] = (),
     ) -> None:
-        """The run as it stood `first`, and what was asked of it before; the clock tells seconds."""
+        """Create the driver of a simulation.
+
+        Args:
+            simulation: Simulation of the run.
+            first: State of the run before this simulation.
+            reporter: Reporter that observes the simulation.
+            send: Function that sends a message to the service.
+            clock: Clock of real time in s.
+            requests: Earlier requests to the run.
+        """
         self._simulation = simulation
         self._state = first.model_copy(update={"status": RunStatus.RUNNING})
-        self._teller = teller
-        self._tell = tell
+        self._reporter = reporter
+        self._send = send
         self._clock = clock
         self._pace = Pace(first.speed, simulation.now, clock())
         self._book = RequestBook(first.id, requests)
-        self._awaited: dict[str, Callable[[], bool]] = {}
+        self._effects: dict[str, Callable[[], bool]] = {}
+        """for the id of each request under way, a function that returns True once it has effect"""
         self._by_hand: str | None = None
-        self._hands = SupervisedRun(simulation, first.skipped)
-        self._pose_due = self._stated = 0.0
-        self.following: tuple[RunSpec, int] | None = None
-        """with what the run is to go on instead of this simulation, and of which revision of the
-        plan that is"""
+        """id of the request whose action by hand is under way"""
+        self._supervised = SupervisedRun(simulation, first.skipped)
+        self._pose_due = self._state_sent = 0.0
+        self.continuation: tuple[RunSpec, int] | None = None
+        """spec with which the run continues after this simulation, and its plan's revision"""
 
     @property
     def speed(self) -> float | None:
-        """Simulated seconds a second; None: as fast as possible."""
+        """Simulated seconds per second; None: as fast as possible."""
         return self._pace.speed
 
     @property
     def requests(self) -> tuple[RequestState, ...]:
-        """What was asked, the last one last."""
-        return self._book.told()
+        """Pending requests and the latest settled ones, in the order in which they came."""
+        return self._book.pending_and_latest()
 
     @property
     def over(self) -> bool:
-        """Whether the run has ended."""
+        """True if the run has ended."""
         return self._simulation.ended
 
-    def turn(self) -> float:
-        """Lets one time step pass if it is due; returns how long (s) nothing has to be done."""
+    def step_if_due(self) -> float:
+        """Simulate the next time step and send messages, as far as they are due.
+
+        Returns the time in s until this must be called again.
+        """
         waits = self._waits_for_person()
-        left = self._pace.left(self._simulation.now, self._clock(), waits)
-        if left <= 0.0:
+        time_left = self._pace.time_to_step(self._simulation.now, self._clock(), waits)
+        if time_left <= 0.0:
             self._simulation.step()
-            self._look()
+            self._settle_requests()
         now = self._clock()
         if now >= self._pose_due:
-            # Late ones are made up for, so that steps of nearly this length are all told.
-            self._pose_due = max(self._pose_due + 1.0 / POSES, now - 1.0 / POSES)
-            self._tell(self._pose())
-        due = self._stated + 1.0 / (POSES if self._teller.fresh else STATES)
-        if now >= due:
-            self.tell_state()
-        return min(left, max(0.0, due - now)) if self._teller.fresh else left
+            # The delay of a late pose is made up for, so that where time steps are nearly as long
+            # as the interval between poses, the pose of each step is sent.
+            self._pose_due = max(self._pose_due + 1.0 / POSE_RATE, now - 1.0 / POSE_RATE)
+            self._send(self._pose())
+        has_news = self._reporter.has_news
+        state_due = self._state_sent + 1.0 / (POSE_RATE if has_news else STATE_RATE)
+        if now >= state_due:
+            self.send_state()
+        return min(time_left, max(0.0, state_due - now)) if self._reporter.has_news else time_left
 
-    def take_up(self, request: RunRequest, by: str) -> None:
-        """What was asked for while the run was interrupted: to go on, which it does as soon as
-        something happens in it again, or to stop."""
+    def handle_restart_request(self, request: RunRequest, by: str) -> None:
+        """Carry out the request that came while the run was interrupted: to resume or to stop.
+
+        A request to resume is confirmed with the next entry.
+        """
         if isinstance(request, asked.EndRun) and not self.over:
-            self.ask(request, by)
+            self.handle_request(request, by)
             return
-        known = self._teller.count
-        self._progress(request.id, request.kind, by, RequestProgress.UNDER_WAY)
-        self._awaited[request.id] = lambda: self._teller.count > known or self.over
-        self._look()
+        count = self._reporter.count
+        self._set_progress(request.id, request.kind, by, RequestProgress.UNDER_WAY)
+        self._effects[request.id] = lambda: self._reporter.count > count or self.over
+        self._settle_requests()
 
-    def ask(self, request: RunRequest, by: str) -> None:
-        """Does what is asked for, or refuses it."""
+    def handle_request(self, request: RunRequest, by: str) -> None:
+        """Carry out a request, or refuse it."""
         try:
-            until = self._begin(request)
+            has_effect = self._begin(request)
         except ArgoError as error:
-            self._progress(request.id, request.kind, by, RequestProgress.REFUSED, str(error))
+            self._set_progress(request.id, request.kind, by, RequestProgress.REFUSED, str(error))
         else:
-            self._progress(request.id, request.kind, by, RequestProgress.UNDER_WAY)
-            self._awaited[request.id] = until
-        self._look()
-        self.tell_state()
+            self._set_progress(request.id, request.kind, by, RequestProgress.UNDER_WAY)
+            self._effects[request.id] = has_effect
+        self._settle_requests()
+        self.send_state()
 
-    def confirm_following(self) -> None:
-        """Confirms that the run goes on with an edited plan, as it does now."""
+    def confirm_continuation(self) -> None:
+        """Confirm the requests to continue with an edited plan, which this simulation does."""
         confirmed = {"progress": RequestProgress.CONFIRMED}
         self._settle(
             [
@@ -264,13 +308,13 @@ class RunDriver:
             ]
         )
 
-    def tell_state(self) -> None:
-        """Tells how the run stands."""
-        self._stated, self._teller.fresh = self._clock(), False
-        self._tell(StateTold.model_construct(state=self.state()))
+    def send_state(self) -> None:
+        """Send the state of the run to the service."""
+        self._state_sent, self._reporter.has_news = self._clock(), False
+        self._send(StateTold.model_construct(state=self.run_state()))
 
-    def state(self) -> RunState:
-        """How the run stands."""
+    def run_state(self) -> RunState:
+        """Return the state of the run."""
         simulation = self._simulation
         machine = simulation.machine
         progress = machine.progress()
@@ -292,11 +336,11 @@ class RunDriver:
                 "reaction": machine.reaction,
                 "rounds": dict(machine.rounds),
                 "tasks": tuple(TaskCount(**dict(tally)) for tally in progress.tallies),
-                "skipped": self._hands.skipped,
-                "readings": tuple(self._teller.readings.values()),
+                "skipped": self._supervised.skipped,
+                "readings": tuple(self._reporter.readings.values()),
                 "charge": self._charge(),
                 "silent_since": simulation.silent_since,
-                "entries": self._teller.count,
+                "entries": self._reporter.count,
                 "requests": self.requests,
                 "speed": self._pace.speed,
                 "headline": simulation.record().headline if self.over else None,
@@ -306,27 +350,29 @@ class RunDriver:
     # ---- requests
 
     def _begin(self, request: RunRequest) -> Callable[[], bool]:
-        """Begins what is asked for; returns what tells whether it is so."""
+        """Begin to carry out a request; return a function that returns True once it has effect."""
         simulation = self._simulation
         machine = simulation.machine
         match request:
             case asked.ChangeSpeed(speed=speed):
-                self._pace.change(speed, simulation.now, self._clock())
+                self._pace.set_speed(speed, simulation.now, self._clock())
             case asked.SkipTask(task=name):
-                self._hands.skip(name)
+                self._supervised.skip(name)
             case asked.GiveRobotBack():
                 if not simulation.taken_over:
-                    raise Conflict("nobody has the robot: it is given back by who took it over")
-                simulation.handle(GiveBack(self._hands.done(simulation.spec.mission)))
-                self._hands.forget()
+                    raise Conflict("nobody has the robot, so that it can't be given back")
+                by_hand = self._supervised.done_and_skipped(simulation.spec.mission)
+                simulation.handle(GiveBack(by_hand))
+                self._supervised.clear_skipped()
                 return lambda: simulation.ended or not simulation.taken_over
             case asked.GoOnEdited(mission=mission, revision=revision):
                 if not simulation.taken_over:
-                    raise Conflict("the plan is exchanged by a person who has the robot")
-                self.following = (
-                    simulation.continuation_spec(mission, self._hands.done(mission)),
-                    revision,
-                )
+                    raise Conflict(
+                        "only a person who has the robot can continue with the edited mission: "
+                        "take the robot over first"
+                    )
+                by_hand = self._supervised.done_and_skipped(mission)
+                self.continuation = simulation.continuation_spec(mission, by_hand), revision
                 return lambda: False
             case asked.TakeRobot():
                 simulation.handle(TakeOver())
@@ -342,14 +388,16 @@ class RunDriver:
                 return lambda: machine.paused and simulation.task is None
             case asked.GoOnWithRun():
                 if simulation.taken_over:
-                    raise Conflict("a person has the robot: it goes on when they give it back")
+                    raise Conflict(
+                        "a person has the robot: the mission continues when they give it back"
+                    )
                 simulation.handle(Resume())
                 return lambda: simulation.ended or not machine.paused
             case asked.StopByHandNow():
                 simulation.handle(StopByHand())
                 return lambda: simulation.task is None
             case asked.DoTask() | asked.DriveTo() | asked.MeasureAt():
-                simulation.handle(DoByHand(self._hands.task(request)))
+                simulation.handle(DoByHand(self._supervised.requested_task(request)))
                 self._by_hand = request.id
                 return lambda: simulation.by_hand is None
             case asked.CancelMission():
@@ -365,52 +413,54 @@ class RunDriver:
                 simulation.handle(InjectFault(fault))
         return lambda: True
 
-    def _look(self) -> None:
-        """Confirms what is so by now."""
+    def _settle_requests(self) -> None:
+        """Settle the requests that have taken effect, and all of them if the run has ended."""
         settled = []
-        for id, until in [*self._awaited.items()]:
+        for id, has_effect in [*self._effects.items()]:
             progress, reason = RequestProgress.CONFIRMED, None
-            if not until():
+            if not has_effect():
                 if not self.over:
                     continue
-                progress, reason = RequestProgress.FAILED, "the run has ended before"
+                progress, reason = RequestProgress.FAILED, "the run ended first"
             elif id == self._by_hand:
                 self._by_hand = None
-                progress, reason = self._outcome()
-            del self._awaited[id]
+                progress, reason = self._outcome_by_hand()
+            del self._effects[id]
             update = {"progress": progress, "reason": reason}
-            settled.append(self._book.of(id).model_copy(update=update))
+            settled.append(self._book.find(id).model_copy(update=update))
         self._settle(settled)
 
-    def _outcome(self) -> tuple[RequestProgress, str | None]:
-        """How what was done by hand last has ended."""
+    def _outcome_by_hand(self) -> tuple[RequestProgress, str | None]:
+        """Return the outcome of the last action by hand, as progress of its request, and why."""
         last = next(run for run in reversed(self._simulation.record().tasks) if run.by_hand)
         if last.outcome == "done":
             return RequestProgress.CONFIRMED, None
         return RequestProgress.FAILED, last.reason or last.outcome
 
     def _settle(self, requests: Sequence[RequestState]) -> None:
-        """Requests are over. The state that they have brought about is told first: whoever waits
-        for a request knows it then."""
+        """Update and send requests that are over, after the state that they have led to.
+
+        A client that waits for a request thus has the state when the request is over.
+        """
         if not requests:
             return
         for request in requests:
-            self._book.note(request)
-        self.tell_state()
+            self._book.update(request)
+        self.send_state()
         for request in requests:
-            self._tell(RequestTold(run=self._state.id, request=request))
+            self._send(RequestTold(run=self._state.id, request=request))
 
-    def _progress(
+    def _set_progress(
         self, id: str, kind: str, by: str, progress: RequestProgress, reason: str | None = None
     ) -> None:
-        told = RequestState(id=id, kind=kind, by=by, progress=progress, reason=reason)
-        self._book.note(told)
-        self._tell(RequestTold(run=self._state.id, request=told))
+        request = RequestState(id=id, kind=kind, by=by, progress=progress, reason=reason)
+        self._book.update(request)
+        self._send(RequestTold(run=self._state.id, request=request))
 
-    # ---- what is told
+    # ---- messages
 
     def _waits_for_person(self) -> bool:
-        """Whether nothing goes on until somebody tells the run something."""
+        """Return True if nothing happens until a person makes a request."""
         simulation, machine = self._simulation, self._simulation.machine
         drive = simulation.setup.drive
         if isinstance(drive, Powertrain) and drive.stop_pressed:

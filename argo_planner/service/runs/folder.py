@@ -1,5 +1,8 @@
-"""The runs of a service on disk: a folder each, with its order, its journal, its report, and the
-requests to it, each of which is there before the run's process hears of it."""
+"""The runs of a service on disk.
+
+Each run has a folder with its order, its journals, its report, and the requests to it. A request is
+written before the run's process gets it.
+"""
 
 import asyncio
 import os
@@ -27,38 +30,41 @@ from argo_env.run.journal import open_journal
 from argo_env.run.log import Entry
 from argo_planner.service.runs.requests import RequestState, RunOrder
 from argo_planner.service.runs.state import RunState
-from argo_planner.service.runs.worker import entries_of, journals
+from argo_planner.service.runs.worker import journal_paths, load_entries
 
 T = TypeVar("T")
 RUN_ID = r"[0-9]{8}-[0-9]{6}-[0-9a-f]{4}"
-"""what a run's id looks like: when it was begun, in UTC, and something that tells it from others"""
-_KEPT = "run.json"
-_REQUESTS = "requests"
+"""regular expression for the id of a run: its start in UTC, and a random part"""
+_RUN_FILE = "run.json"
+_REQUEST_FILE = "requests"
 _FLAGS = os.O_RDWR | os.O_APPEND | os.O_CREAT | os.O_CLOEXEC
 
 
-class KeptRun(Model):
-    """A run as it is kept: what was ordered, and how it stood when that last changed much."""
+class StoredRun(Model):
+    """Run as it is stored: its order, and its state when an essential field last changed."""
 
     order: RunOrder
     state: RunState
 
 
 class RequestFile:
-    """Lines with checksums, each a request and how far it was; the last one of an id counts."""
+    """File of lines with checksums, each the state of a request; the last line of an id counts."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
 
-    def keep(self, requests: Sequence[RequestState]) -> None:
-        """Writes down how far requests are, all at once. Raises Unavailable; then none is kept."""
+    def append(self, requests: Sequence[RequestState]) -> None:
+        """Append states of requests and sync the file.
+
+        Raises Unavailable if the file can't be written; it is then cut back to its old length.
+        """
         lines = b"".join(checked_line(request.model_dump(mode="json")) for request in requests)
         try:
             file = os.open(self._path, _FLAGS, 0o644)
             try:
                 size = os.fstat(file).st_size
                 if size > 0 and os.pread(file, 1, size - 1) != b"\n":
-                    lines = b"\n" + lines  # a process was killed before it had ended its line
+                    lines = b"\n" + lines  # a process was killed before the end of its line
                 try:
                     write_all(file, lines)
                     os.fsync(file)
@@ -72,96 +78,102 @@ class RequestFile:
         except OSError as error:
             raise Unavailable(
                 f"{self._path}: can't be written: {error.strerror}; nothing was passed on to the "
-                "run: ask again when there is room"
+                "run: try again when the disk has room"
             ) from error
 
-    def all(self) -> list[RequestState]:
-        """How far the requests were when that was kept last, in the order in which they came. What
-        is damaged is passed over. Raises Unavailable if the file can't be read."""
+    def load_requests(self) -> list[RequestState]:
+        """Return the last stored state of each request, in the order in which the requests came.
+
+        Damaged lines are skipped. Raises Unavailable if the file can't be read.
+        """
         try:
             content = self._path.read_bytes()
         except FileNotFoundError:
             return []
         except OSError as error:
             raise Unavailable(f"{self._path}: can't be read: {error.strerror}") from error
-        found: dict[str, RequestState] = {}
+        requests: dict[str, RequestState] = {}
         for line in content.split(b"\n"):
             if (data := checked_object(line)) is not None:
                 try:
                     request = RequestState.model_validate(data)
                 except ValidationError:
                     continue
-                found[request.id] = request
-        return [*found.values()]
+                requests[request.id] = request
+        return [*requests.values()]
 
 
 class RunFolder:
-    """The folder of all runs."""
+    """The folder with the folders of all runs."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
 
-    def make(self, kept: KeptRun) -> Path:
-        """The folder of a new run. Raises Unavailable if it can't be made."""
-        folder = self._path / kept.state.id
+    def create_run(self, stored: StoredRun) -> Path:
+        """Create and return the folder of a new run; raises Unavailable if that fails."""
+        folder = self._path / stored.state.id
         try:
             folder.mkdir(parents=True)
             sync_folder(self._path)
         except OSError as error:
-            raise Unavailable(f"{folder}: can't be made: {error.strerror}") from error
-        self.keep(kept)
+            raise Unavailable(f"{folder}: can't be created: {error.strerror}") from error
+        self.store(stored)
         return folder
 
-    def keep(self, kept: KeptRun) -> None:
-        """Writes down how a run stands. Raises Unavailable."""
-        path = self.path(kept.state.id) / _KEPT
+    def store(self, stored: StoredRun) -> None:
+        """Write a run's order and state; raises Unavailable if that fails."""
+        path = self.run_path(stored.state.id) / _RUN_FILE
         try:
-            write_atomically(path, kept.model_dump_json())
+            write_atomically(path, stored.model_dump_json())
             sync_folder(path.parent)
         except OSError as error:
             raise Unavailable(f"{path}: can't be written: {error.strerror}") from error
 
-    def all(self) -> list[KeptRun]:
-        """The runs, the newest first."""
-        found: list[KeptRun] = []
+    def load_runs(self) -> list[StoredRun]:
+        """Return the stored runs, the newest first; damaged ones are left out."""
+        runs: list[StoredRun] = []
         with suppress(FileNotFoundError):
             for name in os.listdir(self._path):
                 if re.fullmatch(RUN_ID, name):
                     with suppress(NotFound):
-                        found.append(self.kept(name))
-        # More than one may have been begun within a second.
-        return sorted(found, key=lambda kept: kept.state.begun, reverse=True)
+                        runs.append(self.load_run(name))
+        # Not by id: several runs may have been started within one second.
+        return sorted(runs, key=lambda run: run.state.begun, reverse=True)
 
-    def kept(self, id: str) -> KeptRun:
-        """How a run stands. Raises NotFound if there is none, or that can't be read."""
+    def load_run(self, id: str) -> StoredRun:
+        """Return a stored run; raises NotFound if there is none, or it can't be read."""
         try:
-            content = (self.path(id) / _KEPT).read_bytes()
-            return KeptRun.model_validate_json(content)
+            content = (self.run_path(id) / _RUN_FILE).read_bytes()
+            return StoredRun.model_validate_json(content)
         except (OSError, ValidationError):
-            raise NotFound(f"there is no run {id}, or what is kept of it is damaged") from None
+            raise NotFound(f"there is no run {id}, or its stored state is damaged") from None
 
-    def path(self, id: str) -> Path:
-        """The folder of a run. Raises NotFound for what can't be a run's id, or is a link."""
+    def run_path(self, id: str) -> Path:
+        """Return the folder of a run; raises NotFound if the id is invalid or names a link."""
         path = self._path / id
         if not re.fullmatch(RUN_ID, id) or os.path.islink(path):
             raise NotFound(f"there is no run {id[:40]!r}")
         return path
 
-    def entries(self, id: str) -> tuple[Entry, ...]:
-        """What has happened in a run whose process has ended. Raises NotFound if there is no such
-        run, ArgoError if a journal of it can't be read."""
-        self.kept(id)
-        return entries_of(self.path(id))
+    def load_entries(self, id: str) -> tuple[Entry, ...]:
+        """Return the log of a run whose process has ended.
 
-    def requests(self, id: str) -> RequestFile:
-        """Where the requests to a run are kept."""
-        return RequestFile(self.path(id) / _REQUESTS)
+        Raises NotFound if there is no such run, ArgoError if one of its journals can't be read.
+        """
+        self.load_run(id)
+        return load_entries(self.run_path(id))
 
-    def report(self, id: str, file: str) -> bytes | None:
-        """A file of the report of a run; None if it is not there. Raises NotFound if there is no
-        such run, Unavailable if the file can't be read."""
-        self.kept(id)
-        path = self.path(id) / file
+    def request_file(self, id: str) -> RequestFile:
+        """Return the file with the requests to a run."""
+        return RequestFile(self.run_path(id) / _REQUEST_FILE)
+
+    def read_report_file(self, id: str, file: str) -> bytes | None:
+        """Return a file of the report of a run; None if it does not exist.
+
+        Raises NotFound if there is no such run, Unavailable if the file can't be read.
+        """
+        self.load_run(id)
+        path = self.run_path(id) / file
         try:
             return path.read_bytes()
         except FileNotFoundError:
@@ -170,11 +182,14 @@ class RunFolder:
             raise Unavailable(f"{path}: can't be read: {error.strerror}") from error
 
     def last_journal(self, id: str) -> Path | None:
-        """The journal of the last plan of a run; None if it ended before there was one."""
-        return next(reversed(journals(self.path(id))), None)
+        """Return the newest journal of a run; None if it ended before there was one."""
+        return next(reversed(journal_paths(self.run_path(id))), None)
 
     def has_ended(self, id: str) -> bool:
-        """Whether the last plan of a run has come to its end. Raises ArgoError likewise."""
+        """Return True if the last journal of a run ends with the run's end.
+
+        Raises ArgoError if the journal can't be read.
+        """
         last = self.last_journal(id)
         if last is None:
             return False
@@ -183,16 +198,16 @@ class RunFolder:
 
 
 class DiskThread:
-    """Does work on the disk beside the event loop, one after the other. Holds the thread."""
+    """A thread that does disk work outside the event loop, one call after the other."""
 
     def __init__(self) -> None:
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="runs-disk")
 
-    async def do(self, work: Callable[..., T], *arguments: Any) -> T:
-        """What comes of the work, once all that was to be done before it has been."""
+    async def run(self, work: Callable[..., T], *arguments: Any) -> T:
+        """Return the result of a call, which is made after all earlier ones."""
         loop = asyncio.get_running_loop()
         return await loop.run_in_executor(self._thread, partial(work, *arguments))
 
     def close(self) -> None:
-        """Nothing more is to be done; what was is done first."""
+        """Finish the calls that were already requested, and end the thread."""
         self._thread.shutdown()

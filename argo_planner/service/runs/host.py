@@ -1,4 +1,4 @@
-"""The one run of the service's robot: begun, asked, followed, gone on with."""
+"""The runs of the service's robot: starting, resuming, requests and followers."""
 
 import asyncio
 import secrets
@@ -12,9 +12,9 @@ from argo_compiler.base.errors import ArgoError, Conflict, NotFound
 from argo_compiler.base.model import Model
 from argo_env.run.log import Entry
 from argo_planner.service.rooms.mailbox import Mailbox, MailboxClosed
-from argo_planner.service.runs.folder import DiskThread, KeptRun, RunFolder
-from argo_planner.service.runs.pipe import BrokenOff, RobotText
-from argo_planner.service.runs.present import PresentRun
+from argo_planner.service.runs.current_run import CurrentRun
+from argo_planner.service.runs.folder import DiskThread, RunFolder, StoredRun
+from argo_planner.service.runs.pipe import RobotText, WorkerFailed
 from argo_planner.service.runs.process import RunProcess
 from argo_planner.service.runs.requests import (
     EndRun,
@@ -26,53 +26,55 @@ from argo_planner.service.runs.requests import (
 )
 from argo_planner.service.runs.state import EntryList, RequestTold, RunState, RunStatus, StateTold
 
-_REPORT_LOOKS = 50
+_REPORT_ATTEMPTS = 50
+"""number of times that a report which is being written is looked for"""
 _REPORT_PAUSE = 0.2
-"""s between looks whether a report is there"""
+"""s between these attempts"""
 
 
 class AfterRestart(StrEnum):
-    """What becomes of a run that was under way when the service was killed."""
+    """Handling of a run that was under way when the service was killed."""
 
     GO_ON = "go-on"
+    """the run is resumed"""
     WAIT = "wait"
-    """for a person, who asks for it to go on"""
+    """the run waits until a person resumes or stops it"""
 
 
 class RobotLine:
-    """The connection of the robot, if there is one. Holds the texts that wait for it."""
+    """The connection of a remote robot, with the texts that wait to be sent; there may be none."""
 
     def __init__(self) -> None:
         self._mailbox: Mailbox | None = None
 
     def connect(self) -> Mailbox:
-        """A robot has connected: the texts for it. One that was connected before is let go."""
+        """Replace the robot's connection; return the mailbox with the texts for the robot."""
         self.close("the robot has connected again")
         self._mailbox = Mailbox()
         return self._mailbox
 
-    def is_that_of(self, mailbox: Mailbox) -> bool:
-        """Whether it is still the connection that came with these texts."""
+    def has_mailbox(self, mailbox: Mailbox) -> bool:
+        """Return True if the mailbox is that of the present connection."""
         return mailbox is self._mailbox
 
     def post(self, text: str) -> None:
-        """A text for the robot, which nobody hears while it is not connected."""
+        """Post a text for the robot; it is dropped if the robot is not connected."""
         if self._mailbox is not None:
             self._mailbox.post(text)
 
     def disconnect(self, mailbox: Mailbox) -> None:
-        """A connection has ended."""
+        """Remove the connection with this mailbox, if it is the present one."""
         if mailbox is self._mailbox:
             self._mailbox = None
 
     def close(self, why: str) -> None:
-        """Lets the robot go."""
+        """Close the robot's mailbox, with a reason for people."""
         if self._mailbox is not None:
             self._mailbox.close(MailboxClosed(why))
 
 
 class RunHost:
-    """The run of the service's robot. Holds its process, and the line to a robot elsewhere."""
+    """The runs of the service's robot, with the current run's process and the line to the robot."""
 
     def __init__(
         self,
@@ -81,57 +83,70 @@ class RunHost:
         clock: Callable[[], datetime],
         foxglove: int | None = None,
     ) -> None:
-        """`foxglove`: the port at which runs are shown live on this machine; None: they are not."""
+        """Create the host; `open` must be called before anything else.
+
+        Args:
+            folder: Folder of all runs.
+            after_restart: Handling of a run that was under way when the service was killed.
+            clock: Function that returns the time at which a run starts.
+            foxglove: Port of this machine at which runs are shown live; None: they are not.
+        """
         self._folder = RunFolder(folder)
         self._disk = DiskThread()
         self._after_restart = after_restart
         self._clock = clock
         self._foxglove = foxglove
-        self._present = PresentRun(self._folder, self._disk)
+        self._current = CurrentRun(self._folder, self._disk)
         self._worker: RunProcess | None = None
+        """process of the current run; None: it has none"""
         self._workers: set[RunProcess] = set()
-        """this one, and those that still write the report of a run before"""
-        self._turn = asyncio.Lock()
-        """held while the present run is begun, asked, heard or lost, so that requests are kept and
-        passed on in the order in which they come, and the end of one run is not taken for that of
-        the next"""
+        """this process, and those that are still writing the report of an earlier run"""
+        self._lock = asyncio.Lock()
+        """held while the current run is started, gets a request or messages, or loses its process
+
+        Requests are thus stored and passed on in the order in which they come, and the end of one
+        run is not taken for the end of the next one.
+        """
         self.robot = RobotLine()
-        self._read: tuple[str, tuple[Entry, ...]] | None = None
-        """a run before that was read last, with its entries: who looks at it reads it in parts"""
+        self._last_log: tuple[str, tuple[Entry, ...]] | None = None
+        """id and log of the earlier run that was read last, as clients read a log in parts"""
 
     @property
     def state(self) -> RunState | None:
-        """How the last run stands; None: there was none."""
-        return self._present.state
+        """State of the current run; None: no run was ever started."""
+        return self._current.state
 
     @property
     def folder(self) -> RunFolder:
-        """The runs on disk."""
+        """Folder of the runs on disk."""
         return self._folder
 
     async def open(self) -> None:
-        """Finds the last run. One that had not ended goes on, or waits for a person."""
-        async with self._turn:
-            runs = await self._disk.do(self._folder.all)
+        """Load the last run; one that had not ended is resumed, or waits for a person."""
+        async with self._lock:
+            runs = await self._disk.run(self._folder.load_runs)
             if not runs:
                 return
-            present, found = self._present, runs[0]
-            requests = self._folder.requests(found.state.id)
-            present.become(found, await self._disk.do(requests.all))
-            await self._lose("the service has ended while it was under way", may_stop=True)
+            current, last = self._current, runs[0]
+            file = self._folder.request_file(last.state.id)
+            current.replace_run(last, await self._disk.run(file.load_requests))
+            await self._handle_loss("the service has ended during the run", may_stop=True)
             if self._after_restart is AfterRestart.GO_ON and (
-                present.kept.state.status is RunStatus.INTERRUPTED
+                current.stored.state.status is RunStatus.INTERRUPTED
             ):
-                await self._begin()
+                await self._start_process()
 
     async def start(self, order: RunOrder, by: str) -> RunState:
-        """Begins a run. Raises Conflict, with who holds the robot, if one is not over yet."""
-        async with self._turn:
+        """Start a run.
+
+        Raises Conflict, which names the author of the current run, if that is not over yet.
+        """
+        async with self._lock:
             state = self.state
             if state is not None and state.status is not RunStatus.ENDED:
                 raise Conflict(
                     f"{state.by} has begun run {state.id} of '{state.name}' at "
-                    f"{state.begun:%H:%M:%S} UTC, and it is {state.status}: wait for its end, or "
+                    f"{state.begun:%H:%M:%S} UTC, and it is {state.status}: wait until it ends, or "
                     "stop it"
                 )
             now = self._clock()
@@ -149,205 +164,233 @@ class RunHost:
                 speed=order.speed,
                 max_duration=order.mission.max_duration,
             )
-            kept = KeptRun(order=order, state=first)
-            await self._disk.do(self._folder.make, kept)
-            self._worker = None  # that of the run before tells nothing any more
-            self._present.become(kept)
-            await self._begin()
+            stored = StoredRun(order=order, state=first)
+            await self._disk.run(self._folder.create_run, stored)
+            self._worker = None  # the process of the earlier run sends nothing that matters now
+            self._current.replace_run(stored)
+            await self._start_process()
             return first
 
-    async def ask(self, run: str, request: RunRequest, by: str) -> RequestState:
-        """Passes a request on, once it is kept; sent again it does nothing twice. What comes of it
-        is told.
+    async def send_request(self, run: str, request: RunRequest, by: str) -> RequestState:
+        """Store a request and pass it on to the run; return its state.
 
-        Raises NotFound if the run is another one, Conflict if it is over or can't be asked that
-        now, Unavailable if the request can't be kept, or the process takes nothing.
+        Followers get the further states of the request. A request that is sent again has no further
+        effect.
+
+        Raises:
+            NotFound: The run is not the current one.
+            Conflict: The run is over or can't take this request now, or another request has its id.
+            Unavailable: The request can't be stored, or too many messages wait for the process.
         """
-        async with self._turn:
-            state, worker = self._present.of(run), self._worker
-            if (known := self._present.book.known(request, by)) is not None:
+        async with self._lock:
+            state, worker = self._current.require_run(run), self._worker
+            if (known := self._current.book.find_repeated(request, by)) is not None:
                 return known
             if state.status is RunStatus.ENDED:
                 raise Conflict(f"run {run} is over")
             interrupted = state.status is RunStatus.INTERRUPTED
             if interrupted and not isinstance(request, GoOnWithRun | EndRun):
                 raise Conflict(
-                    f"run {run} is interrupted ({state.problem}): it can be asked for `go_on` or "
-                    "`stop` only"
+                    f"run {run} is interrupted ({state.problem}): only the requests `go_on` and "
+                    "`stop` are possible"
                 )
             if worker is not None:
-                worker.require_room()
+                worker.require_capacity()
             elif not interrupted:
-                raise Conflict(f"run {run} is {state.status}: ask again in a moment")
+                raise Conflict(f"run {run} is {state.status}: try again in a moment")
             accepted = RequestState(
                 id=request.id, kind=request.kind, by=by, progress=RequestProgress.ACCEPTED
             )
-            await self._present.accept(accepted)
+            await self._current.accept_request(accepted)
             if interrupted:
-                await self._begin((request, by))
+                await self._start_process((request, by))
             elif worker is not None:
                 worker.send((request, by))
             return accepted
 
-    def request(self, run: str, id: str) -> RequestState:
-        """How far a request is. Raises NotFound."""
-        self._present.of(run)
-        return self._present.book.of(id)
+    def find_request(self, run: str, id: str) -> RequestState:
+        """Return the state of a request to the current run.
 
-    def of(self, run: str) -> RunState:
-        """How the present run stands. Raises NotFound if that is another one."""
-        return self._present.of(run)
+        Raises NotFound if the run is not the current one, or has no such request.
+        """
+        self._current.require_run(run)
+        return self._current.book.find(id)
 
-    # ---- looking
+    def require_current(self, run: str) -> RunState:
+        """Return the state of the current run; raises NotFound if the id is that of another run."""
+        return self._current.require_run(run)
 
-    async def all(self) -> list[RunState]:
-        """The present run, and those before it."""
-        runs = [kept.state for kept in await self._disk.do(self._folder.all)]
+    # ---- states, logs and reports
+
+    async def list_runs(self) -> list[RunState]:
+        """Return the states of all runs, the newest first."""
+        runs = [run.state for run in await self._disk.run(self._folder.load_runs)]
         state = self.state
-        return runs if state is None else [state, *(one for one in runs if one.id != state.id)]
+        return runs if state is None else [state, *(run for run in runs if run.id != state.id)]
 
-    async def read(self, run: str) -> RunState:
-        """How a run stands, or how it ended. Raises NotFound."""
-        if self._is_present(run):
-            return self._present.kept.state
-        return (await self._disk.do(self._folder.kept, run)).state
+    async def read_state(self, run: str) -> RunState:
+        """Return the state of any run; raises NotFound if there is no such run."""
+        if self._is_current(run):
+            return self._current.stored.state
+        return (await self._disk.run(self._folder.load_run, run)).state
 
-    async def history(self, run: str, since: int, most: int) -> EntryList:
-        """What has happened in a run after the first `since` entries. Raises NotFound."""
-        if self._is_present(run):
-            return self._present.entries(since, most)
-        if self._read is None or self._read[0] != run:
-            self._read = run, await self._disk.do(self._folder.entries, run)
-        entries = self._read[1]
+    async def list_entries(self, run: str, since: int, most: int) -> EntryList:
+        """Return at most `most` entries of a run's log after the first `since` ones.
+
+        Raises NotFound if there is no such run.
+        """
+        if self._is_current(run):
+            return self._current.list_entries(since, most)
+        if self._last_log is None or self._last_log[0] != run:
+            self._last_log = run, await self._disk.run(self._folder.load_entries, run)
+        entries = self._last_log[1]
         return EntryList(count=len(entries), entries=entries[since : since + most])
 
-    async def report(self, run: str, file: str) -> bytes:
-        """A file of the report of a run; of one that has just ended, once it is made. Raises
-        NotFound, with why it is not there and what there is instead."""
-        for _ in range(_REPORT_LOOKS):
-            if (content := await self._disk.do(self._folder.report, run, file)) is not None:
+    async def read_report_file(self, run: str, file: str) -> bytes:
+        """Return a file of the report of a run; wait for it while the report is being written.
+
+        Raises NotFound if there is none, with the reason and what there is instead.
+        """
+        for _ in range(_REPORT_ATTEMPTS):
+            content = await self._disk.run(self._folder.read_report_file, run, file)
+            if content is not None:
                 return content
-            making = any(worker.run == run for worker in self._workers)
-            if not making or (await self.read(run)).status is not RunStatus.ENDED:
+            is_writing = any(worker.run == run for worker in self._workers)
+            if not is_writing or (await self.read_state(run)).status is not RunStatus.ENDED:
                 break
             await asyncio.sleep(_REPORT_PAUSE)
-        journal = await self._disk.do(self._folder.last_journal, run)
-        raise _missing_report(await self.read(run), file, journal, making)
+        journal = await self._disk.run(self._folder.last_journal, run)
+        raise _missing_report_error(await self.read_state(run), file, journal, is_writing)
 
-    def follow(self, client: str, since: int | None = None) -> Mailbox:
-        """Somebody follows the robot's runs: first how it stands, then the entries after that
-        number of the present run, then all that happens."""
-        return self._present.follow(client, since)
+    def subscribe(self, client: str, since: int | None = None) -> Mailbox:
+        """Add a follower of the robot's runs and return its mailbox.
 
-    def leave(self, client: str) -> None:
-        """Somebody has gone."""
-        self._present.leave(client)
+        The mailbox gets the state of the current run, its entries after number `since` (None: all
+        of them), then all further messages.
+        """
+        return self._current.subscribe(client, since)
 
-    def hear_robot(self, line: Mailbox, text: str) -> None:
-        """The robot on that line tells something. While no run is under way nobody hears it."""
-        if self._worker is not None and self.robot.is_that_of(line):
+    def unsubscribe(self, client: str) -> None:
+        """Remove a follower."""
+        self._current.unsubscribe(client)
+
+    def receive_from_robot(self, line: Mailbox, text: str) -> None:
+        """Pass a text of the robot on to the run.
+
+        It is dropped if the run has no process or the robot has connected again on another line.
+        """
+        if self._worker is not None and self.robot.has_mailbox(line):
             self._worker.send_text(text)
 
     async def close(self) -> None:
-        """Ends the process; the journal stays, and the run can go on from it."""
-        async with self._turn:
+        """End all processes and connections; the run can be resumed from its journal."""
+        async with self._lock:
             self._worker = None
         while self._workers:
-            await asyncio.to_thread(next(iter(self._workers)).end)
+            await asyncio.to_thread(next(iter(self._workers)).kill)
         await asyncio.to_thread(self._disk.close)
-        self._present.close("the service ends")
+        self._current.close("the service ends")
         self.robot.close("the service ends")
 
-    def _is_present(self, run: str) -> bool:
+    def _is_current(self, run: str) -> bool:
         return self.state is not None and self.state.id == run
 
     # ---- the process
 
-    async def _begin(self, asked: tuple[RunRequest, str] | None = None) -> None:
-        """Begins the process of the run, which goes on from its journal if there is one. It is told
-        what was `asked` for while the run was interrupted."""
-        order, state = self._present.kept.order, self._present.kept.state
-        requests = self._present.book.told()
+    async def _start_process(self, request: tuple[RunRequest, str] | None = None) -> None:
+        """Start the process of the current run, which resumes from its journal if there is one.
+
+        `request` came while the run was interrupted, with its author.
+        """
+        order, state = self._current.stored.order, self._current.stored.state
+        requests = self._current.book.pending_and_latest()
         update = {"status": RunStatus.PREPARING, "problem": None, "requests": requests}
         first = state.model_copy(update=update)
-        await self._present.take([StateTold(state=first)])
-        path = self._folder.path(first.id)
+        await self._current.apply_messages([StateTold(state=first)])
+        path = self._folder.run_path(first.id)
         loop = asyncio.get_running_loop()
+        arguments = path, order, first, self._foxglove, request
         try:
-            worker = await asyncio.to_thread(RunProcess, path, order, first, self._foxglove, asked)
+            worker = await asyncio.to_thread(RunProcess, *arguments)
         except OSError as error:
-            await self._lose(f"its process can't begin: {error.strerror}", may_stop=False)
+            problem = f"its process can't be started: {error.strerror}"
+            await self._handle_loss(problem, may_stop=False)
             return
         self._worker = worker
         self._workers.add(worker)
-        worker.read(
+        worker.start_reading(
             lambda messages: asyncio.run_coroutine_threadsafe(
-                self._hear(worker, messages), loop
+                self._handle_messages(worker, messages), loop
             ).result(),
-            lambda: asyncio.run_coroutine_threadsafe(self._died(worker), loop).result(),
+            lambda: asyncio.run_coroutine_threadsafe(self._handle_exit(worker), loop).result(),
         )
 
-    async def _hear(self, worker: RunProcess, messages: Sequence[Model]) -> None:
-        """The process tells something; one of a run before is not listened to."""
+    async def _handle_messages(self, worker: RunProcess, messages: Sequence[Model]) -> None:
+        """Apply messages of a process; of an earlier run's process only its failure is noted."""
         for message in messages:
             match message:
-                case BrokenOff(problem=problem):
+                case WorkerFailed(problem=problem):
                     worker.problem = problem
                 case RobotText(text=text) if worker is self._worker:
                     self.robot.post(text)
-        async with self._turn:
+        async with self._lock:
             if worker is self._worker:
-                await self._present.take(messages)
+                await self._current.apply_messages(messages)
 
-    async def _died(self, worker: RunProcess) -> None:
-        """The process has ended: with the run, or before."""
+    async def _handle_exit(self, worker: RunProcess) -> None:
+        """Handle the end of a process, with the run or before the run's end."""
         try:
-            async with self._turn:
+            async with self._lock:
                 if worker is self._worker:
                     self._worker = None
-                    problem = worker.problem or f"its process has ended ({worker.how_it_ended()})"
-                    await self._lose(problem, may_stop=not worker.for_stop)
+                    problem = worker.problem or f"its process has ended ({worker.exit_reason()})"
+                    await self._handle_loss(problem, may_stop=not worker.for_stop)
         finally:
             self._workers.discard(worker)
 
-    async def _lose(self, problem: str, may_stop: bool) -> None:
-        """The run has no process: see `_left_behind`."""
-        present, ended = self._present, False
-        run = present.kept.state.id
+    async def _handle_loss(self, problem: str, may_stop: bool) -> None:
+        """Set and publish the state of the current run, whose process is gone (`_settle_loss`).
+
+        If a person has asked for the run to stop, another process is started that stops it.
+        """
+        current, ended = self._current, False
+        run = current.stored.state.id
         damaged = False
         try:
-            await present.read_entries()
-            ended = await self._disk.do(self._folder.has_ended, run)
+            await current.load_missing_entries()
+            ended = await self._disk.run(self._folder.has_ended, run)
         except ArgoError as error:
             damaged = True
             if str(error) not in problem:
                 problem = f"{problem}; {error}"
-        left = _left_behind(
-            present.kept.state,
-            present.book.pending,
+        loss = _settle_loss(
+            current.stored.state,
+            current.book.pending,
             problem,
-            begun=damaged or present.count > 0,
+            begun=damaged or current.entry_count > 0,
             ended=ended,
             may_stop=may_stop,
         )
-        state = left.state.model_copy(update={"requests": present.book.told(left.settled)})
-        settled = [RequestTold(run=run, request=request) for request in left.settled]
-        await present.take([StateTold(state=state), *settled])
-        if left.stop is not None:
-            await self._begin((EndRun(id=left.stop.id), left.stop.by))
+        requests = current.book.pending_and_latest(loss.settled)
+        state = loss.state.model_copy(update={"requests": requests})
+        settled = [RequestTold(run=run, request=request) for request in loss.settled]
+        await current.apply_messages([StateTold(state=state), *settled])
+        if loss.stop is not None:
+            await self._start_process((EndRun(id=loss.stop.id), loss.stop.by))
 
 
 @dataclass(frozen=True)
-class _LeftBehind:
-    """How a run stands without its process, and what came of what was asked of it."""
+class _LossOutcome:
+    """The state of a run after the loss of its process."""
 
     state: RunState
     settled: tuple[RequestState, ...]
+    """requests that are over"""
     stop: RequestState | None
-    """somebody has asked for it to stop, and another process is to do that"""
+    """request to stop the run that another process is to carry out; None: there is none"""
 
 
-def _left_behind(
+def _settle_loss(
     state: RunState,
     pending: Sequence[RequestState],
     problem: str,
@@ -355,10 +398,18 @@ def _left_behind(
     begun: bool,
     ended: bool,
     may_stop: bool,
-) -> _LeftBehind:
-    """`problem` is why the process is gone; whether the run had `begun`, and `ended`, is what its
-    journals say. Another process may be begun to stop it, unless that was tried (`may_stop`)."""
-    stop = next((one for one in pending if one.kind == "stop"), None)
+) -> _LossOutcome:
+    """Return the state of a run after the loss of its process, and the requests settled by that.
+
+    Args:
+        state: State of the run before.
+        pending: Requests that are not over.
+        problem: Why the process is gone.
+        begun: Whether the journals have an entry, or can't be read.
+        ended: Whether the run has ended, by its journals.
+        may_stop: Whether another process may be started to stop the run, as none has tried yet.
+    """
+    stop = next((request for request in pending if request.kind == "stop"), None)
     if ended or state.status is RunStatus.ENDED:
         status, why = RunStatus.ENDED, state.problem
     elif not begun or (stop is not None and not may_stop):
@@ -367,29 +418,35 @@ def _left_behind(
         status, why = RunStatus.INTERRUPTED, problem
     over = status is RunStatus.ENDED
     settled = []
-    for one in pending:
-        if one.kind == "stop" and over:
-            done = {"progress": RequestProgress.CONFIRMED, "reason": why}
+    for request in pending:
+        if request.kind == "stop" and over:
+            outcome = {"progress": RequestProgress.CONFIRMED, "reason": why}
         else:
-            done = {"progress": RequestProgress.FAILED, "reason": why or "the run has ended before"}
-        if over or one is not stop:
-            settled.append(one.model_copy(update=done))
+            outcome = {"progress": RequestProgress.FAILED, "reason": why or "the run ended first"}
+        if over or request is not stop:
+            settled.append(request.model_copy(update=outcome))
     update = {"status": status, "problem": why, "moving": False, "task": None, "by_hand": False}
-    return _LeftBehind(state.model_copy(update=update), tuple(settled), None if over else stop)
+    return _LossOutcome(state.model_copy(update=update), tuple(settled), None if over else stop)
 
 
-def _missing_report(state: RunState, file: str, journal: Path | None, making: bool) -> NotFound:
-    """Says it. `journal` is the last one of the run; `making`: its process is still there."""
-    entries = f"what has happened is in /api/runs/{state.id}/entries"
+def _missing_report_error(
+    state: RunState, file: str, journal: Path | None, is_writing: bool
+) -> NotFound:
+    """Return the error for a report file that does not exist, with the reason and a way out.
+
+    `journal` is the last one of the run; `is_writing` is True if the run's process still exists.
+    """
+    entries = f"its log is in /api/runs/{state.id}/entries"
     if state.status is not RunStatus.ENDED:
-        why = f"it is {state.status}, and the report is made when it has ended; {entries} so far"
-    elif making:
-        why = "it has just ended, and the report is being made: ask again in a moment"
+        why = f"it is {state.status}, and the report is written when it has ended; {entries}"
+    elif is_writing:
+        why = "it has just ended, and the report is being written: try again in a moment"
     elif journal is None or state.entries == 0:
-        why = f"it ended before anything had happened ({state.problem}): begin another one"
+        why = f"it ended before anything had happened ({state.problem}): start another run"
     else:
         why = (
-            f"its process ended before the report was made, or it was deleted; {entries}, and "
-            f"`argo resume {journal} --report FOLDER`, on the machine of the service, makes it"
+            "its process ended before the report was written, or the report was deleted; "
+            f"{entries}, and `argo resume {journal} --report FOLDER`, on the machine of the "
+            "service, writes the report"
         )
     return NotFound(f"run {state.id} has no {file}: {why}")

@@ -1,4 +1,4 @@
-"""The pictures that readings of a run come from."""
+"""Pictures from which the readings of a run were made."""
 
 import logging
 from pathlib import Path
@@ -13,42 +13,45 @@ from argo_env.world.world import Shot, World
 _log = logging.getLogger(__name__)
 
 
-def picture_of(folder: Path, checkpoint: int, t: float) -> Path:
-    """The file with the picture of what was read at a checkpoint at a time (s)."""
+def picture_path(folder: Path, checkpoint: int, t: float) -> Path:
+    """Return the path of the picture for the reading of a checkpoint at time `t`, in s."""
     return folder / f"reading-{checkpoint}-{round(1000 * t)}.png"
 
 
-class PictureKeeper(Observer):
-    """Keeps the last picture of each reading of a run in its folder. Holds the last one taken."""
+class PictureWriter(Observer):
+    """Observer that writes the picture of each reading into the folder of the run.
+
+    Holds the last picture that was taken.
+    """
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._last: Shot | None = None
 
     def on_begin(self, setup: RunSetup, spec: RunSpec) -> None:  # noqa: ARG002
-        """Sees the pictures from now on; whoever sees them already goes on to."""
+        """Receive the pictures of the world; an earlier receiver still gets them, too."""
         if not isinstance(setup.world, World):
             return
-        before = setup.world.on_shot
+        earlier_receiver = setup.world.on_shot
 
-        def seen(shot: Shot) -> None:
+        def receive_shot(shot: Shot) -> None:
             self._last = shot
-            if before is not None:
-                before(shot)
+            if earlier_receiver is not None:
+                earlier_receiver(shot)
 
-        setup.world.on_shot = seen
+        setup.world.on_shot = receive_shot
 
     def on_change(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
-        """With a reading, its picture is kept. A run goes on where that is not possible."""
+        """Write the picture of the entry's reading; a file that can't be written is only logged."""
         if entry.reading is None or self._last is None:
             return
-        import cv2  # there is a picture, so the sensor has it
+        import cv2  # there is a picture, so the sensor has imported it
 
         reading, shot, self._last = entry.reading, self._last, None
-        path = picture_of(self._folder, reading.checkpoint, reading.t)
+        path = picture_path(self._folder, reading.checkpoint, reading.t)
         try:
-            made, content = cv2.imencode(".png", shot.pixels[..., ::-1])
-            if made:
+            encoded, content = cv2.imencode(".png", shot.pixels[..., ::-1])
+            if encoded:
                 path.write_bytes(content.tobytes())
         except OSError as error:
             _log.warning("%s: can't be written: %s", path, error.strerror)

@@ -1,4 +1,4 @@
-"""The pipe between the service and the worker: requests of people, texts of the robot, news."""
+"""The pipe between the service and the process of a run, and the messages that only it carries."""
 
 from collections import deque
 from collections.abc import Sequence
@@ -10,58 +10,57 @@ from argo_planner.service.runs.requests import RunRequest
 
 
 class RobotText(Model):
-    """What the robot's line carries, from one end to the other."""
+    """Text from a remote robot to the run, or from the run to the robot."""
 
     text: str
 
 
-class BrokenOff(Model):
-    """The process can't go on with the run, or could not begin it; it ends now."""
+class WorkerFailed(Model):
+    """Last message of a process that can't start or continue the run."""
 
     problem: str
 
 
 class WorkerPipe:
-    """Tells the service what happens, and holds what has come from it."""
+    """The worker's end of the pipe, with the received messages that were not taken yet."""
 
     def __init__(self, pipe: Connection) -> None:
         self._pipe = pipe
         self._requests: deque[tuple[RunRequest, str]] = deque()
         self._texts: list[str] = []
 
-    def tell(self, message: Model) -> None:
-        """Tells the service."""
+    def send_to_service(self, message: Model) -> None:
         self._pipe.send(message)
 
-    def wait(self, seconds: float) -> None:
-        """Waits until something has come, that long at most."""
+    def wait_for_message(self, timeout: float) -> None:
+        """Wait until a message arrives, at most `timeout` s; not at all if a request is waiting."""
         if not self._requests:
-            self._take(seconds)
+            self._receive(timeout)
 
-    def requests(self) -> Sequence[tuple[RunRequest, str]]:
-        """The requests that have come, with who asks."""
-        self._take(0.0)
-        found = tuple(self._requests)
+    def take_requests(self) -> Sequence[tuple[RunRequest, str]]:
+        """Return the requests since the last call, each with its author."""
+        self._receive(0.0)
+        requests = tuple(self._requests)
         self._requests.clear()
-        return found
+        return requests
 
-    # the link to a robot that is somewhere else
+    # The link to a remote robot (`argo_env.remote.channel`)
 
     def send(self, message: str) -> None:
-        """A text for the robot."""
+        """Send a text to the robot."""
         self._pipe.send(RobotText(text=message))
 
     def receive(self) -> Sequence[str]:
-        """The texts of the robot that have come."""
-        self._take(0.0)
-        found, self._texts = self._texts, []
-        return found
+        """Return the texts that have come from the robot since the last call."""
+        self._receive(0.0)
+        texts, self._texts = self._texts, []
+        return texts
 
-    def _take(self, seconds: float) -> None:
-        while self._pipe.poll(max(0.0, seconds)):
-            came: Any = self._pipe.recv()
-            if isinstance(came, RobotText):
-                self._texts.append(came.text)
+    def _receive(self, timeout: float) -> None:
+        while self._pipe.poll(max(0.0, timeout)):
+            message: Any = self._pipe.recv()
+            if isinstance(message, RobotText):
+                self._texts.append(message.text)
             else:
-                self._requests.append(came)
-            seconds = 0.0
+                self._requests.append(message)
+            timeout = 0.0

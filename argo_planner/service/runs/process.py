@@ -1,4 +1,4 @@
-"""The process of a run, as the service sees it."""
+"""The process of a run, on the side of the service."""
 
 import queue
 import threading
@@ -12,17 +12,20 @@ from argo_planner.service.processes.context import CONTEXT
 from argo_planner.service.runs.pipe import RobotText
 from argo_planner.service.runs.requests import RunOrder, RunRequest
 from argo_planner.service.runs.state import RunState
-from argo_planner.service.runs.worker import carry_out
+from argo_planner.service.runs.worker import run_worker
 
 MOST_WAITING = 200
-"""messages for a process that does not read them"""
+"""messages that may wait to be sent to a process"""
 MOST_AT_ONCE = 500
-"""messages of a process that are heard together"""
+"""messages from a process that are handled in one call"""
 
 
 class RunProcess:
-    """The process of a run, and the service's end of the pipe to it. Holds what waits to be sent:
-    a thread of its own sends it, so that nobody waits for a process that does not read."""
+    """The process of a run, and the service's end of the pipe to it.
+
+    Holds a queue of messages to the process. A separate thread sends them, so that nothing blocks
+    if the process does not read.
+    """
 
     def __init__(
         self,
@@ -30,89 +33,106 @@ class RunProcess:
         order: RunOrder,
         first: RunState,
         foxglove: int | None,
-        asked: tuple[RunRequest, str] | None,
+        request: tuple[RunRequest, str] | None,
     ) -> None:
-        """`asked`: for what the process of an interrupted run begins, and who wants it. Raises
-        OSError if it can't begin."""
+        """Start the process; raises OSError if that is not possible.
+
+        Args:
+            folder: Folder of the run.
+            order: Order of the run.
+            first: State of the run before the process starts.
+            foxglove: Port at which the run is shown live; None: it is not.
+            request: Request that resumes or stops an interrupted run, with its author; None: the
+                run was not interrupted, or resumes without a request.
+        """
         self.run = first.id
-        self.for_stop = asked is not None and asked[0].kind == "stop"
+        self.for_stop = request is not None and request[0].kind == "stop"
+        """whether the process was started only to stop the run"""
         self.problem: str | None = None
-        """why it says it has broken off"""
-        self._pipe, there = CONTEXT.Pipe()
-        arguments = (there, folder, order, first, foxglove, asked)
+        """why the process can't continue, by its last message; None: it sent no such message"""
+        self._pipe, worker_end = CONTEXT.Pipe()
+        arguments = (worker_end, folder, order, first, foxglove, request)
         self._process = CONTEXT.Process(
-            target=carry_out, args=arguments, name=f"run {self.run}", daemon=True
+            target=run_worker, args=arguments, name=f"run {self.run}", daemon=True
         )
         self._process.start()
-        there.close()
+        worker_end.close()
         self._waiting: queue.Queue[object] = queue.Queue(MOST_WAITING)
-        self._sender = threading.Thread(target=self._sending, daemon=True)
+        self._sender = threading.Thread(target=self._send_waiting, daemon=True)
         self._sender.start()
 
-    def require_room(self) -> None:
-        """Raises Unavailable if so much waits for the process that it takes nothing more."""
+    def require_capacity(self) -> None:
+        """Raise Unavailable if the queue of messages to the process is full."""
         if self._waiting.full():
-            raise self._no_room()
+            raise self._overload_error()
 
     def send(self, message: object) -> None:
-        """Sends a message in its turn. Raises Unavailable."""
+        """Queue a message for the process; raises Unavailable if the queue is full."""
         try:
             self._waiting.put_nowait(message)
         except queue.Full:
-            raise self._no_room() from None
+            raise self._overload_error() from None
 
     def send_text(self, text: str) -> None:
-        """Sends a text of the robot, which tells again what is not acknowledged: half of the room
-        is left for people."""
+        """Queue a text from the remote robot, or drop it if half of the queue is in use.
+
+        The rest of the queue is left for people's requests. The robot repeats a dropped text, as
+        it gets no acknowledgement.
+        """
         if self._waiting.qsize() < MOST_WAITING // 2:
             self.send(RobotText(text=text))
 
-    def read(self, heard: Callable[[Sequence[Model]], object], ended: Callable[[], object]) -> None:
-        """From now on tells what comes from the process, from a thread of its own, and its end.
-        What comes while that is heard is told together."""
+    def start_reading(
+        self, on_messages: Callable[[Sequence[Model]], object], on_exit: Callable[[], object]
+    ) -> None:
+        """Start a thread that passes on the messages of the process, and then its exit.
 
-        def reading() -> None:
+        Messages that arrive during a call of `on_messages` are passed on together in the next one.
+        """
+
+        def pass_on() -> None:
             try:
-                while messages := self._received():
-                    heard(messages)
+                while messages := self._receive_messages():
+                    on_messages(messages)
             except BaseException:
                 self._process.kill()
                 raise
             finally:
                 self._process.join()
-                self._end_sending()
+                self._stop_sender()
                 self._pipe.close()
-                ended()
+                on_exit()
 
-        self._reader = threading.Thread(target=reading, daemon=True)
+        self._reader = threading.Thread(target=pass_on, daemon=True)
         self._reader.start()
 
-    def end(self) -> None:
-        """Ends the process; the loop that is told of it still runs."""
+    def kill(self) -> None:
+        """Kill the process and wait for the reading thread, whose callbacks must be able to run."""
         self._process.kill()
         self._reader.join()
 
-    def how_it_ended(self) -> str:
+    def exit_reason(self) -> str:
+        """Return the signal or the exit status with which the process ended, as text."""
         status = self._process.exitcode
         return f"signal {-status}" if status is not None and status < 0 else f"status {status}"
 
-    def _received(self) -> Sequence[Model]:
-        """What has come, at least one message; nothing once the process has ended."""
-        found: list[Model] = []
+    def _receive_messages(self) -> Sequence[Model]:
+        """Wait for messages; return at least one, or none if the process has ended."""
+        messages: list[Model] = []
         with suppress(EOFError, OSError):
-            found.append(self._pipe.recv())
-            while len(found) < MOST_AT_ONCE and self._pipe.poll():
-                found.append(self._pipe.recv())
-        return found
+            messages.append(self._pipe.recv())
+            while len(messages) < MOST_AT_ONCE and self._pipe.poll():
+                messages.append(self._pipe.recv())
+        return messages
 
-    def _sending(self) -> None:
+    def _send_waiting(self) -> None:
         while (message := self._waiting.get()) is not None:
             try:
                 self._pipe.send(message)
             except OSError:
-                return  # it has ended, and whoever reads from it hears of that
+                return  # the process has ended, which the reading thread notices
 
-    def _end_sending(self) -> None:
+    def _stop_sender(self) -> None:
         with suppress(queue.Empty):
             while True:
                 self._waiting.get_nowait()
@@ -120,9 +140,9 @@ class RunProcess:
             self._waiting.put_nowait(None)
         self._sender.join()
 
-    def _no_room(self) -> Unavailable:
+    def _overload_error(self) -> Unavailable:
         return Unavailable(
-            f"the process of run {self.run} takes nothing: {MOST_WAITING} messages wait for it. "
-            f"Ask again in a moment; if it hangs, end process {self._process.pid}, and the run can "
-            "go on from its journal"
+            f"the process of run {self.run} accepts no more messages: {MOST_WAITING} are waiting. "
+            f"Try again in a moment; if it hangs, end process {self._process.pid} and resume the "
+            "run from its journal"
         )

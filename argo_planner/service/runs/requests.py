@@ -1,4 +1,4 @@
-"""What people ask of a run, as data, and how far each request is."""
+"""Requests that people make to a run, and the states of these requests."""
 
 from collections.abc import Iterable
 from enum import StrEnum
@@ -13,153 +13,164 @@ from argo_env.faults.kinds import AnyFault
 from argo_planner.service.core.commands import CommandId
 from argo_planner.service.world.obstacles import Obstacle
 
-MOST_TOLD = 50
-"""of the requests that are over, in the state of a run"""
-SLOWEST, FASTEST = 0.1, 1_000.0
-"""simulated seconds a second"""
+MOST_SETTLED = 50
+"""settled requests that the state of a run lists, the latest ones"""
+MIN_SPEED, MAX_SPEED = 0.1, 1_000.0
+"""limits of the speed, in simulated seconds per second"""
 
-Speed = Annotated[float, Field(ge=SLOWEST, le=FASTEST)] | None
-"""simulated seconds a second; None: as fast as possible"""
+Speed = Annotated[float, Field(ge=MIN_SPEED, le=MAX_SPEED)] | None
+"""simulated seconds per second; None: as fast as possible"""
 
 
 class RunOrder(Model):
-    """A run that is to be begun."""
+    """Order to start a run, with all that the run depends on."""
 
     plan: str
-    """id of the mission"""
+    """id of the mission plan"""
     revision: int
+    """revision of the mission plan"""
     name: str
-    """of the mission, for people"""
+    """name of the mission plan, for people"""
     mission: Mission
     site: str
-    """what opens it"""
+    """reference that `open_site` takes"""
     drive: str = "kinematic"
     sensor: str = "ideal"
     seed: int = Field(default=0, ge=0, le=2**31)
     values: dict[int, float] = Field(default_factory=dict)
-    """what checkpoints show, where it is not drawn"""
+    """displayed values, by the numbers of the checkpoints; those of other checkpoints are drawn"""
     faults: tuple[AnyFault, ...] = ()
     obstacles: tuple[Obstacle, ...] = ()
-    """that stand on the site"""
+    """obstacles on the site"""
     speed: Speed = 1.0
 
 
 class RequestProgress(StrEnum):
-    """How far a request is."""
+    """Progress of a request."""
 
     ACCEPTED = "accepted"
-    """it is on its way to the robot"""
+    """the request is stored and is being sent to the run"""
     UNDER_WAY = "under way"
-    """the robot has it, and is not yet where it asks for"""
+    """the run carries the request out, and it has not taken effect yet"""
     CONFIRMED = "confirmed"
-    """it is so"""
+    """the request has taken effect"""
     REFUSED = "refused"
-    """nothing was changed"""
+    """the request was refused and has changed nothing"""
     FAILED = "failed"
-    """it was begun, and did not come to its end"""
+    """the request was begun, but not completed"""
 
 
 class RequestState(Model):
-    """A request, and how far it is."""
+    """State of a request."""
 
     id: CommandId
     kind: str
     by: str
+    """author of the request"""
     progress: RequestProgress
     reason: str | None = None
-    """of a refusal or a failure, or why a run that was to stop ended otherwise"""
+    """why the request was refused or has failed, or why a run that was to stop ended otherwise"""
 
     @property
     def over(self) -> bool:
+        """True if the request is settled: confirmed, refused or failed."""
         return self.progress not in (RequestProgress.ACCEPTED, RequestProgress.UNDER_WAY)
 
 
 class _Request(Model):
     id: CommandId
+    """id that the client gives the request; a request that is sent again has the same id"""
 
 
 class PauseRun(_Request):
-    """The mission stands still; confirmed when nothing moves any more. During a pause it changes
-    nothing; while a person has the robot it is refused."""
+    """Request to pause the mission, confirmed when the robot stands still.
+
+    It has no effect during a pause, and is refused while a person has the robot.
+    """
 
     kind: Literal["pause"] = "pause"
 
 
 class GoOnWithRun(_Request):
-    """The mission goes on after a pause; or the run, as it stood, after its process has died."""
+    """Request to resume the mission after a pause, or the run after its process has died."""
 
     kind: Literal["go_on"] = "go_on"
 
 
 class EndRun(_Request):
-    """The run ends here, whatever it is doing, also where it is interrupted."""
+    """Request to end the run at once, whatever it is doing; an interrupted run ends as well."""
 
     kind: Literal["stop"] = "stop"
 
 
 class CancelMission(_Request):
-    """The mission ends; the action under way cleans up first."""
+    """Request to cancel the mission; the action under way cleans up first."""
 
     kind: Literal["cancel"] = "cancel"
 
 
 class TakeRobot(_Request):
-    """A person takes the robot over; confirmed when it stands still."""
+    """Request to give the robot to a person, confirmed when the robot stands still."""
 
     kind: Literal["take_over"] = "take_over"
 
 
 class GiveRobotBack(_Request):
-    """The person gives the robot back: what was done by hand or skipped is passed over. The mission
-    goes on, also where it was paused before they took over."""
+    """Request to give the robot back to the mission.
+
+    Visits that were done by hand or skipped are left out. The mission continues, even if it was
+    paused before the person took over.
+    """
 
     kind: Literal["give_back"] = "give_back"
 
 
 class DoTask(_Request):
-    """By hand: a task of the mission."""
+    """Request to carry out a task of the mission by hand."""
 
     kind: Literal["do_task"] = "do_task"
     task: str
 
 
 class DriveTo(_Request):
-    """By hand: to a place."""
+    """Request to drive to a pose by hand."""
 
     kind: Literal["drive_to"] = "drive_to"
     pose: Pose
 
 
 class MeasureAt(_Request):
-    """By hand: a checkpoint."""
+    """Request to measure at a checkpoint by hand."""
 
     kind: Literal["measure"] = "measure"
     checkpoint: str
 
 
 class StopByHandNow(_Request):
-    """What the robot does by hand is stopped; confirmed when it stands still."""
+    """Request to stop the action by hand, confirmed when the robot stands still."""
 
     kind: Literal["stop_by_hand"] = "stop_by_hand"
 
 
 class SkipTask(_Request):
-    """The next visit of a task is left out; it counts when the robot is given back. A task is
-    skipped once until then."""
+    """Request to skip the next visit of a task, which takes effect when the robot is given back.
+
+    Until then, a task can be skipped only once.
+    """
 
     kind: Literal["skip"] = "skip"
     task: str
 
 
 class ChangeSpeed(_Request):
-    """How fast the simulation goes."""
+    """Request to change the speed of the simulation."""
 
     kind: Literal["speed"] = "speed"
     speed: Speed
 
 
 class TellEvent(_Request):
-    """Something has happened that the mission may react to."""
+    """Request to report an event that the mission may react to."""
 
     kind: Literal["event"] = "event"
     event: EventKind
@@ -167,7 +178,7 @@ class TellEvent(_Request):
 
 
 class TellReading(_Request):
-    """Somebody tells what a checkpoint shows."""
+    """Request to enter the reading of a checkpoint."""
 
     kind: Literal["reading"] = "reading"
     checkpoint: str
@@ -175,22 +186,22 @@ class TellReading(_Request):
 
 
 class BeginFault(_Request):
-    """Something goes wrong from now on, in the simulation."""
+    """Request to begin a fault in the simulation."""
 
     kind: Literal["fault"] = "fault"
     fault: AnyFault
 
 
 class GoOnEdited(_Request):
-    """The person gives the robot back, and the run goes on with the mission as edited."""
+    """Request to give the robot back and to continue the run with the edited mission."""
 
     kind: Literal["go_on_edited"] = "go_on_edited"
     mission: Mission
     revision: int
-    """of the plan"""
+    """revision of the mission plan"""
 
 
-AskedOfRun = Annotated[
+ClientRequest = Annotated[
     PauseRun
     | GoOnWithRun
     | EndRun
@@ -208,47 +219,56 @@ AskedOfRun = Annotated[
     | BeginFault,
     Discriminator("kind"),
 ]
-"""what clients can ask of a run, told apart by `kind`"""
+"""request that clients can send to a run; `kind` distinguishes them"""
 
-RunRequest = AskedOfRun | GoOnEdited
+RunRequest = ClientRequest | GoOnEdited
+"""any request to a run"""
 
 
 class RequestBook:
-    """The requests to one run, by their ids. Holds how far each is."""
+    """The latest states of the requests to one run, by their ids."""
 
     def __init__(self, run: str, requests: Iterable[RequestState] = ()) -> None:
         self._run = run
         self._requests = {request.id: request for request in requests}
 
-    def of(self, id: str) -> RequestState:
-        """Raises NotFound."""
+    def find(self, id: str) -> RequestState:
+        """Return the state of a request; raises NotFound if there is no such request."""
         if id not in self._requests:
-            raise NotFound(f"run {self._run} has had no request {id[:64]!r}")
+            raise NotFound(f"run {self._run} has no request {id[:64]!r}")
         return self._requests[id]
 
-    def known(self, request: RunRequest, by: str) -> RequestState | None:
-        """How far a request is that is sent again. Raises Conflict if another one has its id."""
+    def find_repeated(self, request: RunRequest, by: str) -> RequestState | None:
+        """Return the state of a request that is sent again; None if the request is new.
+
+        Raises Conflict if the id belongs to a request of another kind or author.
+        """
         known = self._requests.get(request.id)
         if known is not None and (known.kind, known.by) != (request.kind, by):
-            raise Conflict(f"another request has had the id {request.id}: give each its own")
+            raise Conflict(
+                f"another request has used the id {request.id}: give each request an id of its own"
+            )
         return known
 
-    def note(self, request: RequestState) -> None:
-        """A request has come, or come further."""
+    def update(self, request: RequestState) -> None:
+        """Add a request, or replace its state."""
         self._requests[request.id] = request
 
-    def forget(self, id: str) -> None:
-        """A request was not taken after all."""
+    def remove(self, id: str) -> None:
+        """Remove a request that could not be accepted."""
         del self._requests[id]
 
     @property
     def pending(self) -> tuple[RequestState, ...]:
-        """Those that are not over, in the order in which they came."""
-        return tuple(one for one in self._requests.values() if not one.over)
+        """Requests that are not over, in the order in which they came."""
+        return tuple(request for request in self._requests.values() if not request.over)
 
-    def told(self, news: Iterable[RequestState] = ()) -> tuple[RequestState, ...]:
-        """Those that are not over, and the last ones that are, with the news of some of them."""
-        requests = (self._requests | {one.id: one for one in news}).values()
-        over = [one.id for one in requests if one.over]
-        old = set(over[: max(0, len(over) - MOST_TOLD)])
-        return tuple(one for one in requests if one.id not in old)
+    def pending_and_latest(self, updates: Iterable[RequestState] = ()) -> tuple[RequestState, ...]:
+        """Return the pending requests and the latest settled ones, with the updates applied.
+
+        The book itself is not changed.
+        """
+        requests = (self._requests | {request.id: request for request in updates}).values()
+        over = [request.id for request in requests if request.over]
+        old = set(over[: max(0, len(over) - MOST_SETTLED)])
+        return tuple(request for request in requests if request.id not in old)

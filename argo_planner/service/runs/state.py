@@ -1,4 +1,4 @@
-"""How a run stands, and what those who follow it are told."""
+"""State of a run, and the messages that the service sends to its followers."""
 
 from datetime import datetime
 from enum import StrEnum
@@ -15,132 +15,136 @@ from argo_planner.service.runs.requests import RequestState
 
 
 class RunStatus(StrEnum):
-    """How far a run is."""
+    """Status of a run."""
 
     PREPARING = "preparing"
-    """its process begins, and opens the site"""
+    """its process is starting and opens the site"""
     RUNNING = "running"
     INTERRUPTED = "interrupted"
-    """its process has died, or that of the service: it goes on from its journal, or stops, when it
-    is asked to"""
+    """its process or the service has died; on request it resumes from its journal, or stops"""
     ENDED = "ended"
 
 
 class RunMode(StrEnum):
-    """Who has the robot."""
+    """Control mode of a run: the mission or a person has the robot."""
 
     AUTONOMOUS = "autonomous"
-    """the mission"""
+    """the mission has the robot"""
     PAUSED = "paused"
-    """the mission, which stands still or is coming to a stop"""
+    """the mission is paused; the robot stands still or is coming to a stop"""
     SUPERVISED = "supervised"
-    """a person"""
+    """a person has the robot"""
     REACTING = "reacting"
-    """the mission, which reacts to an event"""
+    """the mission has the robot and reacts to an event"""
 
 
 class TaskCount(Model):
-    """How often visits of a task have ended, and whether the next one is skipped."""
+    """Numbers of ended visits of a task, by their outcome."""
 
     task: str
+    """name of the task"""
     done: int = 0
     failed: int = 0
     by_hand: int = 0
-    """done or skipped by a person"""
+    """visits that a person has done or skipped"""
 
 
 class RunState(Model):
-    """A run as it stands."""
+    """State of a run, as the service sends it to clients."""
 
     id: str
     plan: str
+    """id of the mission plan"""
     revision: int
+    """revision of the plan that is being run"""
     name: str
+    """name of the mission"""
     by: str
-    """who began it"""
+    """author who started the run"""
     begun: datetime
     status: RunStatus
     drive: str
     sensor: str = "ideal"
     seed: int
     speed: float | None
-    """simulated seconds a second; None: as fast as possible"""
+    """simulated seconds per second; None: as fast as possible"""
     t: float = 0.0
-    """s of simulated time"""
+    """simulated time, in s"""
     max_duration: float | None = None
-    """s"""
+    """time limit of the mission, in s; None: it has no limit"""
     mode: RunMode = RunMode.AUTONOMOUS
     moving: bool = False
-    """whether an action is under way; a robot that is told to pause moves until it has stopped"""
+    """whether an action is under way; after a request to pause, True until the robot has stopped"""
     task: str | None = None
-    """whose action is under way"""
+    """name of the task whose action is under way; None: no action is"""
     by_hand: bool = False
-    """whether a person lets the robot do that"""
+    """whether a person has ordered that action"""
     reaction: EventKind | None = None
+    """event that the mission is reacting to; None: it is not reacting"""
     rounds: dict[str, int] = Field(default_factory=dict)
-    """of the groups that the mission is in"""
+    """current round of each group that the mission is in"""
     tasks: tuple[TaskCount, ...] = ()
-    """those of which a visit has ended"""
+    """counts for the tasks of which a visit has ended"""
     skipped: tuple[str, ...] = ()
-    """tasks whose next visit a person has skipped, until the robot is given back"""
+    """tasks whose next visit a person has skipped; empty again after the robot is given back"""
     readings: tuple[Reading, ...] = ()
-    """the last one of each checkpoint"""
+    """last reading of each checkpoint"""
     charge: float | None = None
-    """of the battery, 0 to 1"""
+    """charge of the battery, 0 to 1; None: no battery is simulated"""
     entries: int = 0
-    """how many there are"""
+    """number of entries in the log"""
     requests: tuple[RequestState, ...] = ()
-    """that are not over, and the last ones that are"""
+    """all pending requests and the latest settled ones"""
     headline: Headline | None = None
-    """how it went, once it has ended"""
+    """result of the run in a few words; None: it has not ended"""
     silent_since: float | None = None
-    """s of the run, since when nothing was heard of a robot that is somewhere else; None: it is
-    heard"""
+    """simulated time in s since when a remote robot sends nothing; None: the robot is connected"""
     problem: str | None = None
-    """why it was interrupted, or has ended without having been carried out or stopped properly"""
+    """why the run was interrupted, or ended without being carried out or stopped properly"""
 
 
 class EntryList(Model):
-    """What has happened in a run, in order."""
+    """Entries of a run's log, in order."""
 
     count: int
-    """of all there are by now"""
+    """number of entries in the whole log"""
     entries: tuple[Entry, ...]
+    """requested part of the log"""
 
 
 class EntryTold(Model):
-    """Something has happened; none of these is ever left out."""
+    """Message with a new entry; followers get all of them."""
 
     kind: Literal["entry"] = "entry"
     run: str
     number: int = Field(ge=1)
-    """from 1 on, the same in each telling"""
+    """number of the entry in the log, from 1"""
     entry: Entry
 
 
 class PoseTold(Model):
-    """Where the robot is; only the newest one counts."""
+    """Message with the robot's pose; followers may get only the newest one."""
 
     kind: Literal["pose"] = "pose"
     run: str
     t: float
-    """s"""
+    """simulated time, in s"""
     pose: tuple[float, float, float, float, float]
     """x, y, z (m), yaw, pitch (rad)"""
     charge: float | None
-    """of the battery, 0 to 1"""
+    """charge of the battery, 0 to 1; None: no battery is simulated"""
 
 
 class StateTold(Model):
-    """How the run stands; only the newest one counts."""
+    """Message with the state of the run; followers may get only the newest one."""
 
     kind: Literal["state"] = "state"
     state: RunState | None
-    """None: there is no run, and there was none"""
+    """None: no run was ever started"""
 
 
 class RequestTold(Model):
-    """A request has come further."""
+    """Message with the new state of a request."""
 
     kind: Literal["request"] = "request"
     run: str
@@ -148,4 +152,4 @@ class RequestTold(Model):
 
 
 RunMessage = Annotated[EntryTold | PoseTold | StateTold | RequestTold, Field(discriminator="kind")]
-"""all that those who follow runs are told"""
+"""message to the followers of runs"""

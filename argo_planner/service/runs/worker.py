@@ -1,4 +1,4 @@
-"""The process of a run: opens the site, drives the simulation, keeps its journal."""
+"""The process of a run, on the side of the worker: site, simulations, journals and the report."""
 
 import os
 import re
@@ -25,64 +25,74 @@ from argo_env.run.run_commands import StopRun
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec
 from argo_env.worker_processes import end_with_parent
-from argo_planner.service.runs.driver import RunDriver, RunTeller
-from argo_planner.service.runs.pictures import PictureKeeper
-from argo_planner.service.runs.pipe import BrokenOff, WorkerPipe
+from argo_planner.service.runs.driver import EntryReporter, RunDriver
+from argo_planner.service.runs.pictures import PictureWriter
+from argo_planner.service.runs.pipe import WorkerFailed, WorkerPipe
 from argo_planner.service.runs.requests import EndRun, RequestState, RunOrder, RunRequest
 from argo_planner.service.runs.state import RunState, StateTold
 from argo_planner.service.world.obstacles import with_obstacles
 from argo_planner.use_cases.reporting import report_files
 
 REMOTE = "remote"
-"""the drive of a run that a robot somewhere else carries out"""
-SETTLED = 10.0
-"""s that it has to acknowledge that the run is over"""
+"""name of the drive for a run that a remote robot carries out"""
+ACK_TIMEOUT = 10.0
+"""s in which a remote robot must acknowledge the end of the run"""
 _JOURNAL = re.compile(r"run-(\d{4})\.journal")
 
 
-def journals(folder: Path) -> list[Path]:
-    """The journals of a run in their order: one for each plan that it went on with."""
+def journal_paths(folder: Path) -> list[Path]:
+    """Return the journals of a run in their order, the first one and one for each edited plan."""
     return sorted(folder / name for name in os.listdir(folder) if _JOURNAL.fullmatch(name))
 
 
-def entries_of(folder: Path) -> tuple[Entry, ...]:
-    """What has happened in a run whose process has ended, of all its plans. Raises ArgoError if a
-    journal can't be read."""
+def load_entries(folder: Path) -> tuple[Entry, ...]:
+    """Return the log of a run whose process has ended, from all its journals.
+
+    Raises ArgoError if a journal can't be read.
+    """
     entries: list[Entry] = []
-    for path in journals(folder):
+    for path in journal_paths(folder):
         with open_journal(path) as journal:
             entries += journal.entries
     return tuple(entries)
 
 
-def carry_out(
+def run_worker(
     pipe: Connection,
     folder: Path,
     order: RunOrder,
     first: RunState,
     foxglove: int | None = None,
-    asked: tuple[RunRequest, str] | None = None,
+    first_request: tuple[RunRequest, str] | None = None,
 ) -> None:
-    """Carries a run out, or goes on with the last journal in its folder. Through the pipe come
-    requests with who sends them, and go all that is to be told. At the port `foxglove`, if there is
-    one, the run is shown live. The first request, `asked`, came while the run was interrupted."""
+    """Carry out a run, or resume it from the last journal in its folder, and write its report.
+
+    An error that ends the run early is sent as `WorkerFailed`.
+
+    Args:
+        pipe: Pipe to the service: it brings requests with their authors, and takes messages.
+        folder: Folder of the run.
+        order: Order of the run.
+        first: State of the run before this process.
+        foxglove: Port at which the run is shown live; None: it is not.
+        first_request: Request to an interrupted run, with its author; None: there is none.
+    """
     end_with_parent()
     try:
         site = with_obstacles(open_site(order.site).prepare(), order.obstacles)
         with ExitStack() as stack:
             live = None if foxglove is None else stack.enter_context(serve_live(foxglove))
-            process = _Segments(WorkerPipe(pipe), folder, order, first, site, live, asked)
-            record = process.carry_out()
+            worker = _RunWorker(WorkerPipe(pipe), folder, order, first, site, live, first_request)
+            record = worker.run()
     except ArgoError as error:
-        pipe.send(BrokenOff(problem=str(error)))
+        pipe.send(WorkerFailed(problem=str(error)))
         return
     for name, content in report_files(record, site.site, site.robot).items():
         write_atomically(folder / name, content)
 
 
-class _Segments:
-    """A run, one simulation after the other: each time that it goes on with an edited plan, there
-    is another one with a journal of its own."""
+class _RunWorker:
+    """A run as a series of simulations: each edited plan starts another one, with a new journal."""
 
     def __init__(
         self,
@@ -92,7 +102,7 @@ class _Segments:
         first: RunState,
         site: OpenedSite,
         live: LiveWriter | None,
-        asked: tuple[RunRequest, str] | None,
+        first_request: tuple[RunRequest, str] | None,
     ) -> None:
         self._pipe = pipe
         self._folder = folder
@@ -100,39 +110,43 @@ class _Segments:
         self._state = first
         self._site = site
         self._live = live
-        self._asked = asked
-        self._teller = RunTeller(first.id, pipe.tell, entries_of(folder))
-        self._robot = None if order.drive != REMOTE else self._remote_robot()
+        self._first_request = first_request
+        self._reporter = EntryReporter(first.id, pipe.send_to_service, load_entries(folder))
+        self._robot = None if order.drive != REMOTE else self._connect_robot()
 
-    def carry_out(self) -> RunRecord:
-        """The record of the last simulation."""
+    def run(self) -> RunRecord:
+        """Carry out the run until its end, and return the record of the last simulation."""
         with ExitStack() as stack:
-            driver, simulation = self._begin(self._journal(stack), stack, self._state.requests)
-            if self._asked is not None:
-                driver.take_up(*self._asked)
+            journal = self._open_journal(stack)
+            driver, simulation = self._begin(journal, stack, self._state.requests)
+            if self._first_request is not None:
+                driver.handle_restart_request(*self._first_request)
             while not driver.over:
-                self._pipe.wait(driver.turn())
-                for request, by in self._pipe.requests():
-                    driver.ask(request, by)
-                    if driver.following is not None:
-                        driver, simulation = self._exchange(driver, simulation, stack)
-            driver.tell_state()
-            if self._robot is not None and not self._robot.wait_acknowledged(SETTLED):
-                unheard = "the robot has not acknowledged yet that the run is over"
-                self._pipe.tell(
-                    StateTold(state=driver.state().model_copy(update={"problem": unheard}))
-                )
+                self._pipe.wait_for_message(driver.step_if_due())
+                for request, by in self._pipe.take_requests():
+                    driver.handle_request(request, by)
+                    if driver.continuation is not None:
+                        driver, simulation = self._continue(driver, simulation, stack)
+            driver.send_state()
+            if self._robot is not None and not self._robot.wait_acknowledged(ACK_TIMEOUT):
+                problem = "the robot has not acknowledged yet that the run is over"
+                state = driver.run_state().model_copy(update={"problem": problem})
+                self._pipe.send_to_service(StateTold(state=state))
             return simulation.record()
 
     @property
     def _only_stops(self) -> bool:
-        """Whether the run goes on for no other reason than to be stopped: that is done whatever has
-        changed, and without the robot."""
-        return self._asked is not None and isinstance(self._asked[0], EndRun)
+        """True if an interrupted run is resumed only to stop it.
 
-    def _remote_robot(self) -> RemoteRobot | None:
-        """None if the run is to stop, and the robot does not tell where it is; else that raises
-        Unavailable."""
+        It is then stopped even if the site has changed or the robot is not connected.
+        """
+        return self._first_request is not None and isinstance(self._first_request[0], EndRun)
+
+    def _connect_robot(self) -> RemoteRobot | None:
+        """Return the remote robot; None if the run only stops and the robot sends no pose.
+
+        Raises Unavailable if the run does not only stop and the robot sends no pose.
+        """
         channel = Channel(self._pipe, uuid4().hex, time.time)
         navigator = self._site.navigator
         try:
@@ -144,10 +158,10 @@ class _Segments:
             self._state = self._state.model_copy(update={"problem": problem})
             return None
 
-    def _journal(self, stack: ExitStack) -> Journal:
-        """The last journal that there is, or a first one."""
-        if known := journals(self._folder):
-            journal = stack.enter_context(open_journal(known[-1]))
+    def _open_journal(self, stack: ExitStack) -> Journal:
+        """Open the last journal of the run, or create the first one."""
+        if paths := journal_paths(self._folder):
+            journal = stack.enter_context(open_journal(paths[-1]))
             if not self._only_stops:
                 journal.require_unchanged(self._site)
             return journal
@@ -161,50 +175,53 @@ class _Segments:
             values=order.values,
             faults=order.faults,
         )
-        return self._new_journal(spec, stack)
+        return self._create_journal(spec, stack)
 
-    def _new_journal(self, spec: RunSpec, stack: ExitStack) -> Journal:
-        name = f"run-{len(journals(self._folder)) + 1:04d}.journal"
+    def _create_journal(self, spec: RunSpec, stack: ExitStack) -> Journal:
+        name = f"run-{len(journal_paths(self._folder)) + 1:04d}.journal"
         journal = create_journal(self._folder / name, Header.from_run(self._site, spec))
         return stack.enter_context(journal)
 
     def _begin(
         self, journal: Journal, stack: ExitStack, requests: Sequence[RequestState]
     ) -> tuple[RunDriver, Simulation]:
-        spec, tell = journal.header.spec, self._pipe.tell
+        spec, send = journal.header.spec, self._pipe.send_to_service
         simulation = Simulation(
             make_machine(spec.mission, spec.beginning),
             self._site,
             spec,
             past=journal.entries,
-            observers=[journal, self._teller, *self._viewers(), PictureKeeper(self._folder)],
+            observers=[journal, self._reporter, *self._viewers(), PictureWriter(self._folder)],
             robot=self._robot,
         )
         stack.enter_context(simulation)
-        driver = RunDriver(simulation, self._state, self._teller, tell, time.monotonic, requests)
-        driver.tell_state()
+        driver = RunDriver(simulation, self._state, self._reporter, send, time.monotonic, requests)
+        driver.send_state()
         return driver, simulation
 
     def _viewers(self) -> list[Observer]:
         if self._live is None:
             return []
-        from argo_env.recording.run_recorder import RunRecorder  # brings an extra
+        from argo_env.recording.run_recorder import RunRecorder  # needs an extra
 
         return [RunRecorder(self._live)]
 
-    def _exchange(
+    def _continue(
         self, driver: RunDriver, simulation: Simulation, stack: ExitStack
     ) -> tuple[RunDriver, Simulation]:
-        """Goes on with an edited plan. Its journal is there before the one before ends, so that a
-        run that is killed in between goes on with one of them."""
-        assert driver.following is not None
-        spec, revision = driver.following
-        journal = self._new_journal(spec, stack)
-        simulation.handle(StopRun("it goes on with an edited plan"))
+        """End the simulation and continue with the edited plan in a new one.
+
+        The new journal is created before the old one ends, so that a run that is killed in between
+        can be resumed from one of them.
+        """
+        assert driver.continuation is not None
+        spec, revision = driver.continuation
+        journal = self._create_journal(spec, stack)
+        simulation.handle(StopRun("it continues with an edited plan"))
         simulation.close()
         limit = spec.mission.max_duration
         update = {"revision": revision, "max_duration": limit, "speed": driver.speed, "skipped": ()}
         self._state = self._state.model_copy(update=update)
-        following, begun = self._begin(journal, stack, driver.requests)
-        following.confirm_following()
-        return following, begun
+        new_driver, new_simulation = self._begin(journal, stack, driver.requests)
+        new_driver.confirm_continuation()
+        return new_driver, new_simulation

@@ -24,7 +24,7 @@ from argo_planner.service.runs.host import RunHost
 from argo_planner.service.storage.folder import PLAN_ID
 from argo_planner.service.web.access import AccessRole, Visitor
 from argo_planner.service.web.problems import RevisionMissing, problem_responses
-from argo_planner.service.world.kept import KeptObstacles
+from argo_planner.service.world.obstacle_store import ObstacleStore
 
 JSON = "application/json"
 # A report is one file that contains its styles and pictures; it runs no script and loads nothing.
@@ -46,7 +46,7 @@ class PlanningService:
     orders: OrderSearches
     evaluations: Evaluations
     runs: RunHost
-    obstacles: KeptObstacles
+    obstacles: ObstacleStore
     site_thread: Executor
     """executor with one thread, as a site is not safe for concurrent use"""
 

@@ -13,8 +13,14 @@ from argo_env.report.files import PAGE, RECORD
 from argo_env.run.drives_and_sensors import DRIVES, SENSORS
 from argo_env.site import Site
 from argo_planner.service.core.commands import CommandId
-from argo_planner.service.runs.pictures import picture_of
-from argo_planner.service.runs.requests import AskedOfRun, GoOnEdited, RequestState, RunOrder, Speed
+from argo_planner.service.runs.pictures import picture_path
+from argo_planner.service.runs.requests import (
+    ClientRequest,
+    GoOnEdited,
+    RequestState,
+    RunOrder,
+    Speed,
+)
 from argo_planner.service.runs.state import EntryList, RunState
 from argo_planner.service.runs.worker import REMOTE
 from argo_planner.service.web.access import AccessRole
@@ -101,14 +107,14 @@ async def start_run(
 
 @router.get("/runs", operation_id="list_runs", response_model=RunList)
 async def list_runs(service: Service, _: Viewer) -> Response:
-    """Return the present run and the earlier ones."""
-    return json_response(RunList(runs=tuple(await service.runs.all())))
+    """Return the current run and the earlier ones."""
+    return json_response(RunList(runs=tuple(await service.runs.list_runs())))
 
 
 @router.get("/runs/{run}", operation_id="read_run", response_model=RunState)
 async def read_run(service: Service, _: Viewer, run: RunId) -> Response:
     """Return the state of a run."""
-    return json_response(await service.runs.read(run))
+    return json_response(await service.runs.read_state(run))
 
 
 @router.post(
@@ -119,13 +125,13 @@ async def read_run(service: Service, _: Viewer, run: RunId) -> Response:
     responses={202: created_response(RequestState, _REQUEST)},
 )
 async def send_request(
-    service: Service, visitor: Operator, run: RunId, request: JsonBody[AskedOfRun]
+    service: Service, visitor: Operator, run: RunId, request: JsonBody[ClientRequest]
 ) -> Response:
-    """Send a request to the present run.
+    """Send a request to the current run.
 
     A request that was accepted is not done yet: read its progress.
     """
-    state = await service.runs.ask(run, request, visitor.author)
+    state = await service.runs.send_request(run, request, visitor.author)
     return json_response(state, 202, location=f"/api/runs/{run}/requests/{state.id}")
 
 
@@ -144,9 +150,9 @@ async def continue_with_edits(
     made_on: MadeOn,
 ) -> Response:
     """Give the robot back, and continue the run with its edited mission."""
-    plan = (await open_valid_plan(service, service.runs.of(run).plan, made_on)).plan
+    plan = (await open_valid_plan(service, service.runs.require_current(run).plan, made_on)).plan
     request = GoOnEdited(id=given.id, mission=plan.mission, revision=plan.revision)
-    state = await service.runs.ask(run, request, visitor.author)
+    state = await service.runs.send_request(run, request, visitor.author)
     return json_response(state, 202, location=f"/api/runs/{run}/requests/{state.id}")
 
 
@@ -159,8 +165,8 @@ async def read_request(
     run: RunId,
     request: Annotated[str, Path(pattern=r"^[A-Za-z0-9._:-]{1,64}$")],
 ) -> Response:
-    """Return the progress of a request to the present run."""
-    return json_response(service.runs.request(run, request))
+    """Return the progress of a request to the current run."""
+    return json_response(service.runs.find_request(run, request))
 
 
 @router.get("/runs/{run}/entries", operation_id="list_entries", response_model=EntryList)
@@ -174,7 +180,7 @@ async def list_entries(
     most: Annotated[int, Query(ge=1, le=MAX_ENTRIES)] = MAX_ENTRIES,
 ) -> Response:
     """Return the entries of a run after the first `since`."""
-    return json_response(await service.runs.history(run, since, most))
+    return json_response(await service.runs.list_entries(run, since, most))
 
 
 @router.get(
@@ -189,7 +195,7 @@ async def read_run_report(
     media = {PAGE: "text/html", RECORD: "application/json", "site.png": "image/png"}
     if file not in media:
         raise NotFound(f"the report has no file {file!r}; it has: {', '.join(media)}")
-    content = await service.runs.report(run, file)
+    content = await service.runs.read_report_file(run, file)
     headers = REPORT_POLICY if file == PAGE else None
     return Response(content, media_type=media[file], headers=headers)
 
@@ -207,7 +213,7 @@ async def read_picture(
     milliseconds: Annotated[int, Path(ge=0, le=10**12, description="`t` of the reading, in ms")],
 ) -> Response:
     """Return the picture of a reading; only the sensor `camera` takes pictures."""
-    path = picture_of(service.runs.folder.path(run), checkpoint, milliseconds / 1000)
+    path = picture_path(service.runs.folder.run_path(run), checkpoint, milliseconds / 1000)
     try:
         content = path.read_bytes()
     except OSError:
@@ -223,16 +229,16 @@ socket_router = APIRouter()
 
 @socket_router.websocket("/api/robot/live")
 async def follow_robot(socket: WebSocket, since: Annotated[int | None, Query(ge=0)] = None) -> None:
-    """Send the state of the present run, its entries after the first `since`, then each event."""
+    """Send the state of the current run, its entries after the first `since`, then each event."""
     service: PlanningService = socket.app.state.service
     if not await accept_socket(socket):
         return
     client = next_client_id()
-    mailbox = service.runs.follow(client, since)
+    mailbox = service.runs.subscribe(client, since)
     try:
         await exchange_messages(socket, mailbox, lambda _: None)
     finally:
-        service.runs.leave(client)
+        service.runs.unsubscribe(client)
 
 
 @socket_router.websocket("/api/robot/link")
@@ -243,7 +249,9 @@ async def connect_robot(socket: WebSocket) -> None:
         return
     link = service.runs.robot.connect()
     try:
-        await exchange_messages(socket, link, lambda text: service.runs.hear_robot(link, text))
+        await exchange_messages(
+            socket, link, lambda text: service.runs.receive_from_robot(link, text)
+        )
     finally:
         service.runs.robot.disconnect(link)
 

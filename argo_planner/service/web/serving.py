@@ -27,7 +27,7 @@ from argo_planner.service.web.app import OpenService, make_app
 from argo_planner.service.web.connections import raise_file_limit, server_options
 from argo_planner.service.web.guard import Guard, GuardSettings
 from argo_planner.service.web.requests import PlanningService
-from argo_planner.service.world.kept import KeptObstacles
+from argo_planner.service.world.obstacle_store import ObstacleStore
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ def make_service_opener(
             orders = OrderSearches(site.reference, jobs, new_id, _now)
             evaluations = Evaluations(plans.path / "evaluations", jobs, new_id, _now)
             runs = RunHost(plans.path / "runs", after_restart, _now, foxglove)
-            obstacles = KeptObstacles(plans.path)
+            obstacles = ObstacleStore(plans.path)
             await runs.open()
             await evaluations.open()
             thread = ThreadPoolExecutor(1)

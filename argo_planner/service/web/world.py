@@ -24,9 +24,9 @@ from argo_planner.service.web.requests import (
     json_response,
     make_router,
 )
-from argo_planner.service.world.description import WorldDescription, describe, world_digest
-from argo_planner.service.world.kept import ObstacleList
+from argo_planner.service.world.description import WorldDescription, describe_world, world_digest
 from argo_planner.service.world.meshes import Detail, checkpoint_mesh, floor_mesh, robot_mesh
+from argo_planner.service.world.obstacle_store import ObstacleList
 from argo_planner.service.world.obstacles import MOST_OBSTACLES, Obstacle, with_obstacles
 from argo_planner.service.world.previews import (
     PreviewedMission,
@@ -34,7 +34,7 @@ from argo_planner.service.world.previews import (
     preview_mission,
     preview_way,
 )
-from argo_planner.service.world.standing import standing_map
+from argo_planner.service.world.standing_map import standing_map
 
 GLB = "model/gltf-binary"
 MAP = "application/octet-stream"
@@ -69,7 +69,7 @@ def _cached_file(media: str) -> dict[str, Any]:
 async def read_world(service: Service, _: Viewer) -> Response:
     """Return the site: floors, checkpoints, docks, named poses, the robot and the obstacles."""
     obstacles = service.obstacles.present.obstacles
-    return json_response(await service.run_on_site(describe, service.site, obstacles))
+    return json_response(await service.run_on_site(describe_world, service.site, obstacles))
 
 
 @router.get(

@@ -1,1 +1,1 @@
-"""A site as a page shows it: what is where, meshes, where the robot can stand, and ways."""
+"""A site for a page: its description, meshes, maps of where the robot can stand, and paths."""

@@ -1,4 +1,4 @@
-"""What a page needs to know of a site before it draws anything."""
+"""Description of a site for a page, from which the page knows what to load and draw."""
 
 import hashlib
 import math
@@ -21,28 +21,28 @@ from argo_planner.service.world.meshes import Detail
 from argo_planner.service.world.obstacles import Obstacle, with_obstacles
 
 NORTH = math.pi / 2
-"""rad from the x axis: sites are drawn with y to the north"""
+"""direction of north in rad from the x axis: the y axis of a site points north"""
 
 
 class DescribedFloor(Model):
-    """A floor."""
+    """Floor of a site."""
 
     number: int
     name: str
     z: float
-    """m, of its deck"""
+    """height of its deck, in m"""
     storey: float
-    """m up to the next floor"""
+    """height from its deck to that of the next floor, in m"""
     bounds: Rect
-    """m, around its walkways"""
+    """bounding rectangle of its walkways, in m"""
     plates: tuple[Rect, ...]
-    """m, its deck without the openings, in rectangles that do not overlap"""
+    """its deck without the openings, as rectangles that do not overlap, in m"""
     corners: tuple[Pose, ...] = ()
-    """of a patrol of the floor, in its order"""
+    """poses of a patrol of the floor, in their order"""
 
 
 class DescribedCheckpoint(Model):
-    """A checkpoint, and where it is read from."""
+    """Checkpoint, with the pose that it is read from."""
 
     id: int
     name: str
@@ -51,91 +51,92 @@ class DescribedCheckpoint(Model):
     range: Interval
     nominal: Interval
     position: Vector
-    """m, the middle of its face"""
+    """centre of its face, in m"""
     facing: float
-    """rad, where its face looks"""
+    """yaw of the direction that its face points in, in rad"""
     floor: int
+    """number of its floor"""
     stands: Pose | None = None
-    """where the robot stands to read it, coming from the dock of the lowest number; coming from
-    elsewhere it may take another place"""
+    """pose from which the robot reads it, coming from the dock of the lowest number; it may take
+    another one if it comes from elsewhere; None: the robot can't read it"""
     problem: str | None = None
     """why the robot can't read it; None: it can"""
 
 
 class DescribedDock(Model):
-    """A docking station."""
+    """Docking station."""
 
     area: int
     """number of its starting area"""
     pose: Pose
-    """of the docked robot"""
+    """pose of the docked robot"""
 
 
 class DescribedPlace(Model):
-    """A place that scripts may name."""
+    """Named location that scripts may use."""
 
     name: str
     pose: Pose
 
 
 class DescribedRobot(Model):
-    """The robot that drives there; lengths in m, about its point of rotation."""
+    """Robot of the site: its dimensions in m and its speeds."""
 
     name: str
     length: float
     width: float
     height: float
-    """with the arm stowed"""
+    """height with the arm stowed"""
     front: float
-    """from the point of rotation"""
+    """distance from the point of rotation to the front"""
     rear: float
-    """from the point of rotation"""
+    """distance from the point of rotation to the rear"""
     speed: float
-    """m/s on the flat"""
+    """speed on flat ground, in m/s"""
     reverse_speed: float
-    """m/s"""
+    """speed backwards, in m/s"""
     stair_up_speed: float
-    """m/s along the slope"""
+    """speed up stairs, along the slope, in m/s"""
     stair_down_speed: float
-    """m/s along the slope"""
+    """speed down stairs, along the slope, in m/s"""
     turn_rate: float
-    """rad/s"""
+    """rate of turns in place, in rad/s"""
     measuring_time: float
-    """s"""
+    """duration of a measurement, in s"""
     battery: float
-    """Wh that may be used on one charge"""
+    """energy that may be used on one charge, in Wh"""
 
 
 class WorldDescription(Model):
-    """A site for a page. Lengths in m, angles in rad, z upwards; a unit of the frame is 1 m."""
+    """Site for a page; lengths in m, angles in rad, z upwards."""
 
     name: str
     title: str
     digest: str
-    """changes with all that is told of the site, its meshes and maps"""
+    """digest that changes if the description, a mesh or a map may have changed"""
     north: float = NORTH
-    """rad, the direction of the north in the site's frame"""
+    """direction of north in the site's frame"""
     ground: Rect
-    """m, the area that all lies in"""
+    """rectangle that contains the whole site"""
     ground_z: float
-    """m"""
+    """height of the ground"""
     cell: float = CELL
-    """m, of the maps of where the robot can stand"""
+    """edge of a cell of the maps of where the robot can stand"""
     headings: tuple[float, ...]
-    """rad, of the maps, by number"""
+    """headings of these maps, by number"""
     details: tuple[Detail, ...] = tuple(Detail)
-    """of the meshes, the finest first"""
+    """levels of detail of the meshes, the finest first"""
     floors: tuple[DescribedFloor, ...]
     checkpoints: tuple[DescribedCheckpoint, ...]
     docks: tuple[DescribedDock, ...]
     places: tuple[DescribedPlace, ...]
-    """any of which a reaction may have as its safe area"""
+    """named locations, each of which a reaction may have as its safe area"""
     robot: DescribedRobot
     obstacles: tuple[Obstacle, ...] = ()
 
 
-def describe(site: OpenedSite, obstacles: Sequence[Obstacle] = ()) -> WorldDescription:
-    """The description of a site with obstacles on it."""
+def describe_world(site: OpenedSite, obstacles: Sequence[Obstacle] = ()) -> WorldDescription:
+    """Return the description of a site with obstacles on it."""
     plan, spec = site.site, site.site.spec
     navigator = with_obstacles(site, obstacles).navigator
     patrols = {floor.number: floor.patrol for floor in site.catalog.floors}
@@ -156,7 +157,7 @@ def describe(site: OpenedSite, obstacles: Sequence[Obstacle] = ()) -> WorldDescr
 
 
 def world_digest(site: OpenedSite, obstacles: Sequence[Obstacle] = ()) -> str:
-    """What names the site with its robot, the obstacles, and the code that plans on it."""
+    """Return a digest of the site with its robot, the obstacles, and the code that plans on it."""
     sink = hashlib.blake2b(f"{site.digest} {digest_of_code()}".encode(), digest_size=16)
     for obstacle in obstacles:
         sink.update(obstacle.model_dump_json().encode() + b"\n")

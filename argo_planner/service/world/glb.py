@@ -1,6 +1,6 @@
-"""glTF 2.0 in its binary form: nodes with triangles in plain colours.
+"""Writing of binary glTF 2.0 (GLB): nodes with triangles in plain colours.
 
-No normals are written, which glTF takes as flat faces.
+No normals are written; glTF then shades faces flat.
 """
 
 import json
@@ -14,54 +14,57 @@ import numpy as np
 from numpy.typing import NDArray
 
 Colour = tuple[float, float, float]
-"""red, green and blue from 0 to 1, as screens show them"""
+"""red, green and blue from 0 to 1, in sRGB"""
 
 _UPRIGHT = (-math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5))
-"""turns z up into y up, as glTF has it"""
+"""quaternion x, y, z, w that turns z up into y up, as in glTF"""
 _ARRAY_BUFFER, _ELEMENT_BUFFER = 34962, 34963
 _FLOAT, _SHORT, _INT = 5126, 5123, 5125
 
 
 @dataclass(frozen=True)
 class Mesh:
-    """Triangles of one colour: corners in m, shape (n, 3), and three of them for each triangle."""
+    """Triangles of one colour."""
 
     corners: NDArray[np.float32]
+    """in m, shape (n, 3)"""
     triangles: NDArray[np.int64]
+    """indices of the corners of each triangle, shape (m, 3)"""
     colour: Colour
     open: bool = False
-    """whether its faces are seen from both sides"""
+    """whether the faces are visible from both sides"""
 
 
 @dataclass(frozen=True)
 class DrawnNode:
-    """A named thing in the frame of the node `parent`, by its number; None: in the site's."""
+    """A named node of the scene, with its meshes."""
 
     name: str
     meshes: Sequence[Mesh] = ()
     parent: int | None = None
+    """index of the node in whose frame this one is; None: the site's frame"""
     position: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """m"""
     rotation: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
     """quaternion x, y, z, w"""
     extras: Mapping[str, Any] = field(default_factory=dict)
-    """what else is told of it"""
+    """further data of the node (glTF `extras`)"""
 
 
 def to_glb(root: str, nodes: Sequence[DrawnNode]) -> bytes:
-    """The nodes as one file, under a node of the name `root` that turns z up into glTF's y up."""
-    parts = _Parts()
+    """Return the nodes as a GLB file, below a node named `root` that turns z up into y up."""
+    parts = _DocumentParts()
     children: list[list[int]] = [[] for _ in nodes]
     top: list[int] = []
-    for number, node in enumerate(nodes):
-        (top if node.parent is None else children[node.parent]).append(number + 1)
-    made = [{"name": root, "rotation": _UPRIGHT, "children": top}]
-    made += [parts.node(node, below) for node, below in zip(nodes, children, strict=True)]
+    for index, node in enumerate(nodes):
+        (top if node.parent is None else children[node.parent]).append(index + 1)
+    gltf_nodes = [{"name": root, "rotation": _UPRIGHT, "children": top}]
+    gltf_nodes += [parts.add_node(node, below) for node, below in zip(nodes, children, strict=True)]
     document = {
         "asset": {"version": "2.0", "generator": "argo"},
         "scene": 0,
         "scenes": [{"nodes": [0]}],
-        "nodes": [{k: v for k, v in node.items() if v not in ([], {})} for node in made],
+        "nodes": [{k: v for k, v in node.items() if v not in ([], {})} for node in gltf_nodes],
         "meshes": parts.meshes,
         "materials": parts.materials,
         "accessors": parts.accessors,
@@ -76,8 +79,8 @@ def to_glb(root: str, nodes: Sequence[DrawnNode]) -> bytes:
     return struct.pack("<III", 0x46546C67, 2, 12 + len(chunks)) + chunks
 
 
-class _Parts:
-    """The lists of a document while it is put together."""
+class _DocumentParts:
+    """The lists of a glTF document while it is built."""
 
     def __init__(self) -> None:
         self.content = bytearray()
@@ -86,8 +89,9 @@ class _Parts:
         self.accessors: list[dict[str, Any]] = []
         self.views: list[dict[str, Any]] = []
 
-    def node(self, node: DrawnNode, children: list[int]) -> dict[str, Any]:
-        made: dict[str, Any] = {
+    def add_node(self, node: DrawnNode, children: list[int]) -> dict[str, Any]:
+        """Add the meshes of a node, and return the node as glTF."""
+        gltf_node: dict[str, Any] = {
             "name": node.name,
             "translation": node.position,
             "rotation": node.rotation,
@@ -97,26 +101,29 @@ class _Parts:
         if node.meshes:
             primitives = [self._primitive(mesh) for mesh in node.meshes]
             self.meshes.append({"name": node.name, "primitives": primitives})
-            made["mesh"] = len(self.meshes) - 1
-        return made
+            gltf_node["mesh"] = len(self.meshes) - 1
+        return gltf_node
 
     def _primitive(self, mesh: Mesh) -> dict[str, Any]:
         corners = np.ascontiguousarray(mesh.corners, dtype="<f4")
         kind, dtype = (_SHORT, "<u2") if len(corners) <= 0xFFFF else (_INT, "<u4")
-        numbers = np.ascontiguousarray(mesh.triangles.ravel(), dtype=dtype)
-        place = self._accessor(corners.tobytes(), len(corners), "VEC3", _FLOAT, _ARRAY_BUFFER)
-        self.accessors[place] |= {
+        indices = np.ascontiguousarray(mesh.triangles.ravel(), dtype=dtype)
+        positions = self._accessor(corners.tobytes(), len(corners), "VEC3", _FLOAT, _ARRAY_BUFFER)
+        self.accessors[positions] |= {
             "min": corners.min(axis=0).tolist(),
             "max": corners.max(axis=0).tolist(),
         }
-        order = self._accessor(numbers.tobytes(), len(numbers), "SCALAR", kind, _ELEMENT_BUFFER)
+        index_accessor = self._accessor(
+            indices.tobytes(), len(indices), "SCALAR", kind, _ELEMENT_BUFFER
+        )
         return {
-            "attributes": {"POSITION": place},
-            "indices": order,
+            "attributes": {"POSITION": positions},
+            "indices": index_accessor,
             "material": self._material(mesh),
         }
 
     def _accessor(self, content: bytes, count: int, form: str, kind: int, target: int) -> int:
+        """Add data with an accessor of `count` elements, and return the accessor's index."""
         self.content += b"\0" * (-len(self.content) % 4)
         self.views.append(
             {
@@ -134,6 +141,7 @@ class _Parts:
         return len(self.accessors) - 1
 
     def _material(self, mesh: Mesh) -> int:
+        """Return the index of a mesh's material, which is added if it is new."""
         material = {
             "pbrMetallicRoughness": {
                 "baseColorFactor": [*(round(_linear(c), 5) for c in mesh.colour), 1.0],
@@ -147,6 +155,6 @@ class _Parts:
         return self.materials.index(material)
 
 
-def _linear(shown: float) -> float:
-    """The amount of light of what a screen shows (sRGB), as glTF counts it."""
-    return shown / 12.92 if shown <= 0.04045 else ((shown + 0.055) / 1.055) ** 2.4
+def _linear(value: float) -> float:
+    """Return the linear value of an sRGB component (IEC 61966-2-1), as glTF needs it."""
+    return value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4

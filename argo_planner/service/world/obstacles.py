@@ -1,5 +1,7 @@
-"""Things that stand on a site besides what its description says: bodies for runs, and closed ground
-for plans."""
+"""Obstacles on a site that its description does not have.
+
+They are solid in the worlds of runs, and close the surface for plans.
+"""
 
 import math
 from collections.abc import Callable, Sequence
@@ -23,47 +25,47 @@ from argo_planner.service.core.plan_limits import require_name
 
 T = TypeVar("T")
 MOST_OBSTACLES = 200
-FARTHEST = 10_000.0
-"""m from the middle of the site's frame"""
-MOST_TURNED = 1_000.0
-"""rad"""
-_SLABS = 32  # rectangles at most that stand for an obstacle which is turned
-_STRAIGHT = 1e-6  # rad
+MAX_COORDINATE = 10_000.0
+"""largest absolute coordinate of a pose in the site's frame, in m"""
+MAX_YAW = 1_000.0
+"""largest absolute yaw of a pose, in rad"""
+_SLABS = 32  # maximum number of rectangles that cover a turned obstacle
+_STRAIGHT = 1e-6  # rad; an obstacle turned by less is taken as parallel to the axes
 
 _Edge = Annotated[float, Field(gt=0, le=20)]
 
 
 class Obstacle(Model):
-    """A box that stands somewhere."""
+    """Box on the site."""
 
     id: str = Field(min_length=1, max_length=200)
     name: str = Field(default="", max_length=200)
     pose: Pose
-    """m and rad, of the middle of its lower face"""
+    """pose of the centre of its lower face, in m and rad"""
     size: tuple[_Edge, _Edge, _Edge]
-    """m, along its own axes: x, y and upwards"""
+    """edges in m, along its own axes: x, y and upwards"""
 
     @field_validator("id", "name")
     @classmethod
-    def _seen(cls, text: str) -> str:
+    def _check_text(cls, text: str) -> str:
         if text:
-            _required(require_name, text, "the obstacle")
+            _raise_as_value_error(require_name, text, "the obstacle")
         return text
 
     @field_validator("pose")
     @classmethod
-    def _near(cls, pose: Pose) -> Pose:
-        _required(require_on_site, pose, "the obstacle")
+    def _check_pose(cls, pose: Pose) -> Pose:
+        _raise_as_value_error(require_on_site, pose, "the obstacle")
         return pose
 
-    def body(self) -> Box:
-        """It as a solid."""
+    def to_solid(self) -> Box:
+        """Return the obstacle as a solid in the site's frame."""
         x, y, z = self.pose.x, self.pose.y, self.pose.z + self.size[2] / 2
         return Box((x, y, z), self.size, (0.0, 0.0, self.pose.yaw))
 
 
-def _required(require: Callable[[T, str], None], value: T, what: str) -> None:
-    """Pydantic tells the place of a ValueError."""
+def _raise_as_value_error(require: Callable[[T, str], None], value: T, what: str) -> None:
+    """Call a check and raise its Invalid as a ValueError, to which Pydantic adds the field."""
     try:
         require(value, what)
     except Invalid as error:
@@ -71,50 +73,66 @@ def _required(require: Callable[[T, str], None], value: T, what: str) -> None:
 
 
 def require_on_site(pose: Pose, what: str) -> None:
-    """Raises Invalid for a pose that is on no site."""
-    if max(abs(pose.x), abs(pose.y), abs(pose.z)) > FARTHEST:
-        raise Invalid(f"{what} stands farther away than {FARTHEST:g} m, on no site")
-    if abs(pose.yaw) > MOST_TURNED:
-        raise Invalid(f"{what} has a yaw of {pose.yaw:g} rad: give it one of a turn")
+    """Raise Invalid if a coordinate or the yaw of a pose is too large for any site.
+
+    `what` names the subject of the error message.
+    """
+    if max(abs(pose.x), abs(pose.y), abs(pose.z)) > MAX_COORDINATE:
+        raise Invalid(
+            f"{what} is more than {MAX_COORDINATE:g} m from the origin of the site: give smaller "
+            "coordinates"
+        )
+    if abs(pose.yaw) > MAX_YAW:
+        raise Invalid(f"{what} has a yaw of {pose.yaw:g} rad: give a yaw from -pi to pi")
 
 
 def with_obstacles(site: OpenedSite, obstacles: Sequence[Obstacle]) -> OpenedSite:
-    """The site with the obstacles on it: plans go round them, checkpoints are not seen through
-    them, and in the worlds of runs on it they are solid. Its catalogue is that of the site.
+    """Return the site with obstacles on it, or the site itself if there are none.
 
-    It can't be sent to another process: who wants it there makes it there. Raises Invalid for two
-    obstacles with one id, or too many.
+    Paths lead round the obstacles, checkpoints are not visible through them, and they are solid in
+    the worlds of runs. The catalogue is that of the site. The result can't be sent to another
+    process, which must call this function itself.
+
+    Raises Invalid if two obstacles have the same id, or there are too many.
     """
     if len(obstacles) > MOST_OBSTACLES:
-        raise Invalid(f"{len(obstacles)} obstacles are too many: at most {MOST_OBSTACLES}")
+        raise Invalid(
+            f"{len(obstacles)} obstacles are too many: at most {MOST_OBSTACLES} are possible"
+        )
     ids = [obstacle.id for obstacle in obstacles]
-    if twice := next((id for id in ids if ids.count(id) > 1), None):
-        raise Invalid(f"two obstacles have the id `{twice}`: give each one of its own")
+    if duplicate := next((id for id in ids if ids.count(id) > 1), None):
+        raise Invalid(f"two obstacles have the id `{duplicate}`: give each an id of its own")
     return _with_obstacles(site, tuple(obstacles)) if obstacles else site
 
 
 @lru_cache(maxsize=4)  # each holds some 10 MB
 def _with_obstacles(site: OpenedSite, obstacles: tuple[Obstacle, ...]) -> OpenedSite:
-    bodies = [Element(f"obstacle {o.id}", Role.STRUCTURE, (o.body(),), "brick") for o in obstacles]
+    elements = [
+        Element(f"obstacle {obstacle.id}", Role.STRUCTURE, (obstacle.to_solid(),), "brick")
+        for obstacle in obstacles
+    ]
     navigator = site.navigator
-    blockages = [b for obstacle in obstacles for b in closed_by(obstacle, navigator)]
-    altered = site.site.with_elements((*site.site.elements, *bodies))
+    blockages = [b for obstacle in obstacles for b in obstacle_blockages(obstacle, navigator)]
+    altered = site.site.with_elements((*site.site.elements, *elements))
     opened = OpenedSite.of_navigator(navigator.with_blockages(blockages, altered))
     opened.catalog = site.catalog
     return opened
 
 
-def closed_by(obstacle: Obstacle, navigator: Navigator) -> list[Blockage]:
-    """The parts of the surface over which the robot would touch an obstacle: rectangles that cover
-    it, on each level that it leaves no headroom on. None if it is in nobody's way."""
-    rects = _rects(obstacle)
-    levels = _levels(obstacle, rects, navigator)
-    what = obstacle.name or obstacle.id
-    return [Blockage(rect, z, f"obstacle `{what}`") for z in levels for rect in rects]
+def obstacle_blockages(obstacle: Obstacle, navigator: Navigator) -> list[Blockage]:
+    """Return the parts of the surface over which the robot would touch an obstacle.
+
+    They are rectangles that cover the obstacle, on each level on which it leaves the robot no
+    headroom. The list is empty if it blocks nothing.
+    """
+    rects = _covering_rects(obstacle)
+    levels = _blocked_levels(obstacle, rects, navigator)
+    name = obstacle.name or obstacle.id
+    return [Blockage(rect, z, f"obstacle `{name}`") for z in levels for rect in rects]
 
 
-def _levels(obstacle: Obstacle, rects: Sequence[Rect], navigator: Navigator) -> list[float]:
-    """Heights (m) about which it stands in the way; each counts LAYER up and down."""
+def _blocked_levels(obstacle: Obstacle, rects: Sequence[Rect], navigator: Navigator) -> list[float]:
+    """Return heights in m that, with LAYER above and below each, contain the blocked surface."""
     surface = navigator.surface
     x, y, z = surface.positions().T
     under = np.zeros(surface.size, dtype=bool)
@@ -131,8 +149,8 @@ def _levels(obstacle: Obstacle, rects: Sequence[Rect], navigator: Navigator) -> 
     return levels
 
 
-def _rects(obstacle: Obstacle) -> list[Rect]:
-    """Rectangles along the axes of the site that cover it: one, or slabs where it is turned."""
+def _covering_rects(obstacle: Obstacle) -> list[Rect]:
+    """Return rectangles along the site's axes that cover an obstacle: one, or slabs if turned."""
     length, width, _ = obstacle.size
     pose, cos, sin = obstacle.pose, math.cos(obstacle.pose.yaw), math.sin(obstacle.pose.yaw)
     signs = ((1, 1), (-1, 1), (-1, -1), (1, -1))
@@ -150,11 +168,11 @@ def _rects(obstacle: Obstacle) -> list[Rect]:
         return [(x0, y0, x1, y1)]
     slabs = min(_SLABS, math.ceil((x1 - x0) / CELL))
     edges = np.linspace(x0, x1, slabs + 1).tolist()
-    return [_slab(corners, a, b) for a, b in pairwise(edges)]
+    return [_slab_rect(corners, a, b) for a, b in pairwise(edges)]
 
 
-def _slab(corners: NDArray[np.float64], x0: float, x1: float) -> Rect:
-    """The smallest rectangle around what of the polygon lies between x0 and x1."""
+def _slab_rect(corners: NDArray[np.float64], x0: float, x1: float) -> Rect:
+    """Return the smallest rectangle around the part of a polygon between `x0` and `x1`."""
     heights = [y for x, y in corners.tolist() if x0 <= x <= x1]
     for (ax, ay), (bx, by) in zip(
         corners.tolist(), np.roll(corners, -1, axis=0).tolist(), strict=True

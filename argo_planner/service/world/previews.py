@@ -1,4 +1,7 @@
-"""The ways that the robot will take, by the planner that drives, without running anything."""
+"""Paths that the robot will take on a mission, with their times, without a run.
+
+They come from the same planner as the paths of runs.
+"""
 
 from collections.abc import Iterator, Sequence
 from enum import StrEnum
@@ -20,163 +23,172 @@ from argo_env.robot.spec import RobotSpec
 from argo_planner.service.world.obstacles import Obstacle, require_on_site, with_obstacles
 
 MOST_WAYS = 20_000
-"""of a mission; more are not looked for"""
-_DIGITS = 4  # of metres, radians and seconds
+"""maximum number of paths in the preview of a mission"""
+_DIGITS = 4  # decimal places of all numbers
 
 
 class PreviewedWay(Model):
-    """A way to a place, and the action there."""
+    """Path to a pose, and the action there."""
 
     points: tuple[tuple[float, float, float, float, float], ...] = ()
-    """t (s since the robot sets off), x, y, z (m) and yaw (rad) wherever the motion changes; in
-    between it is straight, or a turn in place"""
+    """t (s from the start of the path), x, y, z (m) and yaw (rad) at each change of motion; between
+    two points the robot drives straight or turns in place"""
     time: float | None = None
-    """s, of the way and the action; None: there is no way, and `problem` says why"""
+    """duration of the path and the action, in s; None: there is no path"""
     work: float = 0.0
-    """s of the time that the action takes"""
+    """duration of the action, in s; part of `time`"""
     distance: float = 0.0
-    """m along the ground"""
+    """length along the ground, in m"""
     climb: float = 0.0
-    """m upwards, all ascents together"""
+    """sum of all ascents, in m"""
     energy: float = 0.0
-    """Wh, of the way and the action"""
+    """energy for the path and the action, in Wh"""
     end: Pose | None = None
-    """where the robot stands then"""
+    """pose of the robot at the end; None: there is no path"""
     problem: str | None = None
+    """why there is no path; None: there is one"""
 
 
 class WayKind(StrEnum):
-    """When a mission takes a way."""
+    """Condition under which a mission takes a path."""
 
     DEFAULT = "default"
-    """nothing goes wrong and no condition holds, each round driven once"""
+    """the path is taken if nothing goes wrong and no condition is satisfied; rounds count once"""
     BRANCH = "branch"
-    """conditions hold"""
+    """the path is taken if conditions are satisfied"""
     FAILURE = "failure"
-    """the task has failed, or missed its window"""
+    """the path is taken if the task has failed or missed its window"""
     ROUND = "round"
-    """back to the first task of a round"""
+    """the path leads back to the first task of a round"""
     OTHER = "other"
-    """as by default, but from a task that the default way does not come to"""
+    """the path has no conditions, but starts at a task that the default paths do not reach"""
 
 
 class MissionWay(Model):
-    """A way of a mission."""
+    """Path of a mission from one task to another."""
 
     source: str | None
-    """the task that it comes from; None: where the robot begins"""
+    """name of the task that it starts from; None: it starts where the robot starts"""
     target: str
+    """name of the task that it leads to"""
     kind: WayKind
     way: PreviewedWay
 
 
 class PreviewedMission(Model):
-    """All ways of a mission but those after a time-out, the default ones first, in their order."""
+    """All paths of a mission except those after a time-out, the default ones first, in order."""
 
     ways: tuple[MissionWay, ...] = ()
     time: float = 0.0
-    """s, of the default way driven once, waits of a given length included"""
+    """duration of the default paths, their actions and waits of a given length, in s"""
     distance: float = 0.0
-    """m"""
+    """length of the default paths, in m"""
     climb: float = 0.0
-    """m"""
+    """sum of all ascents of the default paths, in m"""
     energy: float = 0.0
-    """Wh"""
+    """energy for the default paths, their actions and waits, in Wh"""
     at_least: tuple[str, ...] = ()
-    """why the totals may be less than what one pass takes; none: they are what it takes"""
+    """why the mission may take more than these totals; empty: it takes exactly these"""
     problems: tuple[str, ...] = ()
-    """what can't be reached, and why"""
+    """why tasks can't be reached"""
     complete: bool = True
-    """whether all ways were looked at, and not only the first MOST_WAYS"""
+    """whether `ways` has all paths; False: it has only the first MOST_WAYS"""
 
 
 def preview_way(
     site: OpenedSite, start: Pose, goal: Task | Pose, obstacles: Sequence[Obstacle] = ()
 ) -> PreviewedWay:
-    """The way from `start` to a pose, or to a task's place with its action.
+    """Return the path from `start` to a pose, or to the pose of a task with its action.
 
-    Raises Invalid for a pose that is on no site, or a task to which no way can lead, and
-    DiagnosticError for one that makes no sense whatever comes before and after it.
+    Raises:
+        Invalid: A pose is too far away for any site, or the task is one to which no path can lead.
+        DiagnosticError: The task itself has an error.
     """
     require_on_site(start, "the start")
     if isinstance(goal, Task):
         _require_sound(goal, site.catalog)
     else:
         require_on_site(goal, "the goal")
-    return _Ways(site, obstacles).way(start, goal)
+    return _PathPreviewer(site, obstacles).preview_path(start, goal)
 
 
 def preview_mission(
     site: OpenedSite, mission: Mission, obstacles: Sequence[Obstacle] = ()
 ) -> PreviewedMission:
-    """The ways of a mission that has no errors. Raises Unreachable if the robot can't stand where
-    it begins, NotFound or Invalid for a mission whose tasks lead to none that is there."""
-    ways = _Ways(site, obstacles)
+    """Return the paths of a mission that has no errors.
+
+    Raises:
+        Unreachable: The robot can't stand where the mission starts.
+        NotFound: A task leads to one that does not exist.
+        Invalid: A task leads to the START task.
+    """
+    previewer = _PathPreviewer(site, obstacles)
     tasks = {task.name: task for task in mission.tasks}
-    start, first = ways.travel.start(mission), initial_task(mission)
+    start, first = previewer.travel.start(mission), initial_task(mission)
     if first is None:
         return PreviewedMission()
     order = _default_order(tasks, first)
-    standing: dict[str, Pose] = {}
-    found: list[MissionWay] = []
+    end_poses: dict[str, Pose] = {}  # of the robot after each task
+    paths: list[MissionWay] = []
     source: str | None = None
-    here = start
+    pose = start
     for name in order:
-        way = ways.way(here, tasks[name])
-        found.append(MissionWay(source=source, target=name, kind=WayKind.DEFAULT, way=way))
-        here = standing[name] = way.end or here  # as after a failure: it stays where it is
+        path = previewer.preview_path(pose, tasks[name])
+        paths.append(MissionWay(source=source, target=name, kind=WayKind.DEFAULT, way=path))
+        pose = end_poses[name] = path.end or pose  # as after a failure: the robot does not move
         source = name
-    driven = len(found)
+    default_count = len(paths)
     complete = True
-    for source_name, target, kind in _other_ways(mission, tasks, order):
-        if len(found) >= MOST_WAYS:
+    for source_name, target, kind in _other_transitions(mission, tasks, order):
+        if len(paths) >= MOST_WAYS:
             complete = False
             break
-        way = ways.way(standing.get(source_name, start), tasks[target])
-        standing.setdefault(target, way.end or standing.get(source_name, start))
-        found.append(MissionWay(source=source_name, target=target, kind=kind, way=way))
-    passed = [f.way for f in found[:driven]]
-    waits = {name: _wait(tasks[name]) for name in order}
-    waited = sum(seconds or 0.0 for seconds in waits.values())
+        path = previewer.preview_path(end_poses.get(source_name, start), tasks[target])
+        end_poses.setdefault(target, path.end or end_poses.get(source_name, start))
+        paths.append(MissionWay(source=source_name, target=target, kind=kind, way=path))
+    default = [mission_path.way for mission_path in paths[:default_count]]
+    waits = {name: _wait_duration(tasks[name]) for name in order}
+    waiting_time = sum(seconds or 0.0 for seconds in waits.values())
+    waiting_energy = waiting_time * site.robot.power.standing / 3600
+    problems = (mission_path.way.problem for mission_path in paths)
     return PreviewedMission(
-        ways=tuple(found),
-        time=round(sum(way.time or 0.0 for way in passed) + waited, _DIGITS),
-        distance=round(sum(way.distance for way in passed), _DIGITS),
-        climb=round(sum(way.climb for way in passed), _DIGITS),
-        energy=round(
-            sum(way.energy for way in passed) + waited * site.robot.power.standing / 3600, _DIGITS
-        ),
-        at_least=tuple(_left_open(order, tasks, waits, found[:driven])),
-        problems=tuple(dict.fromkeys(f.way.problem for f in found if f.way.problem)),
+        ways=tuple(paths),
+        time=round(sum(path.time or 0.0 for path in default) + waiting_time, _DIGITS),
+        distance=round(sum(path.distance for path in default), _DIGITS),
+        climb=round(sum(path.climb for path in default), _DIGITS),
+        energy=round(sum(path.energy for path in default) + waiting_energy, _DIGITS),
+        at_least=tuple(_uncertainties(order, tasks, waits, paths[:default_count])),
+        problems=tuple(dict.fromkeys(problem for problem in problems if problem)),
         complete=complete,
     )
 
 
-class _Ways:
-    """Ways on a site with obstacles, with the times of the drive that knows no forces."""
+class _PathPreviewer:
+    """Previews of single paths on a site with obstacles, with the times of the drive `route`."""
 
     def __init__(self, site: OpenedSite, obstacles: Sequence[Obstacle]) -> None:
         self._site = with_obstacles(site, obstacles)
         self.travel: SiteTravel = self._site.travel
 
-    def way(self, start: Pose, goal: Task | Pose) -> PreviewedWay:
-        task = _task_of(goal)
+    def preview_path(self, start: Pose, goal: Task | Pose) -> PreviewedWay:
+        """Return the path to a pose or a task; one without points if there is no path."""
+        task = _as_task(goal)
         if task.action is Action.WAIT:
-            standing = (0.0, start.x, start.y, start.z, start.yaw)
-            return PreviewedWay(time=0.0, points=(standing,), end=start)
+            point = (0.0, start.x, start.y, start.z, start.yaw)
+            return PreviewedWay(time=0.0, points=(point,), end=start)
         try:
             if task.pose is not None:
                 require_on_site(task.pose, "its pose")
             leg = self.travel.leg(start, task, task.velocity)
             if isinstance(leg, NoPath):
-                return PreviewedWay(problem=_not_there(goal, leg.reason))
+                return PreviewedWay(problem=_problem_text(goal, leg.reason))
             path = self.travel.way(start, task)
         except ArgoError as error:
-            return PreviewedWay(problem=_not_there(goal, str(error)))
-        return _previewed(leg, path, task.velocity, self._site.robot)
+            return PreviewedWay(problem=_problem_text(goal, str(error)))
+        return _to_preview(leg, path, task.velocity, self._site.robot)
 
 
-def _previewed(leg: Leg, path: Path, velocity: float | None, robot: RobotSpec) -> PreviewedWay:
+def _to_preview(leg: Leg, path: Path, velocity: float | None, robot: RobotSpec) -> PreviewedWay:
     rows = path.timed_poses(robot, velocity).round(_DIGITS).tolist()
     return PreviewedWay(
         points=tuple((t, x, y, z, yaw) for t, x, y, z, yaw in rows),
@@ -189,97 +201,113 @@ def _previewed(leg: Leg, path: Path, velocity: float | None, robot: RobotSpec) -
     )
 
 
-def _task_of(goal: Task | Pose) -> Task:
+def _as_task(goal: Task | Pose) -> Task:
     if isinstance(goal, Task):
         return goal
     return Task(name="there", action=Action.WAYPOINT, pose=goal)
 
 
 def _require_sound(task: Task, catalog: Catalog) -> None:
-    """Raises Invalid or DiagnosticError for a task to which no way can lead. What it leads to is
-    not looked at."""
+    """Raise an error for a task to which no path can lead; its transitions are not checked.
+
+    Raises:
+        Invalid: The task is a START task, or its pose is too far away for any site.
+        DiagnosticError: The task has another error.
+    """
     if task.action is Action.START:
-        raise Invalid(f"task '{task.name}' only says where a mission begins: no way leads there")
+        raise Invalid(
+            f"task '{task.name}' only states where a mission begins: no path can lead there"
+        )
     if task.pose is not None:
         require_on_site(task.pose, f"the pose of task '{task.name}'")
-    onward = {"transitions": (), "on_failure": OnFailure.CONTINUE, "failure_target": None}
-    alone = task.model_copy(update={**onward, "group": ""})
-    if has_errors(found := check(Mission(tasks=(alone,)), catalog)):
-        raise DiagnosticError(f"task '{task.name}'", found)
+    no_successors = {"transitions": (), "on_failure": OnFailure.CONTINUE, "failure_target": None}
+    alone = task.model_copy(update={**no_successors, "group": ""})
+    if has_errors(diagnostics := check(Mission(tasks=(alone,)), catalog)):
+        raise DiagnosticError(f"task '{task.name}'", diagnostics)
 
 
-def _not_there(goal: Task | Pose, reason: str) -> str:
+def _problem_text(goal: Task | Pose, reason: str) -> str:
     return reason if isinstance(goal, Pose) else f"task '{goal.name}': {reason}"
 
 
 def _default_order(tasks: dict[str, Task], first: str) -> list[str]:
-    """The tasks that come one after the other by their unconditional transitions, each once."""
+    """Return the tasks in the order of their unconditional transitions, each of them once."""
     order: dict[str, None] = {}
     name: str | None = first
     while name is not None and name not in order:
-        order[_known(tasks, name).name] = None
+        order[_find_target(tasks, name).name] = None
         name = default_target(tasks[name])
     return list(order)
 
 
-def _known(tasks: dict[str, Task], name: str) -> Task:
+def _find_target(tasks: dict[str, Task], name: str) -> Task:
+    """Return the task with that name, which another task leads to.
+
+    Raises NotFound if there is none, Invalid for a START task.
+    """
     if name not in tasks:
-        raise NotFound(f"the mission has no task '{name}', and one leads there")
+        raise NotFound(f"the mission has no task '{name}', but another task leads to it")
     if tasks[name].action is Action.START:
-        raise Invalid(f"task '{name}' only says where the mission begins, and one leads there")
+        raise Invalid(
+            f"task '{name}' only states where the mission begins, but another task leads to it"
+        )
     return tasks[name]
 
 
-def _other_ways(
+def _other_transitions(
     mission: Mission, tasks: dict[str, Task], order: Sequence[str]
 ) -> Iterator[tuple[str, str, WayKind]]:
-    """The ways beside the default one, those from tasks that have been come to first."""
-    onward: dict[str, list[tuple[str, WayKind]]] = {name: [] for name in tasks}
+    """Yield source, target and kind of the transitions beside the default `order`.
+
+    The search is breadth-first from the tasks in `order`.
+    """
+    successors: dict[str, list[tuple[str, WayKind]]] = {name: [] for name in tasks}
     for task in mission.tasks:
         if task.action is Action.START:
             continue
         for transition in task.transitions:
             kind = WayKind.BRANCH if transition.conditions else WayKind.OTHER
-            onward[task.name].append((transition.target, kind))
-        onward[task.name] += [
+            successors[task.name].append((transition.target, kind))
+        successors[task.name] += [
             (target, WayKind.FAILURE) for target in failure_targets(task).values()
         ]
     for around in group_ranges(mission):
-        onward[around.group.end].append((around.group.start, WayKind.ROUND))
-    driven = set(pairwise(order))
-    come_to = dict.fromkeys(order)
-    waiting = list(order)
-    for name in waiting:  # grows while it is gone through
-        for target, kind in dict.fromkeys(onward[name]):
-            _known(tasks, target)
-            if kind is not WayKind.OTHER or (name, target) not in driven:
+        successors[around.group.end].append((around.group.start, WayKind.ROUND))
+    default = set(pairwise(order))
+    reached = dict.fromkeys(order)
+    queue = list(order)
+    for name in queue:  # grows during the iteration
+        for target, kind in dict.fromkeys(successors[name]):
+            _find_target(tasks, target)
+            if kind is not WayKind.OTHER or (name, target) not in default:
                 yield name, target, kind
-            if target not in come_to:
-                come_to[target] = None
-                waiting.append(target)
+            if target not in reached:
+                reached[target] = None
+                queue.append(target)
 
 
-def _wait(task: Task) -> float | None:
-    """s that a task waits; None: nobody knows."""
+def _wait_duration(task: Task) -> float | None:
+    """Return the time that a task waits, in s; None: it is not known."""
     if task.action is not Action.WAIT or task.wait is None:
         return 0.0
     return task.wait.duration
 
 
-def _left_open(
+def _uncertainties(
     order: Sequence[str],
     tasks: dict[str, Task],
     waits: dict[str, float | None],
-    ways: Sequence[MissionWay],
+    paths: Sequence[MissionWay],
 ) -> Iterator[str]:
+    """Yield the reasons why the mission may take more than the totals of its default paths."""
     for name in order:
         if waits[name] is None:
-            yield f"task '{name}' waits for something that happens at its own time"
+            yield f"task '{name}' waits for something whose time is not known"
         window = tasks[name].window
         if window is not None and window.earliest > 0:
             yield f"task '{name}' may not begin before {window.earliest:g} s"
-    for way in ways:
-        if way.way.problem:
-            yield f"there is no way to task '{way.target}'"
+    for path in paths:
+        if path.way.problem:
+            yield f"there is no path to task '{path.target}'"
     if default_target(tasks[order[-1]]) is not None:
-        yield "the default way has no end: it comes back to a task"
+        yield "the default path has no end: it returns to an earlier task"

@@ -43,18 +43,18 @@ async def test_a_hung_process_delays_no_other_call(tmp_path, site) -> None:
             while True:
                 id = f"e{len(accepted)}"
                 event = asked.TellEvent(id=id, event="gas_leak", detail="x" * 900)
-                await host.ask(run, event, "ann")
+                await host.send_request(run, event, "ann")
                 accepted.append(id)
 
-        with pytest.raises(Unavailable, match="takes nothing"):
+        with pytest.raises(Unavailable, match="accepts no more messages"):
             await ask_repeatedly()
         with pytest.raises(NotFound):
-            host.request(run, f"e{len(accepted)}")
-        assert [state.id for state in await host.all()] == [run]
-        assert (await host.history(run, 0, 1)).entries
+            host.find_request(run, f"e{len(accepted)}")
+        assert [state.id for state in await host.list_runs()] == [run]
+        assert (await host.list_entries(run, 0, 1)).entries
         send_signal(signal.SIGCONT)
-        await wait_until(lambda: all(host.request(run, id).over for id in accepted))
-        assert {host.request(run, id).progress for id in accepted} == {"confirmed"}
+        await wait_until(lambda: all(host.find_request(run, id).over for id in accepted))
+        assert {host.find_request(run, id).progress for id in accepted} == {"confirmed"}
         assert await ask_and_wait(host, asked.PauseRun(id="p")) == "confirmed"
 
 
@@ -63,19 +63,19 @@ async def test_requests_are_known_after_the_service_was_killed(tmp_path, site) -
         run = await start_run(host, site)
         assert await ask_and_wait(host, asked.PauseRun(id="p")) == "confirmed"
         send_signal(signal.SIGSTOP)
-        assert (await host.ask(run, asked.TakeRobot(id="t"), "ann")).progress == "accepted"
+        assert (await host.send_request(run, asked.TakeRobot(id="t"), "ann")).progress == "accepted"
     [file] = tmp_path.glob("*/requests")
     with file.open("ab") as opened:
         opened.write(b"00000000 {torn")
     async with open_host(tmp_path) as host:
         run = host.state.id
-        known = await host.ask(run, asked.PauseRun(id="p"), "ann")
+        known = await host.send_request(run, asked.PauseRun(id="p"), "ann")
         assert known.progress == "confirmed"
-        lost = await host.ask(run, asked.TakeRobot(id="t"), "ann")
+        lost = await host.send_request(run, asked.TakeRobot(id="t"), "ann")
         assert lost.progress == "failed"
         assert "the service has ended" in lost.reason
-        with pytest.raises(Conflict, match="another request has had the id p"):
-            await host.ask(run, asked.PauseRun(id="p"), "bob")
+        with pytest.raises(Conflict, match="another request has used the id p"):
+            await host.send_request(run, asked.PauseRun(id="p"), "bob")
         assert await ask_and_wait(host, asked.GoOnWithRun(id="g")) == "confirmed"
         assert host.state.mode is RunMode.PAUSED, "it is still paused"
         assert [(one.id, one.progress) for one in host.state.requests] == [
@@ -83,11 +83,13 @@ async def test_requests_are_known_after_the_service_was_killed(tmp_path, site) -
             ("t", "failed"),
             ("g", "confirmed"),
         ]
-        assert (await host.ask(run, asked.GoOnWithRun(id="g"), "ann")).progress == "confirmed"
+        again = await host.send_request(run, asked.GoOnWithRun(id="g"), "ann")
+        assert again.progress == "confirmed"
         assert host.state.mode is RunMode.PAUSED, "a repeated request continues the run only once"
     async with open_host(tmp_path) as host:
         for id, request in (("p", asked.PauseRun(id="p")), ("g", asked.GoOnWithRun(id="g"))):
-            assert (await host.ask(host.state.id, request, "ann")).progress == "confirmed", id
+            again = await host.send_request(host.state.id, request, "ann")
+            assert again.progress == "confirmed", id
         assert host.state.status is RunStatus.INTERRUPTED
 
 
@@ -95,11 +97,11 @@ async def test_a_stored_request_to_stop_is_carried_out_after_a_restart(tmp_path,
     async with open_host(tmp_path) as host:
         run = await start_run(host, site)
         send_signal(signal.SIGSTOP)
-        assert (await host.ask(run, asked.EndRun(id="s"), "ann")).progress == "accepted"
+        assert (await host.send_request(run, asked.EndRun(id="s"), "ann")).progress == "accepted"
     async with open_host(tmp_path, "go-on") as host:
         await wait_until(has_ended(host))
-        await wait_until(lambda: host.request(host.state.id, "s").over)
-        assert host.request(host.state.id, "s").progress == "confirmed"
+        await wait_until(lambda: host.find_request(host.state.id, "s").over)
+        assert host.find_request(host.state.id, "s").progress == "confirmed"
         assert "stopped by a person" in (await read_record(host)).result.verdict
 
 
@@ -108,12 +110,12 @@ async def test_an_interrupted_run_accepts_only_requests_to_continue_or_stop(tmp_
         run = await start_run(host, site)
         await interrupt(host)
         for request in (asked.PauseRun(id="1"), asked.SkipTask(id="2", task="MEASURE 1")):
-            with pytest.raises(Conflict, match="`go_on` or `stop` only"):
-                await host.ask(run, request, "ann")
-        follower = host.follow("1", host.state.entries)
-        accepted = await host.ask(run, asked.EndRun(id="s"), "ann")
+            with pytest.raises(Conflict, match="only the requests `go_on` and `stop`"):
+                await host.send_request(run, request, "ann")
+        follower = host.subscribe("1", host.state.entries)
+        accepted = await host.send_request(run, asked.EndRun(id="s"), "ann")
         assert accepted.progress == "accepted"
-        await wait_until(lambda: host.request(run, "s").over)
+        await wait_until(lambda: host.find_request(run, "s").over)
         assert host.state.status is RunStatus.ENDED
         assert host.state.headline is not None
         steps = [m["request"]["progress"] for m in await waiting_messages(follower, "request")]
@@ -127,7 +129,7 @@ async def test_a_run_with_a_damaged_journal_can_be_ended_but_not_continued(tmp_p
         await interrupt(host)
         damage(tmp_path, run)
         assert await ask_and_wait(host, asked.GoOnWithRun(id="g")) == "failed"
-        assert "damaged" in host.request(run, "g").reason
+        assert "damaged" in host.find_request(run, "g").reason
         assert host.state.status is RunStatus.INTERRUPTED
         assert await ask_and_wait(host, asked.EndRun(id="s")) == "confirmed"
         assert host.state.status is RunStatus.ENDED
@@ -151,7 +153,7 @@ async def test_a_process_that_can_not_start_is_reported(tmp_path, site, monkeypa
             assert host.state.status is RunStatus.INTERRUPTED
             assert await ask_and_wait(host, asked.EndRun(id="s")) == "confirmed"
             assert host.state.status is RunStatus.ENDED
-            assert "can't begin: Resource" in host.state.problem
+            assert "can't be started: Resource" in host.state.problem
             await host.start(order(site), "bob")
             assert host.state.status is RunStatus.ENDED
         await host.start(order(site), "eve")
@@ -196,7 +198,7 @@ async def test_a_run_that_was_killed_before_its_report_names_its_journal(tmp_pat
     async with open_host(tmp_path) as host:
         run = await start_run(host, site)
         with pytest.raises(NotFound, match="it is running"):
-            await host.report(run, "report.html")
+            await host.read_report_file(run, "report.html")
         assert await ask_and_wait(host, asked.ChangeSpeed(id="f", speed=None)) == "confirmed"
         await wait_until(has_ended(host))
         await read_record(host)
@@ -208,6 +210,6 @@ async def test_a_run_that_was_killed_before_its_report_names_its_journal(tmp_pat
     for _ in range(2):
         async with open_host(tmp_path) as host:
             assert host.state.status is RunStatus.ENDED
-            assert (await host.history(host.state.id, 0, 5)).count == host.state.entries > 0
+            assert (await host.list_entries(host.state.id, 0, 5)).count == host.state.entries > 0
             with pytest.raises(NotFound, match=r"argo resume .*run-0001\.journal"):
-                await host.report(host.state.id, "report.html")
+                await host.read_report_file(host.state.id, "report.html")

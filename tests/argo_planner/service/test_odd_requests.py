@@ -153,7 +153,7 @@ def test_a_repeated_restoration_is_answered_although_the_version_was_deleted(ser
         ({"name": "  "}, "visible characters"),
         ({"name": "a\nb"}, "U+000A"),
         ({"id": "\u200b"}, "id: Value error"),
-        ({"pose": {"x": 1e9, "y": 0, "z": 0}}, "pose: Value error, the obstacle stands farther"),
+        ({"pose": {"x": 1e9, "y": 0, "z": 0}}, "pose: Value error, the obstacle is more than"),
         (
             {"pose": {"x": 0, "y": 0, "z": 0, "yaw": 1e9}},
             "pose: Value error, the obstacle has a yaw",
@@ -179,10 +179,13 @@ def test_odd_obstacles_are_refused(service, change, message) -> None:
 @pytest.mark.parametrize(
     ("asked", "message"),
     [
-        ({"start": {"x": 1e9, "y": 0, "z": 0}, "goal": TASK["pose"]}, "the start stands farther"),
-        ({"goal": {"x": 0, "y": -1e308, "z": 0}}, "the goal stands farther"),
+        ({"start": {"x": 1e9, "y": 0, "z": 0}, "goal": TASK["pose"]}, "the start is more than"),
+        ({"goal": {"x": 0, "y": -1e308, "z": 0}}, "the goal is more than"),
         ({"goal": {"x": 3.05, "y": 1.55, "z": 0, "yaw": 1e308}}, "the goal has a yaw"),
-        ({"task": {**TASK, "pose": {"x": 0, "y": 0, "z": 1e9}}}, "the pose of task 'a' stands"),
+        (
+            {"task": {**TASK, "pose": {"x": 0, "y": 0, "z": 1e9}}},
+            "the pose of task 'a' is more than",
+        ),
         ({"task": {"name": "a", "action": "WAYPOINT"}}, "has no pose"),
         (
             {"task": {"name": "a", "action": "START", "pose": TASK["pose"]}},

@@ -72,7 +72,7 @@ def test_an_interrupted_run_can_be_stopped_without_its_robot(service: Served) ->
     assert "the robot was not told that the run is over" in run_state["problem"]
     path = f"/api/runs/{run}/report/report.html"
     while (report := service.client.get(path)).status_code == 404:
-        assert "ask again in a moment" in report.json()["detail"]
+        assert "try again in a moment" in report.json()["detail"]
         time.sleep(0.1)
 
 

@@ -76,9 +76,9 @@ async def ask_and_wait(host: RunHost, request: asked.RunRequest, by: str = "ann"
     """Send a request to the run, and return its final progress."""
     state = host.state
     assert state is not None
-    await host.ask(state.id, request, by)
-    await wait_until(lambda: host.request(state.id, request.id).over)
-    return host.request(state.id, request.id).progress
+    await host.send_request(state.id, request, by)
+    await wait_until(lambda: host.find_request(state.id, request.id).over)
+    return host.find_request(state.id, request.id).progress
 
 
 async def start_run(host: RunHost, site: OpenedSite, after: float = 3.0, **other: object) -> str:
@@ -102,10 +102,10 @@ async def read_record(host: RunHost) -> RunRecord:
     assert host.state is not None
     while True:
         with suppress(NotFound):
-            await host.report(host.state.id, "report.html")
+            await host.read_report_file(host.state.id, "report.html")
             break
         await asyncio.sleep(0.05)
-    return RunRecord.model_validate_json(await host.report(host.state.id, "report.json"))
+    return RunRecord.model_validate_json(await host.read_report_file(host.state.id, "report.json"))
 
 
 async def wait_for_headline(host: RunHost) -> str:
@@ -122,7 +122,7 @@ async def test_a_run_equals_that_of_the_library(tmp_path, site) -> None:
     alone = simulate(spec, site)
 
     async with open_host(tmp_path) as host:
-        follower = host.follow("1")
+        follower = host.subscribe("1")
         started = await host.start(requested, "ann")
         assert started.status is RunStatus.PREPARING
         await wait_until(has_ended(host))
@@ -142,7 +142,11 @@ async def test_a_run_equals_that_of_the_library(tmp_path, site) -> None:
 
 @pytest.mark.long
 async def test_the_end_of_a_process_does_not_end_the_next_run(tmp_path, site, monkeypatch) -> None:
-    original, is_reading, may_continue = RunFolder.entries, threading.Event(), threading.Event()
+    original, is_reading, may_continue = (
+        RunFolder.load_entries,
+        threading.Event(),
+        threading.Event(),
+    )
 
     def entries(folder: RunFolder, run: str) -> tuple[Entry, ...]:
         is_reading.set()
@@ -153,7 +157,7 @@ async def test_the_end_of_a_process_does_not_end_the_next_run(tmp_path, site, mo
         await host.start(order(site), "ann")
         await wait_until(has_ended(host))
         # The host reads the entries when the process has ended.
-        monkeypatch.setattr(RunFolder, "entries", entries)
+        monkeypatch.setattr(RunFolder, "load_entries", entries)
         await wait_until(is_reading.is_set)
         starting = asyncio.create_task(host.start(order(site, speed=20.0), "bob"))
         await asyncio.sleep(0.1)
@@ -177,7 +181,7 @@ async def test_a_second_run_is_refused_with_the_name_of_who_has_the_robot(tmp_pa
         await host.start(order(site), "bob")
         await wait_until(has_ended(host))
         assert host.state.by == "bob"
-        assert [state.by for state in await host.all()] == ["bob", "ann"]
+        assert [state.by for state in await host.list_runs()] == ["bob", "ann"]
 
 
 @pytest.mark.long
@@ -186,18 +190,18 @@ async def test_a_pause_is_confirmed_only_when_nothing_moves(tmp_path, site) -> N
         await host.start(order(site, speed=20.0), "ann")
         await wait_until(lambda: bool(host.state and host.state.moving and host.state.t > 5))
         run = host.state.id
-        follower = host.follow("1", host.state.entries)
-        accepted = await host.ask(run, asked.PauseRun(id="p"), "ann")
+        follower = host.subscribe("1", host.state.entries)
+        accepted = await host.send_request(run, asked.PauseRun(id="p"), "ann")
         assert accepted.progress == "accepted"
-        again = await host.ask(run, asked.PauseRun(id="p"), "ann")
+        again = await host.send_request(run, asked.PauseRun(id="p"), "ann")
         assert again.id == "p"
-        await wait_until(lambda: host.request(run, "p").over)
+        await wait_until(lambda: host.find_request(run, "p").over)
         steps = [m["request"]["progress"] for m in await waiting_messages(follower, "request")]
         assert steps == ["accepted", "under way", "confirmed"]
         assert host.state.mode is RunMode.PAUSED
         assert not host.state.moving
         with pytest.raises(Conflict, match="id p"):
-            await host.ask(run, asked.TakeRobot(id="p"), "ann")
+            await host.send_request(run, asked.TakeRobot(id="p"), "ann")
         assert await ask_and_wait(host, asked.ChangeSpeed(id="f", speed=None)) == "confirmed"
         at = host.state.t
         await asyncio.sleep(0.5)
@@ -207,7 +211,7 @@ async def test_a_pause_is_confirmed_only_when_nothing_moves(tmp_path, site) -> N
         assert host.state.headline is not None
         assert host.state.headline.word == "Success"
         with pytest.raises(Conflict, match="is over"):
-            await host.ask(run, asked.PauseRun(id="q"), "ann")
+            await host.send_request(run, asked.PauseRun(id="q"), "ann")
 
 
 async def test_a_person_takes_over_drives_measures_skips_and_gives_back(tmp_path, site) -> None:
@@ -256,7 +260,7 @@ async def test_a_run_whose_process_was_killed_is_resumed(tmp_path, site) -> None
         await interrupt(host)
         assert "signal 9" in host.state.problem
         with pytest.raises(Conflict, match="interrupted"):
-            await host.ask(host.state.id, asked.PauseRun(id="p"), "ann")
+            await host.send_request(host.state.id, asked.PauseRun(id="p"), "ann")
         with pytest.raises(Conflict, match="ann has begun"):
             await host.start(order(site), "bob")
         assert await ask_and_wait(host, asked.GoOnWithRun(id="g")) == "confirmed"
@@ -281,10 +285,10 @@ async def test_a_restarted_service_finds_its_run(tmp_path, site, after: str) -> 
             assert "the service has ended" in state.problem
             assert await ask_and_wait(host, asked.GoOnWithRun(id="g")) == "confirmed"
         assert await wait_for_headline(host) == "Success"
-        history = await host.history(state.id, 0, 10**6)
+        history = await host.list_entries(state.id, 0, 10**6)
         assert history.count == len(history.entries) == host.state.entries
         with pytest.raises(NotFound):
-            await host.history("20200101-000000-0000", 0, 1)
+            await host.list_entries("20200101-000000-0000", 0, 1)
 
 
 @pytest.mark.long
@@ -294,7 +298,7 @@ async def test_a_run_that_can_not_start_ends_with_a_reason(tmp_path, site) -> No
         await wait_until(has_ended(host))
         assert "no drive `flying`" in host.state.problem
         with pytest.raises(NotFound, match="before anything had happened"):
-            await host.report(run, "report.html")
+            await host.read_report_file(run, "report.html")
         await host.start(order(site), "bob")
         await wait_until(has_ended(host))
         assert host.state.problem is None
@@ -308,10 +312,10 @@ async def test_a_pause_during_a_pause_changes_nothing(tmp_path, site) -> None:
     async with open_host(tmp_path) as host:
         await start_run(host, site)
         assert await ask_and_wait(host, asked.PauseRun(id="p")) == "confirmed"
-        entries = [e.events for e in (await host.history(host.state.id, 0, 10**6)).entries]
+        entries = [e.events for e in (await host.list_entries(host.state.id, 0, 10**6)).entries]
         assert await ask_and_wait(host, asked.PauseRun(id="q")) == "confirmed"
         assert host.state.mode is RunMode.PAUSED
-        later = [e.events for e in (await host.history(host.state.id, 0, 10**6)).entries]
+        later = [e.events for e in (await host.list_entries(host.state.id, 0, 10**6)).entries]
         assert [*filter(None, later)] == [*filter(None, entries)]
         assert await ask_and_wait(host, asked.ChangeSpeed(id="f", speed=None)) == "confirmed"
         assert await ask_and_wait(host, asked.GoOnWithRun(id="g")) == "confirmed"
@@ -325,17 +329,17 @@ async def test_a_person_who_has_the_robot_can_neither_pause_nor_skip_twice(tmp_p
     async with open_host(tmp_path) as host:
         run = await start_run(host, site)
         assert await ask_and_wait(host, asked.GiveRobotBack(id="1")) == "refused"
-        assert "nobody has the robot" in host.request(run, "1").reason
+        assert "nobody has the robot" in host.find_request(run, "1").reason
         assert await ask_and_wait(host, asked.PauseRun(id="p")) == "confirmed"
         assert await ask_and_wait(host, asked.GiveRobotBack(id="2")) == "refused"
         assert host.state.mode is RunMode.PAUSED
         assert await ask_and_wait(host, asked.TakeRobot(id="t")) == "confirmed"
         assert host.state.mode is RunMode.SUPERVISED
         assert await ask_and_wait(host, asked.PauseRun(id="3")) == "refused"
-        assert "until they give it back" in host.request(run, "3").reason
+        assert "until they give it back" in host.find_request(run, "3").reason
         assert await ask_and_wait(host, asked.SkipTask(id="4", task=name)) == "confirmed"
         assert await ask_and_wait(host, asked.SkipTask(id="5", task=name)) == "refused"
-        assert "skipped already" in host.request(run, "5").reason
+        assert "skipped already" in host.find_request(run, "5").reason
         assert host.state.skipped == (name,)
         assert await ask_and_wait(host, asked.ChangeSpeed(id="f", speed=None)) == "confirmed"
         assert await ask_and_wait(host, asked.GiveRobotBack(id="b")) == "confirmed"
@@ -351,7 +355,7 @@ async def test_a_new_state_is_sent_before_the_confirmation_of_its_request(tmp_pa
 
     async with open_host(tmp_path) as host:
         await start_run(host, site)
-        follower = host.follow("1", host.state.entries)
+        follower = host.subscribe("1", host.state.entries)
         for request, mode, skipped in (
             (asked.PauseRun(id="p"), "paused", []),
             (asked.TakeRobot(id="t"), "supervised", []),

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from argo_env.planning.opening import OpenedSite
-from argo_planner.service.world.standing import Ground, read_standing_map
+from argo_planner.service.world.standing_map import Ground, read_standing_map
 from tests.argo_planner.service.served import Served
 from tests.argo_planner.service.test_http import problem
 from tests.argo_planner.service.test_run_host import SCRIPT
@@ -48,7 +48,7 @@ def test_the_description_meshes_and_maps_agree_with_the_site(
         range(len(world["headings"])), key=lambda k: abs(world["headings"][k] - dock["yaw"])
     )
     there = client.get(f"/api/world/floors/{number}/standing/{heading}").content
-    assert read_standing_map(there).at(dock["x"], dock["y"], dock["z"]) is Ground.REACHED
+    assert read_standing_map(there).ground_at(dock["x"], dock["y"], dock["z"]) is Ground.REACHED
     assert standing.floor == floor
     for path in ("floors/99/mesh/full", "floors/99/standing/0", "floors/1/standing/999"):
         assert client.get(f"/api/world/{path}").status_code in (404, 422)

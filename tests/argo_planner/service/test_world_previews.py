@@ -13,7 +13,7 @@ from argo_env.planning.opening import OpenedSite
 from argo_env.run.journal import open_journal
 from argo_env.run.session import resume, simulate
 from argo_env.run.spec import RunSpec
-from argo_planner.service.world.description import describe, world_digest
+from argo_planner.service.world.description import describe_world, world_digest
 from argo_planner.service.world.obstacles import with_obstacles
 from argo_planner.service.world.previews import WayKind, preview_mission, preview_way
 from tests.argo_planner.service.test_world_standing import crate
@@ -83,7 +83,7 @@ def test_an_unreachable_pose_is_reported_with_a_reason(site):
     assert "no place that the robot can reach" in way.problem
     seen = preview_mission(site, chain(waypoint("far", pose=nowhere), measure(1)))
     assert seen.problems == (f"task 'far': {way.problem}",)
-    assert seen.at_least == ("there is no way to task 'far'",)
+    assert seen.at_least == ("there is no path to task 'far'",)
     assert seen.ways[1].way.time > 0
 
 
@@ -150,14 +150,14 @@ def test_previews_and_runs_avoid_an_obstacle_alike(site):
 
 
 def test_checkpoints_behind_obstacles_are_reported(site):
-    whole = describe(site)
+    whole = describe_world(site)
     assert all(c.problem is None and c.stands is not None for c in whole.checkpoints)
     feet = (
         (tower.name, min((flight.foot for flight in tower.flights), key=lambda foot: foot[2]))
         for tower in site.site.spec.towers
     )
     wall = tuple(crate(f"{name} 1", x, y, 0.0, (2.5, 2.5, 2.0), 0.0) for name, (x, y, _) in feet)
-    description = describe(site, wall)
+    description = describe_world(site, wall)
     assert description.obstacles == wall
     assert description.digest == world_digest(site, wall) != whole.digest
     for before, after in zip(whole.checkpoints, description.checkpoints, strict=True):
@@ -170,7 +170,7 @@ def test_checkpoints_behind_obstacles_are_reported(site):
 
 
 def test_the_description_agrees_with_the_site(site):
-    description = describe(site)
+    description = describe_world(site)
     assert description.model_validate_json(description.model_dump_json()) == description
     assert [f.number for f in description.floors] == [1, 2, 3, 4, 5, 6]
     for floor in description.floors:

@@ -16,7 +16,7 @@ from argo_env.navigation.lattice import build_lattice
 from argo_env.navigation.navigator import SNAP_DISTANCE, nearest_state
 from argo_env.navigation.stencil import HEADINGS
 from argo_planner.service.world.obstacles import Obstacle, with_obstacles
-from argo_planner.service.world.standing import Ground, read_standing_map, standing_map
+from argo_planner.service.world.standing_map import Ground, read_standing_map, standing_map
 
 FLOORS = range(1, 7)
 
@@ -94,7 +94,7 @@ def test_the_map_has_the_poses_of_the_navigator(site, maps):
     rng, lattice = np.random.default_rng(1), site.navigator.lattice
     seen = set()
     for pose, code, one in poses_of(maps, rng, 300):
-        assert one.at(pose.x, pose.y, pose.z) is code
+        assert one.ground_at(pose.x, pose.y, pose.z) is code
         assert is_state(lattice, pose) == (code is Ground.REACHED), (pose, code)
         seen.add(code)
     assert seen >= {Ground.TOO_NEAR, Ground.TOO_STEEP, Ground.CUT_OFF, Ground.REACHED}

@@ -1,4 +1,4 @@
-"""The obstacles that people have put on a site, kept on disk."""
+"""Obstacles that people have placed on a site, stored on disk."""
 
 import os
 from pathlib import Path
@@ -15,35 +15,41 @@ _FILE = "obstacles.json"
 
 
 class ObstacleList(Model):
-    """The obstacles on a site, and how often they have changed."""
+    """Obstacles on a site, with their revision."""
 
     revision: int = Field(default=1, ge=1)
+    """revision of the obstacles; each change makes the next one"""
     obstacles: tuple[Obstacle, ...] = ()
 
 
-class KeptObstacles:
-    """The obstacles of a folder. Holds how they are; one thread at a time may change them."""
+class ObstacleStore:
+    """The obstacles in a folder, in memory and on disk; one thread at a time may change them."""
 
     def __init__(self, folder: Path) -> None:
-        """Raises Unavailable if they can't be read."""
+        """Read the obstacles in a folder; raises Unavailable if that fails."""
         self._path = folder / _FILE
         self.present = ObstacleList()
         if not os.path.lexists(self._path):
             return
         try:
             file = os.open(self._path, os.O_RDONLY | os.O_NOFOLLOW)
-            with open(file, "rb") as kept:
-                self.present = ObstacleList.model_validate_json(kept.read())
+            with open(file, "rb") as stored:
+                self.present = ObstacleList.model_validate_json(stored.read())
         except (OSError, ValidationError) as error:
             raise Unavailable(
-                f"{self._path}: the obstacles can't be read: {error}; mend the file, or remove it"
+                f"{self._path}: the obstacles can't be read: {error}; correct the file or delete it"
             ) from None
 
     def replace(self, obstacles: tuple[Obstacle, ...], made_on: int | None) -> ObstacleList:
-        """Puts these in the place of all that there are. When this returns, it is on disk.
+        """Replace all obstacles on disk and in memory, and return the new list.
 
-        Raises StaleRevision if they have changed since the revision `made_on`, and Unavailable if
-        they can't be written.
+        Args:
+            obstacles: All obstacles that are to be on the site.
+            made_on: Revision that the change is made on; None: any revision.
+
+        Raises:
+            StaleRevision: The obstacles have changed since the revision `made_on`.
+            Unavailable: The file can't be written.
         """
         if made_on is not None and made_on != self.present.revision:
             raise StaleRevision(made_on, self.present.revision)

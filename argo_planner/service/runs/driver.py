@@ -198,7 +198,7 @@ def _is_same(old: Task | None, new: Task | None) -> bool:
 
 
 class RunDriver:
-    """One simulation under way, with its pace and the requests to it."""
+    """Driver of a simulation, with its pace and the requests to it."""
 
     def __init__(
         self,

@@ -140,7 +140,7 @@ class StateTold(Model):
 
     kind: Literal["state"] = "state"
     state: RunState | None
-    """None: no run was ever started"""
+    """state of the current run; None: no run was ever started"""
 
 
 class RequestTold(Model):

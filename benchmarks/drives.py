@@ -66,8 +66,8 @@ def random_mission(navigator: Navigator, seed: int) -> Mission:
             task = Task(name=f"STOP {k}", action=Action.MEASURE, object_id=checkpoint)
         else:
             floor = site.spec.floors[rng.integers(len(site.spec.floors))].number
-            places = _turning_poses(navigator, floor)
-            x, y, z, _ = places[rng.integers(len(places))].tolist()
+            poses = _turning_poses(navigator, floor)
+            x, y, z, _ = poses[rng.integers(len(poses))].tolist()
             yaw = float(rng.uniform(-np.pi, np.pi))
             pose = Pose(x=round(x, 6), y=round(y, 6), z=round(z, 6), yaw=yaw)
             task = Task(name=f"STOP {k}", action=Action.WAYPOINT, pose=pose)

@@ -299,8 +299,8 @@ def measure_resets(options: argparse.Namespace) -> None:
 
 def measure_expert(options: argparse.Namespace) -> None:
     """Print how often the expert reaches its goal on UMAD, by the floor of the goal."""
-    made = gym.make("argo/Drive-v0", max_way=options.max_way, disable_env_checker=True)
-    env: Any = made.unwrapped
+    wrapped = gym.make("argo/Drive-v0", max_way=options.max_way, disable_env_checker=True)
+    env: Any = wrapped.unwrapped
     results: dict[str, list[tuple[bool, float, float, bool]]] = {}
     begun, steps = time.perf_counter(), 0
     for seed in range(1_000_000, 1_000_000 + (options.count or 16)):

@@ -114,7 +114,7 @@ class KnownRoute:
     cost: int
 
 
-def read_route_problem(path: Path) -> NamedProblem:
+def read_published_problem(path: Path) -> NamedProblem:
     """Return the problem in a TSPLIB (TSP, ATSP, SOP), OPLib or TSPTW file.
 
     Raises:

@@ -20,7 +20,7 @@ import numpy as np
 
 from argo_compiler.route import RouteProblem, RouteSuggestion, suggest_route
 from argo_compiler.route.solvers import FIRST, solver_names
-from benchmarks.instances import read_route_problem
+from benchmarks.instances import read_published_problem
 from benchmarks.options import parse_seed
 from benchmarks.routes import find_files
 from benchmarks.routes_limits import KINDS, random_problem
@@ -102,7 +102,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     if options.folder:
         paths = islice(find_files(options.folder, "*"), options.count)
-        problems = [read_route_problem(path).problem for path in paths]
+        problems = [read_published_problem(path).problem for path in paths]
     else:
         problems = list(
             random_problems(options.problems, options.count, options.size, options.seed)

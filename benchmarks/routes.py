@@ -29,7 +29,7 @@ from argo_compiler.base.errors import ArgoError
 from argo_compiler.route import RouteProblem, Tour, evaluate
 from argo_compiler.route.suggestion import suggest_route
 from benchmarks import peer_lkh, peer_pyvrp
-from benchmarks.instances import Kind, NamedProblem, read_route_problem
+from benchmarks.instances import Kind, NamedProblem, read_published_problem
 from benchmarks.known_values import KnownValue, find_known_value
 from benchmarks.options import parse_seed
 from benchmarks.routes_table import PeerResult, Row, header_lines, row_line, summarize
@@ -156,7 +156,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     rows: list[Row] = []
     try:
         paths = [path for folder in options.folders for path in find_files(folder, options.only)]
-        problems = [(read_route_problem(path), path) for path in paths]
+        problems = [(read_published_problem(path), path) for path in paths]
         print(_settings_line(options.time_limit, options.workers, options.seed) + "\n")
         print("\n".join(header_lines([peer.name for peer in peers])))
         for named, path in sorted(

@@ -54,9 +54,9 @@ def make_site_matrix(name: str) -> SiteMatrix:
     return SiteMatrix(name, times, len(site.checkpoints))
 
 
-def random_mission(rng: np.random.Generator, site: SiteMatrix, most: int = 20) -> RouteProblem:
-    """Draw a mission of 2 to `most` checkpoints of the site with any mix of constraints."""
-    n = int(rng.integers(2, min(most, site.checkpoints) + 1))
+def random_mission(rng: np.random.Generator, site: SiteMatrix, largest: int = 20) -> RouteProblem:
+    """Draw a mission of 2 to `largest` checkpoints of the site with any mix of constraints."""
+    n = int(rng.integers(2, min(largest, site.checkpoints) + 1))
     chosen = rng.permutation(site.checkpoints)[:n]
     docks = np.arange(site.checkpoints, len(site.times))
     start, end = rng.choice(docks, 2)

@@ -82,7 +82,7 @@ def receive_revisions(address: str, id: str, revisions: int, count: int, times: 
     at which the last of them received each revision.
     """
 
-    async def one(last: Counter[int], ready: asyncio.Semaphore) -> None:
+    async def follow_once(last: Counter[int], ready: asyncio.Semaphore) -> None:
         url = f"ws://{address}/api/missions/{id}/live"
         async with connect(url, additional_headers=HEADERS, max_size=None, proxy=None) as socket:
             await socket.recv()
@@ -95,17 +95,17 @@ def receive_revisions(address: str, id: str, revisions: int, count: int, times: 
                     number = json.loads(text)["revision"]["number"]
                     last[number] = max(last[number], time.perf_counter_ns())
 
-    async def all_of_them() -> Counter[int]:
+    async def follow_in_parallel() -> Counter[int]:
         last: Counter[int] = Counter()
         ready = asyncio.Semaphore(0)
-        tasks = [asyncio.create_task(one(last, ready)) for _ in range(count)]
+        tasks = [asyncio.create_task(follow_once(last, ready)) for _ in range(count)]
         for _ in range(count):
             await ready.acquire()
         times.send(None)
         await asyncio.gather(*tasks)
         return last
 
-    times.send(asyncio.run(all_of_them()))
+    times.send(asyncio.run(follow_in_parallel()))
 
 
 def receive_poses(address: str, count: int, seconds: float, gaps: Connection) -> None:
@@ -114,7 +114,7 @@ def receive_poses(address: str, count: int, seconds: float, gaps: Connection) ->
     Runs in a process of its own. Sends all gaps (s) between poses that the same follower received.
     """
 
-    async def one() -> list[float]:
+    async def follow_once() -> list[float]:
         url = f"ws://{address}/api/robot/live?since=1000000000"
         own_gaps: list[float] = []
         async with connect(url, additional_headers=HEADERS, max_size=None, proxy=None) as socket:
@@ -128,12 +128,14 @@ def receive_poses(address: str, count: int, seconds: float, gaps: Connection) ->
                     last = now
         return own_gaps
 
-    async def all_of_them() -> list[float]:
+    async def follow_in_parallel() -> list[float]:
         return [
-            gap for gaps in await asyncio.gather(*(one() for _ in range(count))) for gap in gaps
+            gap
+            for gaps in await asyncio.gather(*(follow_once() for _ in range(count)))
+            for gap in gaps
         ]
 
-    gaps.send(asyncio.run(all_of_them()))
+    gaps.send(asyncio.run(follow_in_parallel()))
 
 
 def measure_poses(address: str, process: int, followers: int, seconds: float) -> None:

@@ -69,19 +69,19 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--laps", nargs="+", choices=LAPS, default=list(LAPS))
     parser.add_argument("--repeats", type=int, default=3, help="of each lap")
-    given = parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
     navigator, world = open_world()
     drive = TrackedDrive(world, navigator.robot)
     simulated_all, spent_all = 0.0, 0.0
-    for name in given.laps:
+    for name in options.laps:
         path = LAPS[name](navigator)
-        laps = [_drive_lap(drive, path) for _ in range(given.repeats)]
+        laps = [_drive_lap(drive, path) for _ in range(options.repeats)]
         simulated, spent = min(laps, key=lambda lap: lap[1])
         simulated_all, spent_all = simulated_all + simulated, spent_all + spent
         worst = max(lap[1] for lap in laps)
         print(
             f"{name:16} {simulated:6.1f} s in {spent:5.2f} CPU s: {simulated / spent:5.1f} x "
-            f"(worst of {given.repeats}: {simulated / worst:.1f} x)"
+            f"(worst of {options.repeats}: {simulated / worst:.1f} x)"
         )
     load = os.getloadavg()[0]
     print(

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from argo_compiler.base.errors import ArgoError
 from argo_compiler.route import NEVER, Objective, Tour, evaluate
 from argo_compiler.route.suggestion import suggest_route
-from benchmarks.instances import MAX_NODES, Kind, read_known_route, read_route_problem
+from benchmarks.instances import MAX_NODES, Kind, read_known_route, read_published_problem
 from tests.conftest import examples
 
 DISTANCES = st.integers(2, 7).flatmap(
@@ -26,7 +26,7 @@ DISTANCES = st.integers(2, 7).flatmap(
 def read(folder, text, name="some.txt"):
     path = folder / name
     path.write_text(text)
-    return read_route_problem(path)
+    return read_published_problem(path)
 
 
 def wrapped(numbers, width):
@@ -299,7 +299,7 @@ def test_paths_without_a_text_file_are_refused(tmp_path):
         (Path("\0"), "can't be read"),
     ]:
         with pytest.raises(ArgoError, match=message):
-            read_route_problem(path)
+            read_published_problem(path)
 
 
 @settings(deadline=None, max_examples=examples(150))
@@ -334,7 +334,7 @@ def test_published_routes_have_their_published_score_and_cost(originals):
     assert paths
     for path in paths:
         known = read_known_route(path)
-        named = read_route_problem(path.with_suffix(".oplib"))
+        named = read_published_problem(path.with_suffix(".oplib"))
         evaluation = evaluate(named.problem, named.make_route(known.nodes))
         assert evaluation.feasible
         assert (named.published_value(evaluation.prize, 0), evaluation.duration) == (
@@ -348,7 +348,7 @@ def test_all_published_problems_are_read(originals):
     paths = [path for path in originals.rglob("*") if path.suffix in endings]
     assert {path.suffix for path in paths} == {*endings}
     for path in paths:
-        assert read_route_problem(path).kind == endings[path.suffix]
+        assert read_published_problem(path).kind == endings[path.suffix]
 
 
 @pytest.mark.parametrize(
@@ -357,7 +357,7 @@ def test_all_published_problems_are_read(originals):
      ("tsptw/rbg017.tw", 893), ("tsptw/rbg019c.tw", 4536)],
 )  # fmt: skip
 def test_small_published_problems_are_solved_to_their_known_values(originals, file, value):
-    named = read_route_problem(originals / file)
+    named = read_published_problem(originals / file)
     suggestion = suggest_route(named.problem, 30.0)  # they take less than 1 s on a quiet machine
     assert suggestion.proven
     assert named.published_value(suggestion.prize, suggestion.cost) == named.published_value(

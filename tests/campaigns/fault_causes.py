@@ -163,7 +163,7 @@ def findings_without_cause(record: RunRecord, site: Site) -> tuple[str, ...]:
     return tuple(texts)
 
 
-def aborts_without_cause(record: RunRecord) -> tuple[str, ...]:
+def failures_without_cause(record: RunRecord) -> tuple[str, ...]:
     """Return the failed tasks, the interruptions and the failure of a mission without a cause."""
     texts = [
         f"{run.end:g} s: task {run.task} failed: {run.reason}"

@@ -40,7 +40,7 @@ from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec, logged_events
 from argo_env.seeding import generator
 from benchmarks.options import parse_seed
-from tests.campaigns.fault_causes import aborts_without_cause, findings_without_cause
+from tests.campaigns.fault_causes import failures_without_cause, findings_without_cause
 from tests.campaigns.faults import random_mission
 
 MISSIONS = (
@@ -100,7 +100,7 @@ class PairOutcome:
     success: bool
     uncaused: tuple[str, ...]
     """findings without a cause"""
-    given_up: tuple[str, ...]
+    failures: tuple[str, ...]
     """failures of tasks or of the mission without a cause"""
 
 
@@ -217,15 +217,15 @@ def run_case(
     spec, site = case.spec, open_site(case.spec.site)
     entries = _Entries()
     record = simulate(spec, site, observers=[entries])
-    uncaused, given_up = findings_without_cause(record, site.site), aborts_without_cause(record)
+    uncaused, failures = findings_without_cause(record, site.site), failures_without_cause(record)
     if case.resumed is not None:
         past = entries.all[: 1 + int(case.resumed * (len(entries.all) - 1))]
         with Simulation(Executor(lower(spec.mission)), site, spec, past=past) as simulation:
             again = simulation.run()
         prefix = f"resumed at {past[-1].t:g} s, "
         uncaused += tuple(prefix + text for text in findings_without_cause(again, site.site))
-        given_up += tuple(prefix + text for text in aborts_without_cause(again))
-    return PairOutcome(case, len(record.findings), record.result.success, uncaused, given_up)
+        failures += tuple(prefix + text for text in failures_without_cause(again))
+    return PairOutcome(case, len(record.findings), record.result.success, uncaused, failures)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -237,23 +237,23 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--processes", type=int, default=1, help="number of processes")
     options = parser.parse_args(arguments)
     numbers = range(options.first, options.first + options.runs)
-    findings = uncaused = successes = given_up = 0
+    findings = uncaused = successes = failures = 0
     with ProcessPoolExecutor(options.processes, mp_context=get_context("spawn")) as pool:
         for outcome in pool.map(partial(run_case, drive=options.drive), numbers):
             findings += outcome.findings
             successes += outcome.success
             uncaused += len(outcome.uncaused)
-            given_up += bool(outcome.given_up)
+            failures += bool(outcome.failures)
             for text in outcome.uncaused:
                 print(f"no cause: {text}\n  {outcome.case}", flush=True)
-            for text in outcome.given_up:
+            for text in outcome.failures:
                 print(f"failed without a cause: {text}\n  {outcome.case}", flush=True)
             done = outcome.case.number - options.first + 1
             if done % 50 == 0:
                 print(f"{done} runs, {findings} findings, {uncaused} without a cause", flush=True)
     print(
         f"{options.runs} runs with the drive {options.drive} and two faults each, {successes} "
-        f"successful missions: of {findings} findings {uncaused} without a cause; {given_up} "
+        f"successful missions: of {findings} findings {uncaused} without a cause; {failures} "
         "missions failed without one"
     )
 

@@ -21,11 +21,11 @@ from tests.argo_compiler.hfsm.reference import Reference
 from tests.argo_compiler.hfsm.world import Ticks, compare
 
 
-def count_when_true(what, method):
+def count_when_true(name, method):
     """Wrap a method of the reference so that it counts how often its result is true."""
 
     def counting(self):
-        return self.counted(what, method(self))
+        return self.count(name, method(self))
 
     return counting
 
@@ -37,8 +37,8 @@ class CountingReference(Reference):
         super().__init__(mission)
         self.happened = Counter()
 
-    def counted(self, what, happens):
-        self.happened[what] += bool(happens)
+    def count(self, name, happens):
+        self.happened[name] += bool(happens)
         return happens
 
     hold_limit_over = count_when_true("a hold's limit", Reference.hold_limit_over)
@@ -50,7 +50,7 @@ class CountingReference(Reference):
 
     def start(self, now):
         commands = super().start(now)
-        self.counted("begins paused", self.paused)
+        self.count("begins paused", self.paused)
         return commands
 
     def wait_over(self):
@@ -58,27 +58,27 @@ class CountingReference(Reference):
         if wait is None:
             return False
         why = "duration" if wait.duration is not None else "event" if occurred else "conditions"
-        return self.counted(f"a wait ends by {why}", super().wait_over())
+        return self.count(f"a wait ends by {why}", super().wait_over())
 
     def limit_over(self):
-        what = "a wait's limit" if self.wait() else "an action's limit"
-        return self.counted(what, super().limit_over())
+        name = "a wait's limit" if self.wait() else "an action's limit"
+        return self.count(name, super().limit_over())
 
     def failed_for_good(self, kind="failed", missed=None):
-        self.counted("missed_target", missed is not None)
-        self.counted("a failure branches", self.tasks[self.current].on_failure == "branch")
+        self.count("missed_target", missed is not None)
+        self.count("a failure branches", self.tasks[self.current].on_failure == "branch")
         super().failed_for_good(kind, missed)
 
     def action_succeeded(self, run, event):
-        self.counted("late success", run.dropped)
+        self.count("late success", run.dropped)
         super().action_succeeded(run, event)
 
     def measured(self, object_id, reading):
-        self.counted("unreadable", reading.kind == "unreadable")
+        self.count("unreadable", reading.kind == "unreadable")
         super().measured(object_id, reading)
 
     def over(self, outcome):
-        self.counted(outcome, True)
+        self.count(outcome, True)
         super().over(outcome)
 
 

@@ -6,7 +6,7 @@ from argo_compiler.il import EventKind
 from argo_env.faults.kinds import KINDS, FaultFile
 from argo_env.planning import open_site
 from argo_env.run.record import Anomaly
-from tests.campaigns.fault_causes import aborts_without_cause, findings_without_cause
+from tests.campaigns.fault_causes import failures_without_cause, findings_without_cause
 from tests.campaigns.fault_pairs import draw_case, kind_pairs, run_case, run_without_faults
 
 SHORT = (("darmstadt", 2), ("darmstadt", 31))
@@ -15,7 +15,7 @@ SHORT = (("darmstadt", 2), ("darmstadt", 31))
 @pytest.mark.parametrize(("drive", "runs"), [("route", 24), ("kinematic", 4)])
 def test_findings_have_a_cause(drive, runs):
     outcomes = [run_case(number, drive, SHORT) for number in range(runs)]
-    assert [text for o in outcomes for text in (*o.uncaused, *o.given_up)] == []
+    assert [text for o in outcomes for text in (*o.uncaused, *o.failures)] == []
     assert sum(o.findings for o in outcomes) >= runs / 3
     assert any(o.case.resumed is not None for o in outcomes)
 
@@ -45,7 +45,7 @@ FINDINGS = {
 
 
 @pytest.mark.parametrize(
-    ("found", "fault", "caused"),
+    ("finding", "fault", "caused"),
     [
         ("dysfunction", {"kind": "drive_dysfunction", "at": 30, "speed": 0.3}, True),
         ("dysfunction", {"kind": "drive_dysfunction", "at": 30, "until": 45, "speed": 0}, True),
@@ -58,15 +58,15 @@ FINDINGS = {
         ("gas_leak", {"kind": "platform_alarm", "at": 10}, False),
     ],
 )
-def test_a_cause_fits_in_kind_and_time(found, fault, caused):
+def test_a_cause_fits_in_kind_and_time(finding, fault, caused):
     faults = FaultFile.model_validate({"faults": [fault]}).faults
     record = run_without_faults("darmstadt", 2)[1]
-    record = record.model_copy(update={"anomalies": (FINDINGS[found],), "faults": faults})
+    record = record.model_copy(update={"anomalies": (FINDINGS[finding],), "faults": faults})
     assert (findings_without_cause(record, open_site("darmstadt").site) == ()) is caused
 
 
 def test_the_failure_of_a_mission_needs_a_cause_too():
     record = run_without_faults("darmstadt", 2)[1]
-    assert aborts_without_cause(record) == ()
+    assert failures_without_cause(record) == ()
     result = record.result.model_copy(update={"success": False, "verdict": "it was given up"})
-    assert aborts_without_cause(record.model_copy(update={"result": result}))
+    assert failures_without_cause(record.model_copy(update={"result": result}))

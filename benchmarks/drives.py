@@ -98,7 +98,7 @@ def run(navigator: Navigator, seed: int, drive: str) -> Run:
     began = time.perf_counter()
     result = simulate(
         RunSpec(mission=mission, site=navigator.site.name, drive=drive, seed=seed),
-        OpenedSite.of_navigator(navigator),
+        OpenedSite.from_navigator(navigator),
     ).result
     wall = time.perf_counter() - began
     return Run(seed, drive, None if result.success else result.verdict, result.duration, wall)

@@ -47,7 +47,7 @@ def test_snippets_run(page, monkeypatch):
 
 
 def is_a_site(text, page):
-    report = make_site_report(OpenedSite.of(make_site(parse_site_spec(text, page))))
+    report = make_site_report(OpenedSite.from_site(make_site(parse_site_spec(text, page))))
     assert (report.errors, report.notes) == ((), ())
 
 

@@ -237,7 +237,7 @@ class Watching(Observer):
 
 def opened(navigator):
     """Return the navigator's site as an `OpenedSite`."""
-    return OpenedSite.of_navigator(navigator)
+    return OpenedSite.from_navigator(navigator)
 
 
 def simulated(plan, navigator, *, observers=(), journal=None, gui=False, pace=None, **fields):

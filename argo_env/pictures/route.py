@@ -109,7 +109,7 @@ def _path_points(
     site, robot = navigator.site, navigator.robot
     points = [PathPoint(0.0, here.x, here.y, site.floor_at(here.z))]
     for task in _tasks(planned, route):
-        path = travel.way(here, task)
+        path = travel.plan_path(here, task)
         t = points[-1].t
         for motion in path.motions:
             takes = motion.duration(robot)

@@ -26,7 +26,7 @@ from argo_env.pictures.drawing.sheet import (
     make_sheet,
 )
 from argo_env.pictures.drawing.style import STYLES, draw_headline, draw_length_scale, paint_disc
-from argo_env.planning.flaws import Flaw, Standing
+from argo_env.planning.flaws import Flaw, SafeStates
 from argo_env.site import Site
 
 _RADIUS = 9.0  # px of a checkpoint's disc
@@ -42,7 +42,7 @@ _REACHED, _UNREACHED, _RED = (52, 168, 110), (205, 50, 50), (190, 24, 24)
 
 
 def draw_site_plan(
-    site: Site, flaws: Sequence[Flaw] = (), standing: Standing | None = None
+    site: Site, flaws: Sequence[Flaw] = (), standing: SafeStates | None = None
 ) -> bytes:
     """Return a PNG of the floors with checkpoints, docking stations, places and stairs.
 
@@ -77,7 +77,7 @@ def draw_site_plan(
     return content.getvalue()
 
 
-def _shade(image: Image.Image, sheet: FloorSheet, number: int, standing: Standing) -> None:
+def _shade(image: Image.Image, sheet: FloorSheet, number: int, standing: SafeStates) -> None:
     """Shade the reachable part of a floor, and hatch the unreachable one."""
     from scipy.ndimage import binary_dilation, binary_opening
 

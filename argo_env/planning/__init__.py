@@ -1,4 +1,4 @@
-"""What plans are made with on a site: opened sites, catalogues, travel times, generated sites."""
+"""Planning on sites: opened sites, catalogues, travel times, flaws, generated sites."""
 
 from argo_env.planning.opening import OpenedSite, open_site
 

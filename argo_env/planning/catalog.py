@@ -1,4 +1,4 @@
-"""The compiler's view of a site: what scripts may name there."""
+"""Catalogues of sites: the names, poses and nominal ranges that the compiler knows."""
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
@@ -7,7 +7,7 @@ from argo_compiler.base.catalog import Area, Catalog, CheckpointInfo, Floor, Pla
 from argo_compiler.base.model import Pose
 from argo_compiler.base.stages import stage_items
 from argo_env.files.parts import Parts
-from argo_env.planning.patrols import kept_patrol, patrol
+from argo_env.planning.patrols import load_patrol, patrol
 from argo_env.site import Site
 
 if TYPE_CHECKING:
@@ -15,19 +15,19 @@ if TYPE_CHECKING:
 
 
 def make_catalog(navigator: "Navigator") -> Catalog:
-    """The catalogue of the navigator's site, its patrols along places that the robot can reach."""
+    """Return the catalogue of the navigator's site; its patrols have poses that can be reached."""
     floors = stage_items("looking for patrols of all floors", navigator.site.spec.floors)
     return _catalog(navigator.site, {f.number: patrol(navigator, f.number) for f in floors})
 
 
-def kept_catalog(site: Site, parts: Parts) -> Catalog | None:
-    """The same by the patrols that are kept in `parts`; None if some are not."""
+def load_catalog(site: Site, parts: Parts) -> Catalog | None:
+    """Return the catalogue of a site with the patrols cached in `parts`; None if one is missing."""
     patrols = {}
     for floor in site.spec.floors:
-        found = kept_patrol(parts, floor.number)
-        if found is None:
+        poses = load_patrol(parts, floor.number)
+        if poses is None:
             return None
-        patrols[floor.number] = found
+        patrols[floor.number] = poses
     return _catalog(site, patrols)
 
 

@@ -1,4 +1,4 @@
-"""A digest of the code that plans on sites: what it has found is only good for the same code."""
+"""A digest of the code that plans on sites: its cached results are only valid for the same code."""
 
 import hashlib
 import struct
@@ -17,9 +17,8 @@ _MODULES = (
 
 
 @lru_cache(maxsize=1)
-def digest_of_code() -> str:
-    """Of all modules that have a part in what is found on a site, of the libraries that search for
-    it, and of the kind of machine."""
+def code_digest() -> str:
+    """Return a digest of the code and libraries that plan on sites, and of the kind of machine."""
     sink = hashlib.blake2b(digest_size=16)
     sink.update(f"{sys.platform} {sys.byteorder} {struct.calcsize('P')} ".encode())
     libraries = f"{_version_of('numpy')} {_version_of('scipy')}"
@@ -34,9 +33,12 @@ def digest_of_code() -> str:
 
 
 def _version_of(library: str) -> str:
-    """Return the text with its version, without importing it, which takes longer than all else."""
-    found = find_spec(library)
-    if found is None or found.origin is None:
+    """Return a text that has the version of a library, or its path; "none" if it is not installed.
+
+    The library is not imported, as that would take longer than everything else.
+    """
+    spec = find_spec(library)
+    if spec is None or spec.origin is None:
         return "none"
-    version = Path(found.origin).with_name("version.py")
-    return version.read_text(encoding="utf-8") if version.is_file() else found.origin
+    version = Path(spec.origin).with_name("version.py")
+    return version.read_text(encoding="utf-8") if version.is_file() else spec.origin

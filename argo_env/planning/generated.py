@@ -1,26 +1,32 @@
-"""Generated sites that have been checked: what can't be driven is drawn again."""
+"""Generated sites that the robot can drive: a draw that it can't drive is replaced."""
 
 from argo_compiler.base.errors import ArgoError, Unreachable
 from argo_env.navigation.navigator import Navigator
-from argo_env.planning.checking import unseen_checkpoints, unserved_floors
+from argo_env.planning.checking import unpatrolled_floors, unseen_checkpoints
 from argo_env.robot.spec import RobotSpec, load_robot
 from argo_env.site.families import draw_site
 from argo_env.site.family import Family
 from argo_env.site.site import make_site
 
-_LAYOUTS = 5  # that are drawn before giving up
-_ROUNDS = 8  # of moving checkpoints that can't be read, for each layout
+_LAYOUTS = 5  # maximum number of layouts that are drawn
+_ROUNDS = 8  # maximum number of times that unreadable checkpoints are moved, for each layout
 
 
 def generate(family: Family, robot: RobotSpec | None = None) -> Navigator:
-    """The navigator of the site that the family's parameters give: `open_site` keeps what this
-    draws anew each time.
+    """Return the navigator of the site that a family's parameters define.
 
-    The robot (the tracker, unless told otherwise) gets from every docking station to every floor,
-    and to a view of every checkpoint, and back. Where a draw does not give that, its checkpoints
-    are moved, and then the next draw is taken, in an order that only the parameters decide.
+    The robot can get from every docking station to every floor and to a viewing pose of every
+    checkpoint, and back. If a draw is not like that, its checkpoints are moved; if that does not
+    help, the next draw is taken. The parameters alone determine the result. It is not cached:
+    `open_site` caches it.
 
-    Raises ArgoError if the checkpoints do not fit on a site of this size.
+    Args:
+        family: Parameters of the site.
+        robot: Robot that must be able to drive there; None: the tracker.
+
+    Raises:
+        Unreachable: The robot can't drive any of the draws.
+        ArgoError: The checkpoints do not fit on a site of this size.
     """
     robot = robot or load_robot()
     for attempt in range(_LAYOUTS):
@@ -30,15 +36,15 @@ def generate(family: Family, robot: RobotSpec | None = None) -> Navigator:
             navigator = Navigator(make_site(spec), robot)
             try:
                 _ = navigator.lattice
-            except ArgoError:  # a docking station that nothing leads to
+            except ArgoError:  # a docking station can't be reached
                 break
-            if unserved_floors(navigator):
+            if unpatrolled_floors(navigator):
                 break
             unseen = unseen_checkpoints(navigator)
             if not unseen:
                 return navigator
             refused |= {slots[id] for id in unseen}
     raise Unreachable(
-        f"site `{family}`: no draw of this seed can be driven by the {robot.name}; take another"
+        f"site `{family}`: no draw of this seed can be driven by the {robot.name}; choose another"
         " seed or less clutter"
     )

@@ -1,4 +1,4 @@
-"""A site that is ready for work: the one way to get geometry, paths, names and travel times."""
+"""Opened sites, which have the geometry, paths, names and travel times for planning and driving."""
 
 import hashlib
 import logging
@@ -17,8 +17,8 @@ from argo_compiler.base.stages import stage
 from argo_compiler.files.loading import read_text
 from argo_env.files import cache
 from argo_env.files.parts import NO_CACHE, Parts
-from argo_env.planning.catalog import kept_catalog, make_catalog
-from argo_env.planning.code import digest_of_code
+from argo_env.planning.catalog import load_catalog, make_catalog
+from argo_env.planning.code import code_digest
 from argo_env.robot.spec import RobotSpec, load_robot, validate_robot
 from argo_env.site import Site, make_site
 from argo_env.site.family import Family, is_family, parse_family
@@ -31,82 +31,91 @@ if TYPE_CHECKING:
 
 _log = logging.getLogger(__name__)
 
-_KEPT = 8  # sites in memory; each holds some 100 MB
-_PATHS = 4096  # of a site; simulations go the same ways again and again
+_MAX_SITES = 8  # sites that are kept in memory; each takes some 100 MB
+_MAX_PATHS = 4096  # paths that are kept in memory for a site, as simulations drive them repeatedly
 
 
 class OpenedSite:
-    """A site with all that planning and driving on it need. Keeps what it has worked out.
+    """A site with everything that planning and driving on it need; computed parts are kept.
 
-    All who open a site share one, and so do its copies. It is pickled by its reference, or by its
-    description where it was made in memory: who unpickles it opens the site again.
+    Calls that open the same site share one object, and copies are the same object. It is pickled as
+    its reference, or as its description if it was made in memory; unpickling opens it again.
     """
 
     def __init__(
         self, reference: str | None, site: Site, robot: RobotSpec, parts: Parts = NO_CACHE
     ) -> None:
-        """What takes long to find is looked up in `parts`, and kept there."""
+        """Wrap a site.
+
+        Args:
+            reference: Reference with which `open_site` opens it again; None: it was made in memory.
+            site: Geometry of the site.
+            robot: Robot that drives on the site.
+            parts: Cache on disk for results that take long to compute.
+        """
         self._reference = reference
         self.site = site
         self.robot = robot
         self.parts = parts
 
     @staticmethod
-    def of(site: Site, robot: RobotSpec | None = None) -> "OpenedSite":
-        """A site that was made in memory, for the tracker unless told otherwise."""
+    def from_site(site: Site, robot: RobotSpec | None = None) -> "OpenedSite":
+        """Open a site that was made in memory, for a robot (None: the tracker)."""
         robot = robot or load_robot()
         if site.altered is None:
-            return _make_again(site.spec, robot)
+            return _open_spec(site.spec, robot)
         return OpenedSite(None, site, robot)
 
     @staticmethod
-    def of_navigator(navigator: "Navigator") -> "OpenedSite":
-        """The site of a navigator that was made in memory, with that navigator."""
+    def from_navigator(navigator: "Navigator") -> "OpenedSite":
+        """Open the site of a navigator that was made in memory, with that navigator."""
         opened = OpenedSite(None, navigator.site, navigator.robot, navigator.parts)
         opened.navigator = navigator
         return opened
 
     @property
     def reference(self) -> str:
-        """What opens it again: the site's name, the whole path of its file, or its parameters. Of a
-        site made in memory just its name."""
+        """Reference that opens the site again: its name, its file's full path, or its parameters.
+
+        For a site that was made in memory it is only the name.
+        """
         return self._reference or self.name
 
     @property
     def name(self) -> str:
         return self.site.name
 
-    # A mission that was checked before is checked without what follows: imported when needed.
+    # A mission that was checked before is checked without these modules: imported when needed.
 
     @cached_property
     def navigator(self) -> "Navigator":
-        """What finds paths on the site; remembers those that it planned last."""
+        """Path planner of the site; it keeps the paths that it planned last."""
         from argo_env.navigation import Navigator
 
-        return Navigator(self.site, self.robot, self.parts, cached_paths=_PATHS)
+        return Navigator(self.site, self.robot, self.parts, cached_paths=_MAX_PATHS)
 
     @cached_property
     def catalog(self) -> Catalog:
-        """What scripts may name on the site."""
-        return kept_catalog(self.site, self.parts) or make_catalog(self.navigator)
+        """Catalogue of the site, for the compiler."""
+        return load_catalog(self.site, self.parts) or make_catalog(self.navigator)
 
     @cached_property
     def travel(self) -> "SiteTravel":
-        """Travel times and energy, for the analysis and for routes."""
+        """Travel times and energy on the site, for the analysis and for routes."""
         from argo_env.planning.travel import SiteTravel
 
         return SiteTravel(self)
 
     @cached_property
     def digest(self) -> str:
-        """A digest of the site's description and the robot's."""
+        """Digest of the descriptions of the site and the robot."""
         text = self.site.spec.model_dump_json() + self.robot.model_dump_json()
         return hashlib.blake2b(text.encode(), digest_size=16).hexdigest()
 
     def prepare(self) -> "OpenedSite":
-        """Finds out now what all paths share, so that no later call takes the time for it.
+        """Compute what all paths share, so that no later call takes the time for it.
 
-        Raises ArgoError if the robot can't drive on the site.
+        Returns the site itself. Raises ArgoError if the robot can't drive on it.
         """
         self.navigator.prepare()
         return self
@@ -125,50 +134,58 @@ class OpenedSite:
                 f"site {self.name} is not as its description says, and can't be sent to another "
                 "process; send the faults that have changed it, and apply them there"
             )
-        return _make_again, (self.site.spec, self.robot)
+        return _open_spec, (self.site.spec, self.robot)
 
 
 def open_site(reference: str = "umad", robot: RobotSpec | None = None) -> OpenedSite:
-    """The site of that name, the one that the file `reference` describes, or a generated one such
-    as `generated:floors=3,seed=7`, ready for work by the `robot` (the tracker).
+    """Open a site for planning and driving.
 
-    Equal calls give the same object, also from several threads at once, however the parameters of
-    a generated site are written; of a file that has changed a new one is made. What takes long to
-    find is kept on disk from process to process.
+    Equal calls return the same object, also from several threads at once, and however the
+    parameters of a generated site are written. A file that has changed is opened again. Results
+    that take long to compute are cached on disk.
 
-    Raises NotFound if there is no such site, and ArgoError, with the place in the file, if it makes
-    no sense. That the robot can't drive there shows with the first path: see `prepare`.
+    The robot is not yet checked: if it can't drive on the site, the first path raises an error,
+    or `prepare`.
+
+    Args:
+        reference: Name of a shipped site, path of a site file, or parameters of a generated site
+            such as `generated:floors=3,seed=7`.
+        robot: Robot that drives on the site; None: the tracker.
+
+    Raises:
+        NotFound: There is no such site.
+        ArgoError: The file is not valid; the message names the place in it.
     """
     if not isinstance(reference, str):
         raise Invalid(f"{reference!r} is no text: a site is opened by its name or its file's path")
     robot = validate_robot(robot) if robot else load_robot()
     if is_family(reference):
         family = parse_family(reference)
-        if parse_family(str(family)) == family:  # a text may lack digits
+        if parse_family(str(family)) == family:  # the text may have too few digits
             reference = str(family)
-        return _open(reference, family.model_dump_json(), robot, partial(_draw, family, robot))
+        return _open(reference, family.model_dump_json(), robot, partial(_generate, family, robot))
     path = site_file(reference)
     text = read_text(path, "site", MAX_BYTES)
     if path == Path(reference):
         reference = os.path.realpath(path)
 
-    def described() -> Site:
+    def make_from_file() -> Site:
         from argo_env.site.site_file import parse_site_spec
 
         return make_site(parse_site_spec(text, str(path)))
 
-    return _open(reference, text, robot, described)
+    return _open(reference, text, robot, make_from_file)
 
 
 def forget_sites() -> None:
-    """Lets go of the sites in memory; those who use them keep them."""
+    """Remove all sites from memory, except where they are still in use."""
     with _lock:
         _slots.clear()
 
 
 @dataclass
 class _Slot:
-    """Room for an opened site. Filled once, by whoever is first."""
+    """A place in memory for an opened site, which the first thread that asks for the site fills."""
 
     lock: Lock = field(default_factory=Lock)
     opened: OpenedSite | None = None
@@ -181,31 +198,40 @@ _slots: OrderedDict[tuple[str | None, ...], _Slot] = OrderedDict()
 def _open(
     reference: str | None, text: str, robot: RobotSpec, make: Callable[[], "Site | Navigator"]
 ) -> OpenedSite:
-    """The site that is opened by `reference` and made from `text`, by `make` if it is new."""
+    """Return an opened site from memory or from the cache on disk, or make it.
+
+    Args:
+        reference: Reference of the site; None: it was made in memory.
+        text: Text that determines the site.
+        robot: Robot that drives on the site.
+        make: Function that makes the site if it is new.
+    """
     key = reference, text, robot.model_dump_json()
     with _lock:
         slot = _slots.setdefault(key, _Slot())
         _slots.move_to_end(key)
-        while len(_slots) > _KEPT:
+        while len(_slots) > _MAX_SITES:
             _slots.popitem(last=False)
     with slot.lock:
         if slot.opened is None:
-            parts = cache.entry_for((digest_of_code(), text, robot.model_dump_json()))
-            known = parts.load_text("site")
-            _log.info("the site is %s", "made" if known is None else "taken from the cache on disk")
-            if known is None:
+            parts = cache.entry_for((code_digest(), text, robot.model_dump_json()))
+            cached = parts.load_text("site")
+            _log.info(
+                "the site is %s", "made" if cached is None else "taken from the cache on disk"
+            )
+            if cached is None:
                 with stage(f"making the site {reference or ''}".rstrip()):
-                    slot.opened = _keep(reference, robot, parts, make())
+                    slot.opened = _open_new(reference, robot, parts, make())
             else:
-                site = make_site(SiteSpec.model_validate_json(known))
+                site = make_site(SiteSpec.model_validate_json(cached))
                 slot.opened = OpenedSite(reference, site, robot, parts)
         return slot.opened
 
 
-def _keep(
+def _open_new(
     reference: str | None, robot: RobotSpec, parts: Parts, made: "Site | Navigator"
 ) -> OpenedSite:
-    """A new site, with what its making has found, kept on disk."""
+    """Store a new site in the cache on disk, with all that was computed to make it, and open it."""
     cache.evict()
     site = made if isinstance(made, Site) else made.site
     parts.store_text("site", site.spec.model_dump_json())
@@ -215,7 +241,7 @@ def _keep(
     return opened
 
 
-def _draw(family: Family, robot: RobotSpec) -> "Navigator":
+def _generate(family: Family, robot: RobotSpec) -> "Navigator":
     from argo_env.planning.generated import generate
 
     return generate(family, robot)
@@ -231,5 +257,5 @@ def _open_again(reference: str, robot: RobotSpec, digest: str) -> OpenedSite:
     return opened
 
 
-def _make_again(spec: SiteSpec, robot: RobotSpec) -> OpenedSite:
+def _open_spec(spec: SiteSpec, robot: RobotSpec) -> OpenedSite:
     return _open(None, spec.model_dump_json(), robot, partial(make_site, spec))

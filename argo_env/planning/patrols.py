@@ -1,4 +1,4 @@
-"""Patrols: the round on each floor that a robot can go."""
+"""Patrols: a round on each floor that the robot can drive."""
 
 import json
 import math
@@ -13,34 +13,35 @@ if TYPE_CHECKING:
     from argo_env.navigation import Navigator
     from argo_env.site import Site
 
-APART = 2.0  # m at least between the waypoints of a patrol
+MIN_SPACING = 2.0  # m, least distance between two poses of a patrol
 
 
 def patrol(navigator: "Navigator", floor: int) -> tuple[Pose, ...]:
-    """A round on a floor: the reachable place nearest to each corner, counter-clockwise from the
-    south-west, each pose turned towards the next.
+    """Return the patrol of a floor, from the cache or computed.
 
-    Raises ArgoError if fewer than three of them are apart from each other.
+    It has the reachable position nearest to each corner, counter-clockwise from the south-west.
+    Each pose is turned towards the next one. Raises ArgoError if fewer than three positions are
+    MIN_SPACING apart from each other.
     """
-    found = kept_patrol(navigator.parts, floor)
-    if found is None:
+    poses = load_patrol(navigator.parts, floor)
+    if poses is None:
         corners = _corners(navigator, floor)
-        navigator.parts.store_text(_part(floor), json.dumps(corners))
-        found = _round(corners)
-    return found
+        navigator.parts.store_text(_part_name(floor), json.dumps(corners))
+        poses = _patrol_poses(corners)
+    return poses
 
 
-def kept_patrol(parts: Parts, floor: int) -> tuple[Pose, ...] | None:
-    """The same as it is kept in `parts`; None if it is not."""
-    corners = parts.load_text(_part(floor))
-    return None if corners is None else _round(json.loads(corners))
+def load_patrol(parts: Parts, floor: int) -> tuple[Pose, ...] | None:
+    """Return the patrol of a floor that is cached in `parts`; None if there is none."""
+    corners = parts.load_text(_part_name(floor))
+    return None if corners is None else _patrol_poses(json.loads(corners))
 
 
-def _part(floor: int) -> str:
+def _part_name(floor: int) -> str:
     return f"patrol-{floor}"
 
 
-def _round(corners: Sequence[Sequence[float]]) -> tuple[Pose, ...]:
+def _patrol_poses(corners: Sequence[Sequence[float]]) -> tuple[Pose, ...]:
     following = [*corners[1:], *corners[:1]]
     return tuple(
         Pose(
@@ -63,9 +64,12 @@ def _corners(navigator: "Navigator", floor: int) -> list[tuple[float, float, flo
 
 
 def patrol_corners(navigator: "Navigator", floor: int) -> list[tuple[float, float, float]]:
-    """The reachable places (m) nearest to each corner of a floor that are apart from each other.
-    Fewer than three make no patrol."""
-    import numpy as np  # by what finds patrols, not by what has them in the cache
+    """Return the reachable positions (m) nearest to the corners of a floor.
+
+    A position that is closer than MIN_SPACING to an earlier one is left out. Fewer than three make
+    no patrol.
+    """
+    import numpy as np  # not needed for patrols from the cache
 
     places = navigator.turning_poses(floor)
     x0, y0, x1, y1 = _bounds(navigator.site, floor)
@@ -79,7 +83,7 @@ def patrol_corners(navigator: "Navigator", floor: int) -> list[tuple[float, floa
         if len(places):
             nearest = places[np.argmin(np.hypot(places[:, 0] - x, places[:, 1] - y))]
             point = (float(nearest[0]), float(nearest[1]), float(nearest[2]))
-            if all(math.dist(point, other) >= APART for other in corners):
+            if all(math.dist(point, other) >= MIN_SPACING for other in corners):
                 corners.append(point)
     return corners
 

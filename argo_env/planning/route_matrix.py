@@ -1,4 +1,4 @@
-"""The ways between a mission's tasks on a site, and its route problem made from them."""
+"""Travel times between a mission's tasks on a site, and the mission's route problem."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -18,12 +18,15 @@ from argo_env.navigation import Navigator
 from argo_env.planning.travel import SiteTravel
 
 MOST_PLANNED = 40
-"""places between which every way is planned; among more of them only those to the nearest ones, and
-the others take as long as the cheapest way over the lattice, whose corners are not cut"""
+"""number of tasks up to which the paths between all of them are planned
+
+With more tasks, only the paths to the nearest ones are planned. The times of the others are those
+of the cheapest paths on the lattice, which are not smoothed.
+"""
 NEAREST = 12
-"""places to which the ways are planned then"""
-_PLANNING = "planning the ways between tasks"
-_ORIGINS = 8  # from which it is looked where the robot comes to stand to read a checkpoint
+"""number of nearest tasks to which paths are planned in that case"""
+_PLANNING = "planning the paths between tasks"
+_ORIGINS = 8  # number of poses from which the most frequent viewing pose of a checkpoint is found
 
 
 def plan_mission(
@@ -32,49 +35,54 @@ def plan_mission(
     requirements: Requirements,
     travel: SiteTravel | None = None,
 ) -> MissionProblem:
-    """The route problem of a mission on a site.
+    """Return the route problem of a mission on a site.
 
     Raises:
         DiagnosticError: `check` finds errors in the mission.
-        ArgoError: its order can't be changed, the robot can't carry out a task, or a requirement
+        ArgoError: Its order can't be changed, the robot can't carry out a task, or a requirement
             names something that the mission does not have.
     """
     travel = travel or SiteTravel(navigator)
-    planned = route_problem(mission, mission_ways(mission, navigator, travel), requirements)
+    planned = route_problem(mission, mission_travel(mission, navigator, travel), requirements)
     if planned.problem.battery is None:
         return planned
-    return route_problem(mission, mission_ways(mission, navigator, travel, True), requirements)
+    return route_problem(mission, mission_travel(mission, navigator, travel, True), requirements)
 
 
-def mission_ways(
+def mission_travel(
     mission: Mission, navigator: Navigator, travel: SiteTravel, chargers: bool = False
 ) -> TravelMatrix:
-    """Times and energies between the tasks of a mission, in steps of the drive that `travel` means,
-    and with `chargers` from and to the docking stations.
+    """Return times and energies between the tasks of a mission, in time steps of the drive.
 
-    Where the robot stands to read a checkpoint depends on the way that it came; the place where it
-    mostly does stands for all. Raises ArgoError if it can't carry out a task.
+    The pose from which the robot reads a checkpoint depends on where it comes from; the matrix uses
+    the most frequent one. Raises ArgoError if the robot can't carry out a task.
+
+    Args:
+        mission: Mission whose tasks are the rows and columns, apart from START.
+        navigator: Navigator of the site.
+        travel: Travel times on the site.
+        chargers: Whether the docking stations are rows and columns as well.
     """
     tasks = [task for task in mission.tasks if task.action is not Action.START]
     docks = sorted(navigator.site.docks.items()) if chargers else []
-    places = [
+    goals = [
         *tasks,
         *(Task(name=f"docking station {n}", action=Action.WAYPOINT, pose=p) for n, p in docks),
     ]
     start = travel.start(mission)
-    standings = _standings(places, start, travel)
-    origins = [*standings[: len(tasks)], start, *standings[len(tasks) :]]
-    if len(places) <= MOST_PLANNED:
-        time, energy = _planned(origins, places, travel)
+    end_poses = _end_poses(goals, start, travel)
+    origins = [*end_poses[: len(tasks)], start, *end_poses[len(tasks) :]]
+    if len(goals) <= MOST_PLANNED:
+        time, energy = _plan_all(origins, goals, travel)
     else:
-        time, energy = _over_lattice(origins, places, standings, navigator, travel)
-        slowed = {k for k, task in enumerate(places) if task.velocity is not None}
+        time, energy = _estimate_on_lattice(origins, goals, end_poses, navigator, travel)
+        with_velocity = {k for k, task in enumerate(goals) if task.velocity is not None}
         for row, origin in enumerate(stage_items(_PLANNING, origins)):
-            near = np.argsort(time[row], kind="stable")[:NEAREST].tolist()
-            chosen = sorted(slowed.union(near))
-            ways = _planned_from(origin, [places[k] for k in chosen], travel)
-            time[row, chosen], energy[row, chosen] = ways
-    work = np.array([travel.work(task) for task in places])
+            nearest = np.argsort(time[row], kind="stable")[:NEAREST].tolist()
+            columns = sorted(with_velocity.union(nearest))
+            costs = _plan_from(origin, [goals[k] for k in columns], travel)
+            time[row, columns], energy[row, columns] = costs
+    work = np.array([travel.work(task) for task in goals])
     return TravelMatrix(
         tuple(task.name for task in tasks),
         np.rint(time / travel.time_step),
@@ -87,69 +95,74 @@ def mission_ways(
     )
 
 
-def _standings(places: Sequence[Task], start: Pose, travel: SiteTravel) -> list[Pose]:
-    """Where the robot mostly stands when a task has ended."""
-    around = [start]
-    for task in places:
-        leg = _leg(travel, start, task)
-        around.append(leg.arrival if isinstance(leg.arrival, Pose) else start)
-    origins = [around[k] for k in np.linspace(0, len(around) - 1, _ORIGINS).round().astype(int)]
-    found = []
-    for k, task in enumerate(stage_items("looking where each task is done", places), start=1):
+def _end_poses(goals: Sequence[Task], start: Pose, travel: SiteTravel) -> list[Pose]:
+    """Return the most frequent pose of the robot at the end of each task."""
+    from_start = [start]
+    for task in goals:
+        leg = _require_leg(travel, start, task)
+        from_start.append(leg.arrival if isinstance(leg.arrival, Pose) else start)
+    samples = np.linspace(0, len(from_start) - 1, _ORIGINS).round().astype(int)
+    origins = [from_start[k] for k in samples]
+    end_poses = []
+    for k, task in enumerate(stage_items("finding the pose of each task", goals), start=1):
         if task.action is not Action.MEASURE:
-            found.append(around[k])
+            end_poses.append(from_start[k])
             continue
         legs = [travel.leg(origin, task, None) for origin in dict.fromkeys([start, *origins])]
         arrivals = Counter(leg.arrival for leg in legs if isinstance(leg, Leg))
-        mostly = arrivals.most_common(1)[0][0]
-        assert isinstance(mostly, Pose)
-        found.append(mostly)
-    return found
+        most_frequent = arrivals.most_common(1)[0][0]
+        assert isinstance(most_frequent, Pose)
+        end_poses.append(most_frequent)
+    return end_poses
 
 
-def _leg(travel: SiteTravel, start: Pose, task: Task) -> Leg:
+def _require_leg(travel: SiteTravel, start: Pose, task: Task) -> Leg:
+    """Return the leg from the start to a task; raises Unreachable if there is none."""
     leg = travel.leg(start, task, None)
     if isinstance(leg, NoPath):
         raise Unreachable(f"the robot can't carry out task '{task.name}': {leg.reason}")
     return leg
 
 
-def _planned(
-    origins: Sequence[Pose], places: Sequence[Task], travel: SiteTravel
+def _plan_all(
+    origins: Sequence[Pose], goals: Sequence[Task], travel: SiteTravel
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Times (s) and energies (Wh) of planned ways; inf where there is none."""
-    time = np.full((len(origins), len(places)), np.inf)
+    """Return times (s) and energies (Wh) of planned paths, one row per origin; inf: no path."""
+    time = np.full((len(origins), len(goals)), np.inf)
     energy = time.copy()
     for row, origin in enumerate(stage_items(_PLANNING, origins)):
-        time[row], energy[row] = _planned_from(origin, places, travel)
+        time[row], energy[row] = _plan_from(origin, goals, travel)
     return time, energy
 
 
-def _planned_from(
-    origin: Pose, places: Sequence[Task], travel: SiteTravel
+def _plan_from(
+    origin: Pose, goals: Sequence[Task], travel: SiteTravel
 ) -> tuple[list[float], list[float]]:
-    """The same from one place."""
-    legs = [travel.leg(origin, task, task.velocity) for task in places]
+    """Return times (s) and energies (Wh) of planned paths from one origin; inf: no path."""
+    legs = [travel.leg(origin, task, task.velocity) for task in goals]
     time = [leg.duration if isinstance(leg, Leg) else np.inf for leg in legs]
     return time, [leg.energy if isinstance(leg, Leg) else np.inf for leg in legs]
 
 
-def _over_lattice(
+def _estimate_on_lattice(
     origins: Sequence[Pose],
-    places: Sequence[Task],
-    standings: Sequence[Pose],
+    goals: Sequence[Task],
+    end_poses: Sequence[Pose],
     navigator: Navigator,
     travel: SiteTravel,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The same over the lattice, and as if all ways led up stairs, which takes most energy."""
-    distinct = list(dict.fromkeys([*origins, *standings]))
-    number = {pose: k for k, pose in enumerate(distinct)}
+    """Return times (s) and energies (Wh) of paths on the lattice, one row per origin; inf: no path.
+
+    Energies are those of driving up stairs, which takes the most.
+    """
+    distinct = list(dict.fromkeys([*origins, *end_poses]))
+    index = {pose: k for k, pose in enumerate(distinct)}
     try:
         times = navigator.travel_times(distinct)
-    except Unreachable as error:  # stands there, says the path, and not the lattice
-        raise Unreachable(f"the ways between the tasks can't be found: {error}") from None
-    drive = times[np.ix_([number[p] for p in origins], [number[p] for p in standings])]
+    except Unreachable as error:  # a planned path ends at a pose that the lattice does not have
+        raise Unreachable(f"the paths between the tasks can't be found: {error}") from None
+    drive = times[np.ix_([index[p] for p in origins], [index[p] for p in end_poses])]
     step, power = travel.time_step, navigator.robot.power
-    work = np.array([travel.work(task) for task in places])
+    work = np.array([travel.work(task) for task in goals])
     drive = np.maximum(np.ceil(drive / step - 1e-6) * step, step)
     return drive + work, (drive * power.climbing + work * power.measuring) / 3600.0

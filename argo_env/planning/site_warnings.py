@@ -1,5 +1,7 @@
-"""Warnings about a mission on its site: poses that checkpoints can't be read from, and speeds that
-the robot is not known to drive at."""
+"""Warnings about a mission on its site.
+
+They are about poses that checkpoints can't be read from, and speeds above the robot's own.
+"""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
@@ -16,28 +18,32 @@ if TYPE_CHECKING:
     from argo_env.robot.spec import RobotSpec
 
 
-def unseen_from_poses(mission: Mission, site: "OpenedSite") -> Iterator[Diagnostic]:
-    """A warning for each MEASURE whose pose does not see the checkpoint, with all where the plan
-    has it. Of poses that can't be reached the analysis tells."""
+def view_warnings(mission: Mission, site: "OpenedSite") -> Iterator[Diagnostic]:
+    """Yield a warning for each MEASURE task from whose pose the checkpoint is not visible.
+
+    Everything is taken to be where the site's description has it. Poses that can't be reached are
+    left out, as the analysis reports them.
+    """
     known = {str(checkpoint.id) for checkpoint in site.site.checkpoints}
     for task in mission.tasks:
         if task.action is not Action.MEASURE or task.pose is None or task.object_id not in known:
             continue
-        why = _why_unseen(task, task.pose, site.navigator)
-        if why is not None:
+        reason = _find_obstruction(task, task.pose, site.navigator)
+        if reason is not None:
             yield Diagnostic(
                 code="site.not-seen-from-pose",
                 severity=Severity.WARNING,
-                message=f"task '{task.name}' measures from a pose that does not see its "
-                f"checkpoint: {why}",
-                hint="give another pose, or none: then the robot chooses one",
+                message=f"task '{task.name}' measures from a pose from which its checkpoint is "
+                f"not visible: {reason}",
+                hint="give another pose, or none, so that the robot chooses one",
                 subject=subject_of("tasks", task.name, ".pose"),
                 span=task.source,
             )
 
 
-def _why_unseen(task: Task, pose: Pose, navigator: "Navigator") -> str | None:
-    # A mission without such poses is checked without these.
+def _find_obstruction(task: Task, pose: Pose, navigator: "Navigator") -> str | None:
+    """Return why a task can't measure from a pose; None: it can, or the pose can't be reached."""
+    # Imported here, as a mission without such poses is checked without these modules.
     from argo_env.robot.pose import BodyPose
     from argo_env.sensing.ideal import IdealSensor
     from argo_env.sensing.sensor import MeasurementError
@@ -47,8 +53,8 @@ def _why_unseen(task: Task, pose: Pose, navigator: "Navigator") -> str | None:
     world = WorldWithoutPhysics(navigator.site, navigator.robot)
     sensor = IdealSensor(world, navigator.robot, {checkpoint.id: checkpoint.nominal.low})
     try:
-        place = navigator.snap(pose)
-        sensor.measure(checkpoint.id, BodyPose(place.x, place.y, place.z, place.yaw))
+        snapped = navigator.snap(pose)
+        sensor.measure(checkpoint.id, BodyPose(snapped.x, snapped.y, snapped.z, snapped.yaw))
     except MeasurementError as error:
         return str(error)
     except Unreachable:
@@ -56,18 +62,20 @@ def _why_unseen(task: Task, pose: Pose, navigator: "Navigator") -> str | None:
     return None
 
 
-def too_fast(mission: Mission, robot: "RobotSpec") -> Iterator[Diagnostic]:
-    """A warning for each task whose way is to be driven faster than the robot's own speed, with
-    which all else counts."""
+def speed_warnings(mission: Mission, robot: "RobotSpec") -> Iterator[Diagnostic]:
+    """Yield a warning for each task whose velocity is above the robot's own speed.
+
+    All other travel times are computed with the robot's own speed.
+    """
     for task in mission.tasks:
         if task.velocity is None or task.velocity <= robot.speed:
             continue
         yield Diagnostic(
             code="site.faster-than-robot",
             severity=Severity.WARNING,
-            message=f"the way to task '{task.name}' is to be driven at {task.velocity:g} m/s; the "
-            f"robot {robot.name} drives at {robot.speed:g} m/s, and is not known to go any faster",
-            hint=f"ask for at most {robot.speed:g} m/s",
+            message=f"the path to task '{task.name}' is to be driven at {task.velocity:g} m/s, but "
+            f"the robot {robot.name} is not known to drive faster than {robot.speed:g} m/s",
+            hint=f"give at most {robot.speed:g} m/s",
             subject=subject_of("tasks", task.name, ".velocity"),
             span=task.source,
         )

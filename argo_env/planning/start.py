@@ -1,4 +1,4 @@
-"""Where a mission begins."""
+"""The pose at which a mission starts."""
 
 from collections.abc import Mapping
 
@@ -7,7 +7,11 @@ from argo_compiler.il import Action, Mission
 
 
 def start_pose(mission: Mission, docks: Mapping[int, Pose]) -> Pose:
-    """The pose of START, or the dock of the starting area; of the first one where none is named."""
+    """Return the pose of the mission's START task, or the dock of its starting area.
+
+    A mission that names no starting area, or one that the site does not have, starts at the
+    dock of the lowest number.
+    """
     for task in mission.tasks:
         if task.action is Action.START and task.pose is not None:
             return task.pose

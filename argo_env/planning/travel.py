@@ -1,5 +1,7 @@
-"""Travel times and energy of a robot on a site, for the analysis of missions; ways that were
-planned are kept on disk, as the same missions are checked again and again."""
+"""Travel times and energy of a robot on a site, for the analysis of missions.
+
+Planned paths are cached on disk, as the same missions are checked repeatedly.
+"""
 
 import hashlib
 import json
@@ -20,46 +22,50 @@ from argo_env.site import Site
 if TYPE_CHECKING:
     from argo_env.navigation import Navigator
 
-_PLACES = 1 << 14  # files at most, a few kB each; a new way takes the place of an older one
+_MAX_FILES = 1 << 14  # in the cache, a few kB each; a new path may replace an older one
 
-Way = Path | NoPath
+PathOrReason = Path | NoPath
+"""a path, or the reason why there is none"""
 
 
-def kept_way(parts: Parts, asked: object, plan: Callable[[], Path]) -> Way:
-    """What `plan` gives, or why it gives nothing; from `parts` if the same was `asked` before.
+def cached_path(parts: Parts, query: object, plan: Callable[[], Path]) -> PathOrReason:
+    """Return the path of a query from the cache, or from `plan`.
 
-    `asked` is what the way depends on, as data that JSON can say exactly.
+    Args:
+        parts: Cache on disk.
+        query: Everything that the path depends on, as data that JSON represents exactly.
+        plan: Function that plans the path; it raises ArgoError if there is none.
     """
-    question = json.dumps(asked)
-    digest = hashlib.blake2b(question.encode(), digest_size=8).digest()
-    name = f"way-{int.from_bytes(digest) % _PLACES:04x}"
-    found, _, answer = (parts.load_text(name) or "").partition("\n")
-    if found == question:
-        return _to_way(json.loads(answer))
+    key = json.dumps(query)
+    digest = hashlib.blake2b(key.encode(), digest_size=8).digest()
+    name = f"way-{int.from_bytes(digest) % _MAX_FILES:04x}"
+    cached_key, _, content = (parts.load_text(name) or "").partition("\n")
+    if cached_key == key:
+        return _from_data(json.loads(content))
     try:
-        way: Way = plan()
+        path: PathOrReason = plan()
     except ArgoError as error:
-        way = NoPath(str(error))
-    parts.store_text(name, f"{question}\n{json.dumps(_to_data(way))}")
-    return way
+        path = NoPath(str(error))
+    parts.store_text(name, f"{key}\n{json.dumps(_to_data(path))}")
+    return path
 
 
-def as_data(pose: Pose) -> tuple[float, float, float, float]:
-    """A pose to ask with."""
+def pose_data(pose: Pose) -> tuple[float, float, float, float]:
+    """Return a pose as data for a query: x, y, z, yaw."""
     return pose.x, pose.y, pose.z, pose.yaw
 
 
-def _to_data(way: Way) -> dict[str, Any]:
-    if isinstance(way, NoPath):
-        return {"reason": way.reason}
+def _to_data(path: PathOrReason) -> dict[str, Any]:
+    if isinstance(path, NoPath):
+        return {"reason": path.reason}
     motions = [
-        (*as_data(m.start), *as_data(m.end), m.turn, int(m.gear), bool(m.on_stairs))
-        for m in way.motions
+        (*pose_data(m.start), *pose_data(m.end), m.turn, int(m.gear), bool(m.on_stairs))
+        for m in path.motions
     ]
-    return {"start": as_data(way.start), "motions": motions}
+    return {"start": pose_data(path.start), "motions": motions}
 
 
-def _to_way(data: dict[str, Any]) -> Way:
+def _from_data(data: dict[str, Any]) -> PathOrReason:
     if "reason" in data:
         return NoPath(data["reason"])
     motions = [Motion(_pose(row[:4]), _pose(row[4:8]), *row[8:]) for row in data["motions"]]
@@ -72,7 +78,7 @@ def _pose(row: list[float]) -> Pose:
 
 
 class NavigatedSite(Protocol):
-    """A site whose navigator is made when it is first asked for."""
+    """A site whose navigator is made when it is first needed."""
 
     site: Site
     robot: RobotSpec
@@ -83,107 +89,113 @@ class NavigatedSite(Protocol):
 
 
 class SiteTravel:
-    """The ways that the navigator plans, with the times of a drive that follows them.
+    """Paths of the navigator, with the times and energies of a drive that follows them.
 
-    A standing is a pose. Keeps every way that it was asked for, on an opened site also on disk.
-    With the `time_step` (s) of the drive that is meant, times are rounded up to whole steps, as the
-    drive's are.
+    It implements `argo_compiler.analysis.travel.Travel`; a `RobotPose` is a `Pose`. All paths are
+    kept in memory, and on disk if the site has a cache. Times are rounded up to whole time steps
+    of the drive, as the drive's times are.
     """
 
     def __init__(self, on: "Navigator | NavigatedSite", time_step: float = 0.1) -> None:
+        """Create the travel times on a site; `time_step` is that of the drive, in s."""
         self._on = on
         self._robot = on.robot
         self._parts = on.parts
         self.time_step = time_step
-        self._ways: dict[tuple[Pose, str | Pose | None], Path | NoPath] = {}
+        self._paths: dict[tuple[Pose, str | Pose | None], Path | NoPath] = {}
         self._legs: dict[tuple[Pose, str | Pose | None, Action, float | None], Leg | NoPath] = {}
 
     @property
     def _navigator(self) -> "Navigator":
-        # Not before a way is asked for that is not kept: it takes a while to import.
+        # Imported for paths that are not cached only, as the import takes a while.
         from argo_env.navigation import Navigator
 
         return self._on if isinstance(self._on, Navigator) else self._on.navigator
 
     @property
     def battery(self) -> float:
-        """Wh."""
+        """Energy of one battery charge in Wh."""
         return self._robot.battery
 
     @property
     def standing_power(self) -> float:
-        """W."""
+        """Power in W that the robot draws while it stands."""
         return self._robot.power.standing
 
     @property
     def clean_up(self) -> float:
-        """s, to stow the arm."""
-        return self._stepped(self._robot.sensor.stowing_time) + self.time_step
+        """Greatest time in s from the cancellation of an action until the arm is stowed."""
+        return self._round_up(self._robot.sensor.stowing_time) + self.time_step
 
     def start(self, mission: Mission) -> Pose:
-        """Where the robot is put: the pose of START, or the dock of the starting area.
+        """Return the pose at which the robot starts: that of START, or of the starting area's dock.
 
         Raises Unreachable if the robot can't stand there.
         """
         pose = start_pose(mission, self._on.site.docks)
-        standing = kept_way(
-            self._parts, ["stand", as_data(pose)], lambda: Path(self._navigator.snap(pose), ())
+        path = cached_path(
+            self._parts, ["stand", pose_data(pose)], lambda: Path(self._navigator.snap(pose), ())
         )
-        if isinstance(standing, NoPath):
-            raise Unreachable(standing.reason)
-        return standing.start
+        if isinstance(path, NoPath):
+            raise Unreachable(path.reason)
+        return path.start
 
     def work(self, task: Task) -> float:
-        """s of a task's action that the robot takes even if it is there already."""
+        """Return the duration of a task's action without the drive, in s."""
         measures = task.action is Action.MEASURE
-        return self._stepped(self._robot.sensor.measuring_time) if measures else 0.0
+        return self._round_up(self._robot.sensor.measuring_time) if measures else 0.0
 
-    def way(self, origin: Pose, task: Task) -> Path:
-        """The way to the task's place. Raises ArgoError if there is none."""
-        way = self._way(origin, task.pose or task.object_id)
-        if isinstance(way, NoPath):
-            raise Unreachable(f"the robot can't carry out task '{task.name}': {way.reason}")
-        return way
+    def plan_path(self, origin: Pose, task: Task) -> Path:
+        """Return the path to a task; raises Unreachable if there is none."""
+        path = self._find_path(origin, task.pose or task.object_id)
+        if isinstance(path, NoPath):
+            raise Unreachable(f"the robot can't carry out task '{task.name}': {path.reason}")
+        return path
 
     def leg(self, origin: RobotPose, task: Task, velocity: float | None) -> Leg | NoPath:
-        """The way to the task's place at `velocity` (m/s), and its action."""
+        """Return the cost of the path to a task at `velocity` (m/s), and of its action.
+
+        `velocity` is None for the robot's own speed.
+        """
         assert isinstance(origin, Pose)
         if task.action is Action.WAIT:
             return Leg(0.0, 0.0, origin)
-        place = task.pose or task.object_id
-        key = origin, place, task.action, velocity
+        goal = task.pose or task.object_id
+        key = origin, goal, task.action, velocity
         if key not in self._legs:
-            way = self._way(origin, place)
+            path = self._find_path(origin, goal)
             work = self.work(task)
-            self._legs[key] = way if isinstance(way, NoPath) else self._leg(way, velocity, work)
+            self._legs[key] = path if isinstance(path, NoPath) else self._leg(path, velocity, work)
         return self._legs[key]
 
-    def _way(self, origin: Pose, place: str | Pose | None) -> Path | NoPath:
-        key = origin, place
-        if key not in self._ways:
-            asked = as_data(place) if isinstance(place, Pose) else place
-            self._ways[key] = kept_way(
-                self._parts, ["way", as_data(origin), asked], lambda: self._plan(origin, place)
+    def _find_path(self, origin: Pose, goal: str | Pose | None) -> Path | NoPath:
+        """Return the path to a pose, or to a viewing pose of a checkpoint by its `object_id`."""
+        key = origin, goal
+        if key not in self._paths:
+            goal_data = pose_data(goal) if isinstance(goal, Pose) else goal
+            self._paths[key] = cached_path(
+                self._parts, ["way", pose_data(origin), goal_data], lambda: self._plan(origin, goal)
             )
-        return self._ways[key]
+        return self._paths[key]
 
-    def _plan(self, origin: Pose, place: str | Pose | None) -> Path:
-        if isinstance(place, Pose):
-            return self._navigator.plan(origin, place)
-        checkpoint = self._on.site.checkpoint_for(place)
+    def _plan(self, origin: Pose, goal: str | Pose | None) -> Path:
+        if isinstance(goal, Pose):
+            return self._navigator.plan(origin, goal)
+        checkpoint = self._on.site.checkpoint_for(goal)
         return self._navigator.plan_to_view(origin, checkpoint.id)
 
-    def _leg(self, way: Path, velocity: float | None, work: float) -> Leg | NoPath:
+    def _leg(self, path: Path, velocity: float | None, work: float) -> Leg | NoPath:
         robot, power = self._robot, self._robot.power
-        seconds = way.duration(robot, velocity)
+        seconds = path.duration(robot, velocity)
         if seconds > MAX_TIME_S:
-            return NoPath(f"at {velocity} m/s the way there takes longer than any mission")
-        drive = max(self.time_step, self._stepped(seconds))
-        energy = sum(m.duration(robot, velocity) * self._watts(m) for m in way.motions) / 3600
+            return NoPath(f"at {velocity} m/s the path takes longer than any mission may")
+        drive = max(self.time_step, self._round_up(seconds))
+        energy = sum(m.duration(robot, velocity) * self._power(m) for m in path.motions) / 3600
         work_energy = work * power.measuring / 3600
-        return Leg(drive + work, energy + work_energy, way.end, work, work_energy)
+        return Leg(drive + work, energy + work_energy, path.end, work, work_energy)
 
-    def _watts(self, motion: Motion) -> float:
+    def _power(self, motion: Motion) -> float:
+        """Return the power that a motion takes, in W."""
         power = self._robot.power
         return {
             MotionKind.TURN: power.turning,
@@ -191,5 +203,6 @@ class SiteTravel:
             MotionKind.DOWN: power.descending,
         }.get(motion.kind, power.driving)
 
-    def _stepped(self, seconds: float) -> float:
+    def _round_up(self, seconds: float) -> float:
+        """Return a time rounded up to whole time steps."""
         return count_steps(seconds, self.time_step) * self.time_step

@@ -20,7 +20,7 @@ from argo_compiler.diagnostics import (
 )
 from argo_compiler.files.loading import FileError
 from argo_env.planning.opening import OpenedSite
-from argo_env.planning.site_warnings import too_fast, unseen_from_poses
+from argo_env.planning.site_warnings import speed_warnings, view_warnings
 from argo_planner.use_cases.importing import (
     SourceKind,
     Upload,
@@ -77,8 +77,8 @@ def check_source(
         with stage("analysing the mission's paths"):
             found += analyse(loaded.mission, catalog, travel).diagnostics
         if site is not None:
-            found += tuple(unseen_from_poses(loaded.mission, site))
-            found += tuple(too_fast(loaded.mission, site.robot))
+            found += tuple(view_warnings(loaded.mission, site))
+            found += tuple(speed_warnings(loaded.mission, site.robot))
     return by_position((*loaded.diagnostics, *loaded.placed(found)))
 
 

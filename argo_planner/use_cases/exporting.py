@@ -9,8 +9,8 @@ from argo_compiler.export import EXPORTERS, Exporter
 from argo_compiler.hfsm import lower
 from argo_compiler.isar import to_isar
 from argo_compiler.script import format_script
+from argo_env.planning.inspection_views import inspection_views
 from argo_env.planning.opening import OpenedSite
-from argo_env.planning.reading_places import inspection_views
 from argo_planner.use_cases.importing import ImportedMission
 
 FORMATS = (*EXPORTERS, "isar")

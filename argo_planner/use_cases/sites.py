@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from argo_compiler.base.errors import Conflict
-from argo_env.planning.flaws import Flaw, Standing, look_over
+from argo_env.planning.flaws import Flaw, SafeStates, find_flaws
 from argo_env.planning.opening import OpenedSite
 from argo_env.site import load_site, site_names
 from argo_env.site.family import PREFIX, is_family
@@ -29,7 +29,7 @@ class SiteReport:
     """features that are unlike real sites, but do no harm"""
     flaws: tuple[Flaw, ...]
     """parts that can't be reached, with remedies"""
-    standing: Standing | None = None
+    standing: SafeStates | None = None
     """poses at which the robot can stand; None: there are no flaws"""
 
     @property
@@ -51,8 +51,8 @@ def list_sites() -> tuple[SiteSummary, ...]:
 
 def make_site_report(site: OpenedSite) -> SiteReport:
     """Find parts of a site that the robot can't reach."""
-    found = look_over(site.navigator)
-    return SiteReport(tuple(violations(site.site.spec)), found.flaws, found.standing)
+    found = find_flaws(site.navigator)
+    return SiteReport(tuple(violations(site.site.spec)), found.flaws, found.states)
 
 
 def draw_report(site: OpenedSite, report: SiteReport) -> bytes:

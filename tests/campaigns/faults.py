@@ -58,7 +58,7 @@ def run_without_faults(navigator: Navigator, count: int, first_seed: int, drive:
         begun = time.perf_counter()
         record = simulate(
             RunSpec(mission=mission, site=navigator.site.name, seed=seed, drive=drive),
-            OpenedSite.of_navigator(navigator),
+            OpenedSite.from_navigator(navigator),
         )
         wall += time.perf_counter() - begun
         simulated += record.result.duration
@@ -96,7 +96,7 @@ def run_with_bricks(navigator: Navigator, count: int, first_seed: int, drive: st
         brick = Brick(floor=floor, place=(pose.x, pose.y), yaw=float(rng.uniform(-90, 90)))
         mission = _mission_through(site, area, area, [checkpoint])
         spec = RunSpec(mission=mission, site=site.name, seed=seed, drive=drive, faults=(brick,))
-        record = simulate(spec, OpenedSite.of_navigator(navigator))
+        record = simulate(spec, OpenedSite.from_navigator(navigator))
         detected += any(a.kind is EventKind.POSITIVE_OBSTACLE for a in record.anomalies)
         touched += bool(record.contacts)
         succeeded += record.result.success

@@ -1,7 +1,7 @@
-"""Why a site can't be driven: what is wrong, where, and the way out."""
+"""Flaws that keep the robot from driving on a site, each with its position and a remedy."""
 
-from argo_env.planning.flaws.finding import SiteCheck, look_over
 from argo_env.planning.flaws.flaw import Flaw
-from argo_env.planning.flaws.standing import Standing
+from argo_env.planning.flaws.safe_states import SafeStates
+from argo_env.planning.flaws.site_check import SiteCheck, find_flaws
 
-__all__ = ["Flaw", "SiteCheck", "Standing", "look_over"]
+__all__ = ["Flaw", "SafeStates", "SiteCheck", "find_flaws"]

@@ -1,4 +1,4 @@
-"""What is wrong with a site, and the words for places in it."""
+"""A flaw of a site, and texts for positions and things on the site."""
 
 import math
 from collections.abc import Sequence
@@ -13,16 +13,16 @@ from argo_env.site.shapes import WALKING_ROLES, half_extents
 
 Point = tuple[float, float]
 
-ASIDE = 0.15  # m that two things may be apart and still join
+JOINT_GAP = 0.15  # m, largest gap between two parts that still join
 _DIRECTIONS = (
     "east", "north-east", "north", "north-west", "west", "south-west", "south", "south-east",
 )  # fmt: skip
-_NAMED = 3  # things that are in the way, at most
+_MAX_NAMES = 3  # things in a list; if there are more, the last entry has their number
 
 
 @dataclass(frozen=True)
 class Mark:
-    """A place (m) on a floor that a flaw is about."""
+    """A position (m) on a floor that a flaw is about."""
 
     floor: int
     x: float
@@ -31,24 +31,29 @@ class Mark:
 
 @dataclass(frozen=True)
 class Flaw:
-    """What is wrong with a site, what to do about it, and where it shows."""
+    """Something that is wrong with a site."""
 
     message: str
+    """description of the flaw, with a remedy"""
     marks: tuple[Mark, ...] = ()
+    """positions on the site's plan"""
 
 
-def place(x: float, y: float) -> str:
-    """A place (m) as messages show it."""
+def position_text(x: float, y: float) -> str:
+    """Return a position (m) as text."""
     return f"({x:.2f}, {y:.2f})"
 
 
-def direction(yaw: float) -> str:
-    """Where someone looks who is turned by `yaw` (rad) from the east."""
+def compass_direction(yaw: float) -> str:
+    """Return the name of the direction nearest to a yaw (rad); 0 is east."""
     return _DIRECTIONS[round(yaw / (math.pi / 4)) % 8]
 
 
-def in_the_way(site: Site, low: Sequence[float], high: Sequence[float]) -> str:
-    """What is in a box that the robot can't stand on: `a, b and 2 more things`, or nothing."""
+def obstructions_in_box(site: Site, low: Sequence[float], high: Sequence[float]) -> str:
+    """List the elements in a box that the robot can't stand on: `a, b and 2 more things`.
+
+    The text is empty if there are none. `low` and `high` are opposite corners of the box, in m.
+    """
     names = [
         element.name
         for element in site.elements
@@ -63,16 +68,18 @@ def in_the_way(site: Site, low: Sequence[float], high: Sequence[float]) -> str:
             for solid in element.solids
         )
     ]
-    if len(names) > _NAMED:
-        names[_NAMED - 1 :] = [f"{len(names) - _NAMED + 1} more things"]
+    if len(names) > _MAX_NAMES:
+        names[_MAX_NAMES - 1 :] = [f"{len(names) - _MAX_NAMES + 1} more things"]
     return listed(names)
 
 
-def between(site: Site, a: NDArray[np.float64], b: NDArray[np.float64], height: float) -> str:
-    """What stands between two places on the ground (x, y, z), up to a `height` (m) over them."""
+def obstructions_between(
+    site: Site, a: NDArray[np.float64], b: NDArray[np.float64], height: float
+) -> str:
+    """List the elements between two positions (x, y, z), up to a `height` above them, in m."""
     low, high = np.minimum(a, b), np.maximum(a, b)
     margin = np.array([0.1, 0.1, 0.0])
-    return in_the_way(
+    return obstructions_in_box(
         site,
         (low - margin + (0.0, 0.0, 0.05)).tolist(),
         (high + margin + (0.0, 0.0, height)).tolist(),

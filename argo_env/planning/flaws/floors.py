@@ -9,121 +9,124 @@ from numpy.typing import NDArray
 from argo_compiler.base.listing import listed
 from argo_env.navigation import Navigator
 from argo_env.navigation.lattice import MARGIN
-from argo_env.planning.checking import unserved_floors
-from argo_env.planning.flaws.flaw import ASIDE, Flaw, Mark, between, place
-from argo_env.planning.flaws.standing import Standing
-from argo_env.planning.patrols import APART, patrol_corners
+from argo_env.planning.checking import unpatrolled_floors
+from argo_env.planning.flaws.flaw import JOINT_GAP, Flaw, Mark, obstructions_between, position_text
+from argo_env.planning.flaws.safe_states import SafeStates
+from argo_env.planning.patrols import MIN_SPACING, patrol_corners
 from argo_env.site.spec import LEDGE, FloorSpec, TowerSpec, away
 from argo_env.site.stairs import mouths
 
-TURN = 1.4  # m by 1.4 m, in which the robot turns with room to spare
-WALKWAY = 0.7  # m
+TURNING_SPACE = 1.4  # m, edge of a square in which the robot turns easily
+MIN_WIDTH = 0.7  # m, recommended least width of walkways, stairs and paths
 _CORNERS = ("south-west", "south-east", "north-east", "north-west")
 
 
-def floor_flaws(standing: Standing, navigator: Navigator) -> list[Flaw]:
-    """The lowest floor that can't be reached, and those that can but not patrolled."""
+def floor_flaws(states: SafeStates, navigator: Navigator) -> list[Flaw]:
+    """Return the flaws of floors: one for all that can't be reached, one for each without patrol.
+
+    The first one explains why the lowest of these floors can't be reached.
+    """
     floors = navigator.site.spec.floors
-    flaws, lost = [], lost_floors(standing)
-    if lost:
-        first, *above = lost
-        flaw = _unreached(standing, floors, first)
+    flaws, unreached = [], unreached_floors(states)
+    if unreached:
+        first, *above = unreached
+        flaw = _unreached_flaw(states, floors, first)
         message = flaw.message
         if above:
-            many = "floors" if len(above) > 1 else "floor"
-            message += f"; {many} {listed(above)} can't be reached either"
+            noun = "floors" if len(above) > 1 else "floor"
+            message += f"; {noun} {listed(above)} can't be reached either"
         flaws.append(Flaw(message, flaw.marks))
     return flaws + [
-        _unpatrolled(navigator, floors[number - 1])
-        for number in unserved_floors(navigator)
-        if number not in lost
+        _patrol_flaw(navigator, floors[number - 1])
+        for number in unpatrolled_floors(navigator)
+        if number not in unreached
     ]
 
 
-def lost_floors(standing: Standing) -> list[int]:
-    """The numbers of the floors on which no place can be reached."""
-    floors = standing.site.spec.floors
-    return [f.number for f in floors if not standing.reached[standing.on(f)].any()]
+def unreached_floors(states: SafeStates) -> list[int]:
+    """Return the numbers of the floors on which no state can be reached."""
+    floors = states.site.spec.floors
+    return [f.number for f in floors if not states.reached[states.is_on_floor(f)].any()]
 
 
-def _unreached(standing: Standing, floors: Sequence[FloorSpec], number: int) -> Flaw:
+def _unreached_flaw(states: SafeStates, floors: Sequence[FloorSpec], number: int) -> Flaw:
     floor = floors[number - 1]
-    flaw = _no_stand(standing, floor)
+    flaw = _standing_flaw(states, floor)
     if flaw is None and number == 1:
-        flaw = _no_entry(standing, floor)
+        flaw = _entry_flaw(states, floor)
     elif flaw is None:
-        flaw = _no_stairs(standing, floors[number - 2], floor)
+        flaw = _stairs_flaw(states, floors[number - 2], floor)
     return Flaw(
-        f"floor {number} can't be reached from docking station {standing.first_dock}: "
-        f"{flaw.message}",
+        f"floor {number} can't be reached from docking station {states.first_dock}: {flaw.message}",
         flaw.marks,
     )
 
 
-def _no_stand(standing: Standing, floor: FloorSpec) -> Flaw | None:
-    if standing.on(floor).any():
+def _standing_flaw(states: SafeStates, floor: FloorSpec) -> Flaw | None:
+    if states.is_on_floor(floor).any():
         return None
     name, rect = max(floor.walkways.items(), key=lambda item: min(_size(item[1])))
-    wide = min(_size(rect))
-    why = (
-        f"its widest walkway, `{name}`, is {wide:.2f} m wide; make it {WALKWAY} m at least"
-        if wide < WALKWAY
-        else f"the robot can stand nowhere on it; keep {WALKWAY} m by 1 m of deck free"
+    width = min(_size(rect))
+    reason = (
+        f"its widest walkway, `{name}`, is {width:.2f} m wide; make it {MIN_WIDTH} m at least"
+        if width < MIN_WIDTH
+        else f"the robot can stand nowhere on it; keep {MIN_WIDTH} m by 1 m of deck free"
     )
-    return Flaw(why, (_middle(floor, rect),))
+    return Flaw(reason, (_center(floor, rect),))
 
 
-def _no_entry(standing: Standing, floor: FloorSpec) -> Flaw:
-    """Why the lowest floor can't be reached from the ground."""
-    spec, robot = standing.site.spec, standing.lattice.robot
-    up = floor.z - spec.ground_z
-    there = standing.places[standing.on(floor)]
-    dock = standing.places[standing.docks[standing.first_dock or 1] or 0]
-    goal = there[np.argmin(np.hypot(*(there - dock)[:, :2].T))]
-    if up > robot.max_step:
+def _entry_flaw(states: SafeStates, floor: FloorSpec) -> Flaw:
+    """Return the reason why the lowest floor can't be reached from the ground."""
+    spec, robot = states.site.spec, states.lattice.robot
+    step = floor.z - spec.ground_z
+    goals = states.positions[states.is_on_floor(floor)]
+    dock = states.positions[states.docks[states.first_dock or 1] or 0]
+    goal = goals[np.argmin(np.hypot(*(goals - dock)[:, :2].T))]
+    if step > robot.max_step:
         return Flaw(
-            f"it lies {up:.2f} m above the ground, and the robot climbs steps of "
+            f"it lies {step:.2f} m above the ground, and the robot climbs steps of "
             f"{robot.max_step:g} m; lower its `z`, or raise `ground_z`",
             (Mark(floor.number, float(goal[0]), float(goal[1])),),
         )
-    here = standing.nearest_reached(*goal.tolist())
-    if here is None:
-        here = dock
-    goal = there[np.argmin(np.hypot(*(there - here)[:, :2].T))]
-    stands = _stands(standing, here, goal)
-    if "railing" in stands and floor.railed:
-        remedy = "leave the railing out where the way leads in (`gates`), or give `railed: false`"
+    nearest = states.nearest_reached(*goal.tolist())
+    if nearest is None:
+        nearest = dock
+    goal = goals[np.argmin(np.hypot(*(goals - nearest)[:, :2].T))]
+    obstructions = _obstruction_text(states, nearest, goal)
+    if "railing" in obstructions and floor.railed:
+        remedy = "leave the railing out where the path leads in (`gates`), or give `railed: false`"
     else:
-        remedy = f"clear a way of {WALKWAY} m"
+        remedy = f"clear a path {MIN_WIDTH} m wide"
     return Flaw(
-        f"the nearest place that can be reached is {place(*here[:2])} on the ground, "
-        f"{math.dist(here[:2], goal[:2]):.1f} m from {place(*goal[:2])}{stands}; {remedy}",
-        tuple(Mark(floor.number, float(p[0]), float(p[1])) for p in (here, goal)),
+        f"the nearest position that can be reached is {position_text(*nearest[:2])} on the ground, "
+        f"{math.dist(nearest[:2], goal[:2]):.1f} m from {position_text(*goal[:2])}{obstructions}; "
+        f"{remedy}",
+        tuple(Mark(floor.number, float(p[0]), float(p[1])) for p in (nearest, goal)),
     )
 
 
-def _no_stairs(standing: Standing, below: FloorSpec, floor: FloorSpec) -> Flaw:
-    """Why no tower leads up to a floor from the one below, which can be reached."""
-    towers = standing.site.spec.towers
+def _stairs_flaw(states: SafeStates, below: FloorSpec, floor: FloorSpec) -> Flaw:
+    """Return the reasons why no tower leads up to a floor from the one below, which is reached."""
+    towers = states.site.spec.towers
     if not any(tower.flights for tower in towers):
         rect = next(iter(floor.walkways.values()))
         return Flaw(
             f"there are no stairs; give `towers` a flight that rises from floor {below.number} to "
             f"floor {floor.number}",
-            (_middle(floor, rect),),
+            (_center(floor, rect),),
         )
-    found = [
-        _tower_end(tower, below, floor) or _climb(standing, tower, below, floor)
+    flaws = [
+        _tower_end_flaw(tower, below, floor) or _climb_flaw(states, tower, below, floor)
         for tower in towers
         if tower.flights
     ]
     return Flaw(
-        "; ".join(flaw.message for flaw in found), tuple(m for flaw in found for m in flaw.marks)
+        "; ".join(flaw.message for flaw in flaws), tuple(m for flaw in flaws for m in flaw.marks)
     )
 
 
-def _tower_end(tower: TowerSpec, below: FloorSpec, floor: FloorSpec) -> Flaw | None:
-    """Where a tower begins or ends in the air between two floors, if it does."""
+def _tower_end_flaw(tower: TowerSpec, below: FloorSpec, floor: FloorSpec) -> Flaw | None:
+    """Return a flaw if a flight of a tower begins or ends in the air between two floors."""
     levels = [
         (below.z, f"floor {below.number}", below.walkways),
         (floor.z, f"floor {floor.number}", floor.walkways),
@@ -135,7 +138,8 @@ def _tower_end(tower: TowerSpec, below: FloorSpec, floor: FloorSpec) -> Flaw | N
         ):
             x, y = (x0 + x1) / 2, (y0 + y1) / 2
             marks = (Mark(floor.number if verb == "ends" else below.number, x, y),)
-            begins = f"{tower.name}: its flight `{flight.name}` {verb} in the air, at {place(x, y)}"
+            position = position_text(x, y)
+            begins = f"{tower.name}: its flight `{flight.name}` {verb} in the air, at {position}"
             if below.number > 1:
                 begins += f" above floor {below.number}, where the tower is repeated"
             joined = [(name, rects) for level, name, rects in levels if abs(level - z) <= 2 * LEDGE]
@@ -150,7 +154,7 @@ def _tower_end(tower: TowerSpec, below: FloorSpec, floor: FloorSpec) -> Flaw | N
                 for name, rects in joined
                 for part, rect in rects.items()
             )
-            if gap > ASIDE:
+            if gap > JOINT_GAP:
                 whole = name if part == name else f"`{part}` of {name}"
                 return Flaw(
                     f"{begins}, {gap:.2f} m from {whole}, the nearest deck of that height; let one "
@@ -160,17 +164,17 @@ def _tower_end(tower: TowerSpec, below: FloorSpec, floor: FloorSpec) -> Flaw | N
     return None
 
 
-def _climb(standing: Standing, tower: TowerSpec, below: FloorSpec, floor: FloorSpec) -> Flaw:
-    """How far the robot gets on a tower that joins two floors, and what ends it."""
-    robot = standing.lattice.robot
+def _climb_flaw(states: SafeStates, tower: TowerSpec, below: FloorSpec, floor: FloorSpec) -> Flaw:
+    """Return the reason why the robot can't climb a tower that joins two floors."""
+    robot = states.lattice.robot
     for flight in tower.flights:
-        narrow = 2 * (robot.footprint.half_width + MARGIN)
+        min_width = 2 * (robot.footprint.half_width + MARGIN)
         _, (x0, y0, x1, y1) = mouths(flight, below.z)[0]
         marks = (Mark(below.number, (x0 + x1) / 2, (y0 + y1) / 2),)
-        if flight.width < narrow:
+        if flight.width < min_width:
             return Flaw(
                 f"{tower.name}: its flight `{flight.name}` is {flight.width:g} m wide; make it "
-                f"{WALKWAY} m at least",
+                f"{MIN_WIDTH} m at least",
                 marks,
             )
         if flight.rise > robot.max_step:
@@ -181,36 +185,40 @@ def _climb(standing: Standing, tower: TowerSpec, below: FloorSpec, floor: FloorS
             )
     lowest = min(tower.flights, key=lambda flight: flight.foot[2])
     yaw, (x, y) = math.radians(lowest.yaw), lowest.foot[:2]
-    before = x - TURN / 2 * math.cos(yaw), y - TURN / 2 * math.sin(yaw)
-    top = _highest(standing, tower, below, floor)
+    before = x - TURNING_SPACE / 2 * math.cos(yaw), y - TURNING_SPACE / 2 * math.sin(yaw)
+    top = _highest_reached(states, tower, below, floor)
     if top is None:
-        here = standing.nearest_reached(*before, below.z)
-        assert here is not None  # the floor below is reached
+        nearest = states.nearest_reached(*before, below.z)
+        assert nearest is not None  # the floor below is reached
+        obstructions = _obstruction_text(states, nearest, (*before, below.z))
         return Flaw(
-            f"{tower.name}: its foot at {place(x, y)} can't be driven up; the nearest place that "
-            f"can be reached is {place(*here[:2])}, {math.dist(here[:2], (x, y)):.1f} m away"
-            f"{_stands(standing, here, (*before, below.z))}; leave {TURN} m by {TURN} m free "
-            "before the foot, to turn in",
-            (Mark(below.number, x, y), Mark(below.number, float(here[0]), float(here[1]))),
+            f"{tower.name}: its foot at {position_text(x, y)} can't be driven up; the nearest "
+            f"position that can be reached is {position_text(*nearest[:2])}, "
+            f"{math.dist(nearest[:2], (x, y)):.1f} m away{obstructions}; leave {TURNING_SPACE} m "
+            f"by {TURNING_SPACE} m free before the foot, to turn in",
+            (Mark(below.number, x, y), Mark(below.number, float(nearest[0]), float(nearest[1]))),
         )
     return Flaw(
-        f"{tower.name}: it can be driven from floor {below.number} up to {place(*top[:2])}, "
-        f"{top[2] - below.z:.2f} m up, and no farther; leave {TURN} m by {TURN} m free after each "
-        f"flight, to turn in, and {robot.driving_height:.1f} m above the steps",
-        (Mark(standing.site.floor_at(float(top[2])), float(top[0]), float(top[1])),),
+        f"{tower.name}: the robot can drive from floor {below.number} up to "
+        f"{position_text(*top[:2])}, {top[2] - below.z:.2f} m up, and no farther; leave "
+        f"{TURNING_SPACE} m by {TURNING_SPACE} m free after each flight, to turn in, and "
+        f"{robot.driving_height:.1f} m above the steps",
+        (Mark(states.site.floor_at(float(top[2])), float(top[0]), float(top[1])),),
     )
 
 
-def _stands(standing: Standing, here: NDArray[np.float64], there: Sequence[float]) -> str:
-    things = between(standing.site, here, np.array(there), standing.lattice.robot.driving_height)
-    return f", and between stands {things}" if things else ""
+def _obstruction_text(states: SafeStates, a: NDArray[np.float64], b: Sequence[float]) -> str:
+    """Return the end of a sentence that names the things between two positions, or nothing."""
+    height = states.lattice.robot.driving_height
+    things = obstructions_between(states.site, a, np.array(b), height)
+    return f", and between them is {things}" if things else ""
 
 
-def _highest(
-    standing: Standing, tower: TowerSpec, below: FloorSpec, floor: FloorSpec
+def _highest_reached(
+    states: SafeStates, tower: TowerSpec, below: FloorSpec, floor: FloorSpec
 ) -> NDArray[np.float64] | None:
-    """The highest place between two floors, on the tower, that can be reached."""
-    x, y, z = standing.places.T
+    """Return the highest reached position on a tower between two floors; None: there is none."""
+    x, y, z = states.positions.T
     corners = [
         corner
         for flight in tower.flights
@@ -218,45 +226,46 @@ def _highest(
         for corner in ((x0, y0), (x1, y1))
     ]
     low, high = np.min(corners, axis=0), np.max(corners, axis=0)
-    climbed = standing.reached & (z > below.z + 0.1) & (z < floor.z + 0.1)
+    climbed = states.reached & (z > below.z + 0.1) & (z < floor.z + 0.1)
     climbed &= (x >= low[0]) & (x <= high[0]) & (y >= low[1]) & (y <= high[1])
-    found = standing.places[climbed]
-    return found[np.argmax(found[:, 2])] if len(found) else None
+    positions = states.positions[climbed]
+    return positions[np.argmax(positions[:, 2])] if len(positions) else None
 
 
-def _unpatrolled(navigator: Navigator, floor: FloorSpec) -> Flaw:
-    """Which corners of a floor are too narrow for a patrol."""
+def _patrol_flaw(navigator: Navigator, floor: FloorSpec) -> Flaw:
+    """Return the flaw of a floor that can't be patrolled, with the corners that are too narrow."""
     corners = patrol_corners(navigator, floor.number)
     rects = np.array(list(floor.walkways.values()))
     (x0, y0), (x1, y1) = rects[:, :2].min(axis=0), rects[:, 2:].max(axis=0)
     message = (
-        f"floor {floor.number} can be reached, but not patrolled: that takes three places to turn, "
-        f"{APART:g} m apart, and there "
+        f"floor {floor.number} can be reached, but not patrolled: that takes three positions to "
+        f"turn at, {MIN_SPACING:g} m apart, and there "
     )
-    turning = [place(x, y) for x, y, _ in corners]
+    turning = [position_text(x, y) for x, y, _ in corners]
     message += f"is {turning[0]}" if len(turning) == 1 else f"are {listed(turning or ['none'])}"
-    least = APART + TURN
-    if x1 - x0 < least or y1 - y0 < least:
+    min_size = MIN_SPACING + TURNING_SPACE
+    if x1 - x0 < min_size or y1 - y0 < min_size:
         return Flaw(
             f"{message}: it is {x1 - x0:.2f} m by {y1 - y0:.2f} m as a whole; make it "
-            f"{least:g} m by {least:g} m at least",
+            f"{min_size:g} m by {min_size:g} m at least",
             (Mark(floor.number, (x0 + x1) / 2, (y0 + y1) / 2),),
         )
     marks, narrow = [], []
     for name, (x, y) in zip(_CORNERS, ((x0, y0), (x1, y0), (x1, y1), (x0, y1)), strict=True):
-        if any(math.dist((x, y), corner[:2]) < APART for corner in corners):
+        if any(math.dist((x, y), corner[:2]) < MIN_SPACING for corner in corners):
             continue
         part, rect = min(floor.walkways.items(), key=lambda item: away(item[1], x, y))
-        if away(rect, x, y) > TURN:
+        if away(rect, x, y) > TURNING_SPACE:
             continue  # no deck there
         x, y = min(max(x, rect[0]), rect[2]), min(max(y, rect[1]), rect[3])
         marks.append(Mark(floor.number, float(x), float(y)))
         narrow.append(
-            f"the {name} corner, {place(x, y)}, where `{part}` is {min(_size(rect)):.2f} m wide"
+            f"the {name} corner, {position_text(x, y)}, where `{part}` is "
+            f"{min(_size(rect)):.2f} m wide"
         )
     return Flaw(
         f"{message}; too narrow, or not free: {'; '.join(narrow) or 'the rest'}; give it "
-        f"{TURN} m by {TURN} m to turn in",
+        f"{TURNING_SPACE} m by {TURNING_SPACE} m to turn in",
         tuple(marks),
     )
 
@@ -265,5 +274,5 @@ def _size(rect: Sequence[float]) -> tuple[float, float]:
     return rect[2] - rect[0], rect[3] - rect[1]
 
 
-def _middle(floor: FloorSpec, rect: Sequence[float]) -> Mark:
+def _center(floor: FloorSpec, rect: Sequence[float]) -> Mark:
     return Mark(floor.number, (rect[0] + rect[2]) / 2, (rect[1] + rect[3]) / 2)

@@ -10,7 +10,7 @@ from argo_compiler.base.model import Model, Pose
 from argo_env.navigation import Navigator
 from argo_env.navigation.raster import CELL
 from argo_env.navigation.stencil import HEADINGS, heading_angle
-from argo_env.planning.code import digest_of_code
+from argo_env.planning.code import code_digest
 from argo_env.planning.opening import OpenedSite
 from argo_env.robot.spec import RobotSpec
 from argo_env.site import SiteCheckpoint
@@ -158,7 +158,7 @@ def describe_world(site: OpenedSite, obstacles: Sequence[Obstacle] = ()) -> Worl
 
 def world_digest(site: OpenedSite, obstacles: Sequence[Obstacle] = ()) -> str:
     """Return a digest of the site with its robot, the obstacles, and the code that plans on it."""
-    sink = hashlib.blake2b(f"{site.digest} {digest_of_code()}".encode(), digest_size=16)
+    sink = hashlib.blake2b(f"{site.digest} {code_digest()}".encode(), digest_size=16)
     for obstacle in obstacles:
         sink.update(obstacle.model_dump_json().encode() + b"\n")
     return sink.hexdigest()

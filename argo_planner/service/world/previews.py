@@ -182,7 +182,7 @@ class _PathPreviewer:
             leg = self.travel.leg(start, task, task.velocity)
             if isinstance(leg, NoPath):
                 return PreviewedWay(problem=_problem_text(goal, leg.reason))
-            path = self.travel.way(start, task)
+            path = self.travel.plan_path(start, task)
         except ArgoError as error:
             return PreviewedWay(problem=_problem_text(goal, str(error)))
         return _to_preview(leg, path, task.velocity, self._site.robot)

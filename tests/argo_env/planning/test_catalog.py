@@ -13,8 +13,8 @@ from argo_compiler.il import Action, Mission, Task
 from argo_compiler.isar import from_isar, to_isar
 from argo_env.navigation import Navigator
 from argo_env.planning.catalog import make_catalog
+from argo_env.planning.inspection_views import inspection_views
 from argo_env.planning.patrols import patrol
-from argo_env.planning.reading_places import inspection_views
 from tests.yard import site_of
 
 

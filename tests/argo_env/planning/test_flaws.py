@@ -1,11 +1,11 @@
-"""What is wrong with a site is said with its place and the way out of it."""
+"""Flaws of a site are reported with their positions and remedies."""
 
 import copy
 
 import pytest
 
 from argo_env.navigation import Navigator
-from argo_env.planning.flaws import look_over
+from argo_env.planning.flaws import find_flaws
 from argo_env.robot.spec import load_robot
 from argo_env.site import make_site
 from argo_env.site.spec import SiteSpec
@@ -60,7 +60,7 @@ def flaws(change):
     site = copy.deepcopy(YARD)
     change(site)
     spec = SiteSpec.model_validate(site)
-    return look_over(Navigator(make_site(spec), load_robot())).flaws
+    return find_flaws(Navigator(make_site(spec), load_robot())).flaws
 
 
 def flight(site):
@@ -111,7 +111,8 @@ def fenced_off(site):
             lambda site: site["floors"][0].update(
                 barriers={"fence": [[2.2, 0.8], [0.8, 0.8], [0.8, 2.4], [2.2, 2.4]]}
             ),
-            "its foot at (1.50, 1.55) can't be driven up; the nearest place that can be reached is",
+            "its foot at (1.50, 1.55) can't be driven up; the nearest position that can be reached "
+            "is",
         ),
         (
             lambda site: flight(site).update(width=0.5),
@@ -119,8 +120,8 @@ def fenced_off(site):
         ),
         (
             lambda site: site["floors"][1]["walkways"].update(platform=[5.14, 0.6, 8.9, 2.4]),
-            "floor 2 can be reached, but not patrolled: that takes three places to turn, 2 m "
-            "apart, and there are",
+            "floor 2 can be reached, but not patrolled: that takes three positions to "
+            "turn at, 2 m apart, and there are",
         ),
         (
             l_shaped,
@@ -128,7 +129,7 @@ def fenced_off(site):
         ),
         (
             lambda site: site["floors"][0].update(railed=True),
-            "floor 1 railing 1; leave the railing out where the way leads in (`gates`), or give "
+            "floor 1 railing 1; leave the railing out where the path leads in (`gates`), or give "
             "`railed: false`; floor 2 can't be reached either",
         ),
         (
@@ -155,8 +156,8 @@ def fenced_off(site):
         ),
         (
             fenced_off,
-            "there is no way from docking station 1 to docking station 2 and back: the nearest "
-            "place that can be reached is (",
+            "there is no path from docking station 1 to docking station 2 and back: the nearest "
+            "position that can be reached is (",
         ),
     ],
 )  # fmt: skip
@@ -171,7 +172,7 @@ def test_a_site_in_order_has_none():
 
 
 def test_what_follows_from_another_flaw_is_one_line():
-    """Of stairs that lead nowhere, and not of each thing that is out of reach for that."""
+    """Missing stairs are one flaw, which is not repeated for all that they make unreachable."""
 
     def change(site):
         site["floors"].append(copy.deepcopy(site["floors"][1]) | {"number": 3, "z": 5.0})

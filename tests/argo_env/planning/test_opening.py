@@ -1,4 +1,4 @@
-"""Opened sites: what is kept in memory and on disk changes nothing, whatever happens to it."""
+"""Opened sites: caches in memory and on disk change no result, whatever happens to them."""
 
 import copy
 import gc
@@ -35,7 +35,7 @@ DRAWN = "generated:floors=1,size=12x12,checkpoints=2,seed=1"
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
-    """An empty cache of the test's own."""
+    """Use an empty cache for this test."""
     chosen = tmp_path / "cache"
     monkeypatch.setenv(cache.VARIABLE, str(chosen))
     forget_sites()
@@ -52,8 +52,8 @@ def written(path, **changes):
     return write_site(path, areas=AWAY_FROM_THE_EDGE, **changes)
 
 
-def found(navigator):
-    """A digest of all that is asked of a site: paths, times, views, catalogue, to the last bit."""
+def digest_of_results(navigator):
+    """Return a digest of all results for a site, to the last bit: paths, times, views, names."""
     site, sink = navigator.site, hashlib.sha256()
     poses = [*site.docks.values(), *site.places.values()]
     poses += [Pose(x=x, y=y, z=z) for x, y, z, _ in navigator.turning_poses(1)[::97].tolist()[:4]]
@@ -92,7 +92,7 @@ def files_in(folder):
 
 
 def open_anew(reference):
-    """As another process would."""
+    """Open a site as another process would."""
     forget_sites()
     return open_site(reference)
 
@@ -100,12 +100,12 @@ def open_anew(reference):
 @pytest.mark.long
 @pytest.mark.parametrize("reference", ["darmstadt", "yard"])
 def test_what_is_on_disk_equals_what_is_found_anew(reference, yard_file, folder, monkeypatch):
-    monkeypatch.setattr("argo_env.navigation.regions._WORTH_IT", 1000)  # as on large sites
+    monkeypatch.setattr("argo_env.navigation.regions._MIN_STATES", 1000)  # as on large sites
     reference = yard_file if reference == "yard" else reference
     first = open_site(reference)
     plain = Navigator(make_site(first.site.spec), first.robot)
-    anew = found(plain)
-    assert found(first.navigator) == anew
+    anew = digest_of_results(plain)
+    assert digest_of_results(first.navigator) == anew
     assert files_in(folder)
     for name in ("find_surface", "build_lattice"):
         monkeypatch.setattr(navigator_module, name, None)  # is not called any more
@@ -113,7 +113,7 @@ def test_what_is_on_disk_equals_what_is_found_anew(reference, yard_file, folder,
     assert again is not first
     assert again.site == first.site
     assert again.site.elements == first.site.elements
-    assert found(again.navigator) == anew
+    assert digest_of_results(again.navigator) == anew
     assert again.navigator.lattice.costs.data.tobytes() == plain.lattice.costs.data.tobytes()
     assert again.catalog == first.catalog == make_catalog(plain)
 
@@ -139,15 +139,15 @@ def test_ways_of_a_mission_come_from_disk_without_a_lattice(yard_file, monkeypat
     task = Task(name="one", action=Action.MEASURE, object_id="1")
     first = open_site(yard_file)
     dock = first.site.docks[1]
-    leg, way = first.travel.leg(dock, task, None), first.travel.way(dock, task)
+    leg, way = first.travel.leg(dock, task, None), first.travel.plan_path(dock, task)
     again = open_anew(yard_file)
     monkeypatch.setattr(Navigator, "lattice", None)
     assert again.travel.leg(dock, task, None) == leg
-    assert again.travel.way(dock, task) == way
+    assert again.travel.plan_path(dock, task) == way
 
 
 def damaged(content):
-    """The content of a file after what may happen to it."""
+    """Yield variants of a file's content, each damaged in another way."""
     middle = len(content) // 2
     yield b""
     yield content[:middle]
@@ -161,7 +161,7 @@ def damaged(content):
 
 @pytest.mark.long
 def test_a_damaged_entry_is_made_anew(yard_file, folder, caplog):
-    anew = found(open_site(yard_file).navigator)
+    anew = digest_of_results(open_site(yard_file).navigator)
     whole = {path: path.read_bytes() for path in files_in(folder)}
     rounds = [[*damaged(content)] for content in whole.values()]
     for k in range(len(rounds[0])):
@@ -169,32 +169,32 @@ def test_a_damaged_entry_is_made_anew(yard_file, folder, caplog):
             path.write_bytes(contents[k])
         caplog.clear()
         with caplog.at_level(logging.WARNING, "argo_env"):
-            assert found(open_anew(yard_file).navigator) == anew
+            assert digest_of_results(open_anew(yard_file).navigator) == anew
         assert "made anew" in caplog.text
         assert {path: path.read_bytes() for path in files_in(folder)} == whole
 
 
 @pytest.mark.parametrize("kind", ["surface", "lattice", "portals", "site", "first-dock"])
 def test_one_part_may_be_gone(yard_file, folder, kind):
-    anew = found(open_site(yard_file).navigator)
+    anew = digest_of_results(open_site(yard_file).navigator)
     for path in folder.rglob(f"{kind}.npz"):
         path.unlink()
-    assert found(open_anew(yard_file).navigator) == anew
+    assert digest_of_results(open_anew(yard_file).navigator) == anew
 
 
 def test_an_entry_of_another_site_is_not_taken(yard_file, tmp_path, folder):
-    anew = found(open_site(yard_file).navigator)
+    anew = digest_of_results(open_site(yard_file).navigator)
     (own,) = (folder / "sites").iterdir()
     other = written(tmp_path / "other.yaml", ground=[0, 0, 8, 5], floors=[
         SITE["floors"][0] | {"walkways": {"slab": [0.5, 0.5, 7.5, 4.5]}}
     ])  # fmt: skip
-    of_other = found(open_site(other).navigator)
+    of_other = digest_of_results(open_site(other).navigator)
     assert of_other != anew
     (foreign,) = set((folder / "sites").iterdir()) - {own}
     shutil.rmtree(own)
     shutil.copytree(foreign, own)
-    assert found(open_anew(yard_file).navigator) == anew
-    assert found(open_anew(other).navigator) == of_other
+    assert digest_of_results(open_anew(yard_file).navigator) == anew
+    assert digest_of_results(open_anew(other).navigator) == of_other
 
 
 def test_a_part_of_another_name_is_not_taken(tmp_path):
@@ -208,16 +208,16 @@ def test_a_part_of_another_name_is_not_taken(tmp_path):
 
 PRINT_FOUND = """
 import sys
-from tests.argo_env.planning.test_opening import found
+from tests.argo_env.planning.test_opening import digest_of_results
 from argo_env.planning import open_site
 sys.stdin.readline()
-print(found(open_site(sys.argv[1]).navigator))
+print(digest_of_results(open_site(sys.argv[1]).navigator))
 """
 
 
 @pytest.mark.long
 def test_processes_that_write_at_the_same_time_do_no_harm(yard_file, folder):
-    anew = found(Navigator(load_site(yard_file), load_robot()))
+    anew = digest_of_results(Navigator(load_site(yard_file), load_robot()))
     command = [sys.executable, "-c", PRINT_FOUND, yard_file]
     options = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True, "cwd": ROOT}
     running = [subprocess.Popen(command, **options) for _ in range(3)]
@@ -228,7 +228,7 @@ def test_processes_that_write_at_the_same_time_do_no_harm(yard_file, folder):
     assert said == [anew] * 3
     assert [process.returncode for process in running] == [0] * 3
     assert not [path for path in files_in(folder) if path.name.startswith(".")]
-    assert found(open_site(yard_file).navigator) == anew
+    assert digest_of_results(open_site(yard_file).navigator) == anew
 
 
 def test_a_reader_beside_a_writer_sees_all_or_nothing(tmp_path):
@@ -260,9 +260,9 @@ def test_threads_that_open_the_same_site_build_it_once(yard_file, monkeypatch):
 @pytest.mark.parametrize("where", ["a file/cache", "\0", "x" * 300])
 def test_a_folder_that_can_not_be_used_breaks_nothing(yard_file, tmp_path, monkeypatch, where):
     (tmp_path / "a file").write_text("", encoding="utf-8")
-    anew = found(Navigator(load_site(yard_file), load_robot()))
+    anew = digest_of_results(Navigator(load_site(yard_file), load_robot()))
     monkeypatch.setattr(cache, "cache_folder", lambda: tmp_path / where)
-    assert found(open_site(yard_file).navigator) == anew
+    assert digest_of_results(open_site(yard_file).navigator) == anew
     assert cache.write_problem()
     assert cache.contents() == cache.Contents(0, 0, 0)
     cache.clear()
@@ -270,13 +270,13 @@ def test_a_folder_that_can_not_be_used_breaks_nothing(yard_file, tmp_path, monke
 
 
 def test_a_full_disk_breaks_nothing(yard_file, folder, monkeypatch):
-    anew = found(Navigator(load_site(yard_file), load_robot()))
+    anew = digest_of_results(Navigator(load_site(yard_file), load_robot()))
 
     def full(*_):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(os, "replace", full)
-    assert found(open_site(yard_file).navigator) == anew
+    assert digest_of_results(open_site(yard_file).navigator) == anew
     assert files_in(folder) == []
 
 
@@ -341,7 +341,7 @@ def test_copies_are_the_same_site(yard_file):
 def test_another_process_opens_it_itself(yard_file, tmp_path, kind):
     opened = open_site(yard_file)
     if kind == "made":
-        opened = OpenedSite.of(site_of(name="made"))
+        opened = OpenedSite.from_site(site_of(name="made"))
     content = pickle.dumps(opened)
     assert len(content) < 10_000
     (tmp_path / "pickle").write_bytes(content)
@@ -365,7 +365,7 @@ def test_a_file_that_has_changed_meanwhile_is_refused(yard_file, tmp_path):
 
 def test_a_site_with_something_in_the_way_is_not_pickled(umad):
     changed = umad.with_elements(umad.elements[:-1])
-    opened = OpenedSite.of(changed)
+    opened = OpenedSite.from_site(changed)
     assert opened.site is changed
     with pytest.raises(Conflict, match="not as its description says"):
         pickle.dumps(opened)
@@ -393,7 +393,7 @@ def test_what_is_not_there_is_named(umad):
         umad.checkpoint(99)
     with pytest.raises(NotFound, match="no floor 9; there are: 1 to 6"):
         umad.floor(9)
-    yard = OpenedSite.of(site_of())
+    yard = OpenedSite.from_site(site_of())
     with pytest.raises(NotFound, match="no checkpoint 4; there are: 1 to 3"):
         yard.navigator.viewing_pose(4)
     with pytest.raises(NotFound, match="no floor 2; there are: 1"):

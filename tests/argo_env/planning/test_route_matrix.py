@@ -1,4 +1,4 @@
-"""The ways between a mission's tasks, against what a run takes."""
+"""Travel times between a mission's tasks, compared with those of runs."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.reorder.rewriting import apply_route
 from argo_compiler.route import Tour, evaluate
 from argo_env.navigation import Navigator
-from argo_env.planning.route_matrix import mission_ways, plan_mission
+from argo_env.planning.route_matrix import mission_travel, plan_mission
 from argo_env.planning.travel import SiteTravel
 from argo_env.run.record import Reordering
 from tests.yard import (
@@ -29,7 +29,7 @@ STEP = 0.1  # s of the drive
 
 
 def driven(changed, yard):
-    """How long a mission takes, s."""
+    """Return the duration of a mission's run, in s."""
     return run_with(changed, fast_setup(yard)).result.duration
 
 
@@ -63,14 +63,14 @@ def test_a_mission_with_checkpoints_takes_about_as_long(yard):
 
 def test_many_places_are_reckoned_over_the_lattice(yard, monkeypatch):
     written = mission(measure(1), waypoint("A", 5.5, 2, velocity=0.2), measure(3))
-    exact = mission_ways(written, yard, SiteTravel(yard))
+    exact = mission_travel(written, yard, SiteTravel(yard))
     monkeypatch.setattr(route_matrix, "MOST_PLANNED", 2)
     monkeypatch.setattr(route_matrix, "NEAREST", 1)
-    rough = mission_ways(written, yard, SiteTravel(yard))
+    rough = mission_travel(written, yard, SiteTravel(yard))
     assert np.array_equal(rough.work, exact.work)
     assert np.array_equal(
         rough.time[:, 1], exact.time[:, 1]
-    )  # a way with a speed of its own is planned
+    )  # a path with a velocity of its own is planned
     away = ~np.eye(4, 3, dtype=bool)
     assert np.abs(rough.time - exact.time)[away].sum() <= 0.2 * exact.time[away].sum()
     assert (rough.energy >= exact.energy - 1e-9)[2:][away[2:]].all()
@@ -96,7 +96,7 @@ def test_an_area_is_where_a_mission_without_a_pose_starts(yard):
     start = written.tasks[0].model_copy(update={"pose": None})
     docked = written.model_copy(update={"tasks": (start, *written.tasks[1:]), "start_area": 1})
     assert travel.start(docked) == yard.snap(Pose(x=1.05, y=1.05, z=0.0))
-    assert (mission_ways(docked, yard, travel).time < np.inf).all()
+    assert (mission_travel(docked, yard, travel).time < np.inf).all()
 
 
 def test_a_resumed_run_still_says_in_what_order_it_is(yard, tmp_path):

@@ -1,18 +1,18 @@
-"""Warnings about a mission on its site: poses that do not see their checkpoints, and speeds."""
+"""Warnings about a mission on its site: poses with hidden checkpoints, and speeds."""
 
 import math
 
 import pytest
 
 from argo_compiler.base.model import Pose
-from argo_env.planning.site_warnings import too_fast, unseen_from_poses
+from argo_env.planning.site_warnings import speed_warnings, view_warnings
 from argo_env.robot.spec import load_robot
 from tests.yard import measure, mission
 
 
 def found(site, **pose):
     plan = mission(measure(1, pose=Pose(z=0.02, **pose)))
-    return list(unseen_from_poses(plan, site))
+    return list(view_warnings(plan, site))
 
 
 @pytest.mark.rule("T10")
@@ -33,16 +33,16 @@ def test_one_where_the_robot_can_not_stand_is_not_its_matter(site):
 
 
 def test_without_poses_nothing_is_looked_at(site):
-    assert list(unseen_from_poses(mission(measure(1), measure(2)), site)) == []
+    assert list(view_warnings(mission(measure(1), measure(2)), site)) == []
 
 
 @pytest.mark.parametrize("speed", [None, 0.1, 0.4])
 def test_a_speed_that_the_robot_drives_at(speed):
-    assert list(too_fast(mission(measure(1, velocity=speed)), load_robot())) == []
+    assert list(speed_warnings(mission(measure(1, velocity=speed)), load_robot())) == []
 
 
 def test_one_that_it_is_not_known_to_drive_at():
-    (finding,) = too_fast(mission(measure(1, velocity=5.0), measure(2)), load_robot())
+    (finding,) = speed_warnings(mission(measure(1, velocity=5.0), measure(2)), load_robot())
     assert finding.code == "site.faster-than-robot"
     assert finding.severity == "warning"
     assert "at 5 m/s" in finding.message

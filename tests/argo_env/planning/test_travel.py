@@ -1,4 +1,4 @@
-"""Travel times for the analysis, against what the simulated robot takes."""
+"""Travel times for the analysis, compared with those of the simulated robot."""
 
 import pytest
 

@@ -544,7 +544,10 @@ class TestWhatDoesNotFitTogether:
             simulate(spec, site)
 
     def test_a_run_that_was_checked_on_another_site(self, site):
-        known, other = check_run(spec_of("route"), site), OpenedSite.of(site_of(name="other"))
+        known, other = (
+            check_run(spec_of("route"), site),
+            OpenedSite.from_site(site_of(name="other")),
+        )
         for begin in (
             lambda: simulate(known, other),
             lambda: Simulation(Executor(lower(PLAN)), other, known),

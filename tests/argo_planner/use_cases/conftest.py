@@ -6,7 +6,7 @@ from tests.yard import yard
 
 @pytest.fixture(scope="package")
 def site() -> OpenedSite:
-    return OpenedSite.of(yard().site)
+    return OpenedSite.from_site(yard().site)
 
 
 @pytest.fixture(autouse=True)

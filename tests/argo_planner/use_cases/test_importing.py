@@ -8,7 +8,7 @@ from argo_compiler.files.mission_file import mission_text
 from argo_compiler.hfsm import lower
 from argo_compiler.isar import to_isar
 from argo_compiler.ros import Storage, to_ros1_bag, to_ros2_bag
-from argo_env.planning.reading_places import inspection_views
+from argo_env.planning.inspection_views import inspection_views
 from argo_planner.use_cases.importing import (
     SourceKind,
     Upload,

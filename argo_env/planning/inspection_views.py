@@ -1,4 +1,4 @@
-"""From where each checkpoint of a mission would be read: what isar's missions have to say."""
+"""Poses from which the robot reads the checkpoints of a mission, for the export to isar."""
 
 from argo_compiler.base.model import Pose
 from argo_compiler.il import Action, Mission
@@ -7,28 +7,29 @@ from argo_env.navigation import Navigator
 
 
 def inspection_views(mission: Mission, navigator: Navigator) -> dict[str, InspectionView]:
-    """For each checkpoint that the mission measures, by its `object_id`, the place that a robot
-    reads it from that does the tasks in list order. Checkpoints that the site has not are left out.
+    """Return the viewing pose for each checkpoint that a mission measures, by its `object_id`.
 
-    Raises Unreachable where there is no such place.
+    They are the poses of a robot that carries out the tasks in the order of the list. Checkpoints
+    that are not on the site are left out. Raises Unreachable if a checkpoint has no viewing pose.
     """
     known = {str(checkpoint.id): checkpoint for checkpoint in navigator.site.checkpoints}
     docks = navigator.site.docks
-    here: Pose | None = docks[min(docks)] if docks else None
+    pose: Pose | None = docks[min(docks)] if docks else None
     views: dict[str, InspectionView] = {}
     for task in mission.tasks:
         checkpoint = known.get(task.object_id or "")
         if task.action is not Action.MEASURE:
-            here = task.pose or here
+            pose = task.pose or pose
         elif checkpoint and task.object_id not in views:
-            path = navigator.plan_to_view(here or _anywhere(navigator), checkpoint.id)
-            here = path.end
+            path = navigator.plan_to_view(pose or _some_pose(navigator), checkpoint.id)
+            pose = path.end
             views[str(checkpoint.id)] = InspectionView(
-                pose=here, target=checkpoint.position, name=checkpoint.name
+                pose=pose, target=checkpoint.position, name=checkpoint.name
             )
     return views
 
 
-def _anywhere(navigator: Navigator) -> Pose:
+def _some_pose(navigator: Navigator) -> Pose:
+    """Return a pose on the lowest floor that the robot can reach, for a site without docks."""
     x, y, z, _ = navigator.turning_poses(navigator.site.spec.floors[0].number)[0].tolist()
     return Pose(x=x, y=y, z=z)

@@ -1,4 +1,4 @@
-"""Where on a site the robot can stand, and to which of it the docking stations lead."""
+"""States in which the robot can stand on a site, and those that it reaches from the docks."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -13,58 +13,62 @@ from argo_env.navigation.navigator import nearest_state
 from argo_env.site import Site
 from argo_env.site.spec import FloorSpec
 
-_LEVEL = 0.02  # m between a place on a deck and the deck's height
+_LEVEL = 0.02  # m, largest distance of a state on a deck from the deck's height
 
 
 @dataclass(frozen=True)
-class Standing:
-    """All states in which the robot stands safely, whether reached or not, and for each the part
-    of them that can be reached from it and back."""
+class SafeStates:
+    """All states of a site's lattice in which the robot stands safely, reachable or not."""
 
     site: Site
     lattice: Lattice
     part: NDArray[np.int32]
+    """number of the strongly connected component of each state: states that reach each other"""
     docks: dict[int, int | None]
-    """the state in each docking station; None where the robot can't stand"""
+    """state at each docking station; None: the robot can't stand there"""
 
     @staticmethod
-    def of(navigator: Navigator) -> "Standing":
+    def from_navigator(navigator: Navigator) -> "SafeStates":
         lattice = build_lattice(navigator.surface, navigator.robot)
         docks = {
             n: nearest_state(lattice, pose) for n, pose in sorted(navigator.site.docks.items())
         }
-        return Standing(navigator.site, lattice, label_strong_components(lattice.costs), docks)
+        return SafeStates(navigator.site, lattice, label_strong_components(lattice.costs), docks)
 
     @property
     def first_dock(self) -> int | None:
-        """The first docking station in which the robot can stand."""
+        """First docking station at which the robot can stand; None if there is none."""
         return next((number for number, state in self.docks.items() if state is not None), None)
 
     @cached_property
     def reached(self) -> NDArray[np.bool_]:
-        """Of each state, whether the first docking station leads there and back."""
+        """True for each state that can be reached from the first docking station and back."""
         if self.first_dock is None:
             return np.zeros(self.lattice.size, dtype=bool)
         return np.asarray(self.part == self.part[self.docks[self.first_dock]])
 
     @cached_property
-    def places(self) -> NDArray[np.float64]:
-        """x, y and z (m) of the states, shape (n, 3)."""
+    def positions(self) -> NDArray[np.float64]:
+        """Positions x, y and z (m) of the states, shape (n, 3)."""
         return self.lattice.poses()[:, :3]
 
-    def on(self, floor: FloorSpec) -> NDArray[np.bool_]:
-        """Of each state, whether it is on a floor's deck."""
-        x, y, z = self.places.T
+    def is_on_floor(self, floor: FloorSpec) -> NDArray[np.bool_]:
+        """Return True for each state on the deck of a floor."""
+        x, y, z = self.positions.T
         inside = np.zeros(len(z), dtype=bool)
         for x0, y0, x1, y1 in floor.walkways.values():
             inside |= (x >= x0) & (x <= x1) & (y >= y0) & (y <= y1)
         return np.asarray(inside & (np.abs(z - floor.z) <= _LEVEL))
 
     def nearest_reached(self, x: float, y: float, z: float) -> NDArray[np.float64] | None:
-        """The reached place nearest to a point, and as high as it within a step."""
-        level = self.reached & (np.abs(self.places[:, 2] - z) <= self.lattice.robot.max_step)
-        found = self.places[level]
-        if not len(found):
+        """Return the reached position nearest to a point, within a step's height of it.
+
+        None means that there is none.
+        """
+        level = self.reached & (np.abs(self.positions[:, 2] - z) <= self.lattice.robot.max_step)
+        positions = self.positions[level]
+        if not len(positions):
             return None
-        nearest: NDArray[np.float64] = found[np.argmin(np.hypot(found[:, 0] - x, found[:, 1] - y))]
+        distances = np.hypot(positions[:, 0] - x, positions[:, 1] - y)
+        nearest: NDArray[np.float64] = positions[np.argmin(distances)]
         return nearest

@@ -380,7 +380,7 @@ def all_processor_time() -> float:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the parts that the command line names."""
+    """Run the parts of the benchmark in the arguments, or route, drive and inspect if none is."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )

@@ -145,7 +145,11 @@ def _problem_lines(problem: RouteProblem) -> Iterator[str]:
 
 
 def _read_tour(path: Path, size: int) -> Tour:
-    """Return the route in a tour file of LKH, which may begin at any node; the depot is node 1."""
+    """Return the route from a tour file of LKH.
+
+    The tour in the file may begin at any node. The route begins after the depot, which is node 1;
+    visit k is node k + 2.
+    """
     text = path.read_text(encoding="utf-8").partition("TOUR_SECTION")[2]
     nodes = [int(word) for word in text.split("-1")[0].split()]
     begin = nodes.index(1)

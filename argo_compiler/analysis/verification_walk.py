@@ -1,4 +1,11 @@
-"""Steps of a mission by the rules of `docs/language.md`, and what they prove possible."""
+"""Steps of a mission by the rules of `docs/language.md`, and what they prove possible.
+
+Rules are cited by their names there, such as T2. A step leads from one point of a run to the next:
+to a task, to the end of a round, to the end of a group whose time is up, or to the mission's end.
+Parameters `at` and `number` are indices in the mission's lists of tasks or groups. Parameters
+`state` and `late` are sets of readings, as bits: those that are possible at the point, and those of
+cancelled actions that may still arrive.
+"""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -199,7 +206,11 @@ class MissionWalk:
     ) -> list[Step]:
         """Return the steps by a task's transitions, the unconditional one last (T2, T3).
 
-        The checkpoint `fresh` was just measured.
+        Transitions that can't be taken have no step; neither have those after one that is always
+        taken. If a group ends with the task, the last step leads to the end of the group's round.
+
+        `fresh` is a checkpoint that has certainly just been measured, so that its reading is recent
+        enough for every condition; None if there is none.
         """
         steps: list[Step] = []
         changing = late | self._reported

@@ -67,13 +67,13 @@ def to_btcpp(mission: Mission) -> str:
     """Return a mission in which `check` finds no errors as XML for BehaviorTree.CPP 4.
 
     Raises:
-        DiagnosticError: The mission has parts that a tree can't express.
+        DiagnosticError: The mission has parts that a behaviour tree can't express.
     """
     return _Tree(mission).text()
 
 
 class _Tree:
-    """Writer of the tree's XML; holds the positions of tasks and the numbers of checkpoints."""
+    """Writer of a behaviour tree; holds the positions of tasks and the numbers of checkpoints."""
 
     def __init__(self, mission: Mission) -> None:
         self.mission = mission
@@ -98,7 +98,7 @@ class _Tree:
         self.objects.setdefault(object_id, len(self.objects) + 1)
 
     def text(self) -> str:
-        """Return the XML. Raises DiagnosticError if the tree can't express the mission."""
+        """Return the XML. Raises DiagnosticError if a behaviour tree can't express the mission."""
         raise_refusals(self._refusals())
         with self.xml.element("root", {"BTCPP_format": "4", "main_tree_to_execute": "Mission"}):
             with self.xml.element("BehaviorTree", {"ID": "Mission"}):
@@ -417,7 +417,7 @@ def _conditions(task: Task) -> Iterator[Condition]:
 
 
 def _time_refusals(task: Task) -> Iterator[Diagnostic]:
-    """Yield refusals for the times of a task that a tree can't express."""
+    """Yield a diagnostic for each time of a task that a behaviour tree can't express."""
     window, wait = task.window, task.wait
     if wait is not None and wait.duration is None:
         yield refusal(

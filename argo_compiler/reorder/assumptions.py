@@ -1,4 +1,8 @@
-"""Assumptions about a run that the times of an order are computed with."""
+"""Assumptions about a run that the times of an order are computed with.
+
+A leaf is a state of the mission's state machine that executes one task; leaves are named by their
+numbers in the flow (see `argo_compiler.analysis.flow`).
+"""
 
 from collections.abc import Iterator
 
@@ -45,13 +49,16 @@ def assumptions(visits: Visits, matrix: TravelMatrix) -> Iterator[str]:
 
 
 def _waits_of_unknown_length(visits: Visits) -> list[int]:
-    """Return the leaves of WAITs that may end before their limit."""
+    """Return the leaves whose tasks are WAITs that may end before their limit."""
     waits = ((leaf, visits.task(leaf).wait) for leaf in visits.visit_of_leaf)
     return [leaf for leaf, wait in waits if wait is not None and wait.duration is None]
 
 
 def _leaves_beyond_limit(visits: Visits, matrix: TravelMatrix) -> list[int]:
-    """Return the leaves that take longer than their time limits from some pose."""
+    """Return the leaves whose tasks exceed their time limits from at least one origin.
+
+    The time of a task includes the drive to it, and so depends on where the robot comes from.
+    """
     longest = np.max(matrix.time, axis=0, where=np.isfinite(matrix.time), initial=0.0)
     leaves = []
     for leaf in range(len(matrix.tasks)):

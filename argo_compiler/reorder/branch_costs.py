@@ -2,6 +2,9 @@
 
 The costs are those of the worst case, or the mean where the probability of each transition is
 known. Transitions that lead back are ignored: tasks in a conditional loop count once.
+
+A leaf is a state of the mission's state machine that executes one task; leaves are named by their
+numbers in the flow (see `argo_compiler.analysis.flow`).
 """
 
 from collections.abc import Callable, Mapping

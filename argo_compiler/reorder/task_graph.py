@@ -1,4 +1,8 @@
-"""Graph of the transitions between the tasks and groups of a mission, and of a group's round."""
+"""Graph of the transitions between the tasks and groups of a mission, and of a group's round.
+
+A leaf is a state of the mission's state machine that executes one task; leaves are named by their
+numbers in the flow (see `argo_compiler.analysis.flow`).
+"""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field

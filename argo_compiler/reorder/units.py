@@ -2,6 +2,9 @@
 
 A mission, and each round of a group, is a chain of units. Nothing lies between two units: tasks
 that are done only in some cases belong to the unit before them, and stay as they are written.
+
+A leaf is a state of the mission's state machine that executes one task; leaves are named by their
+numbers in the flow (see `argo_compiler.analysis.flow`).
 """
 
 from collections.abc import Iterator, Mapping, Sequence

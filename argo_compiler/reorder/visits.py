@@ -1,4 +1,8 @@
-"""Visits of a mission: its task units by number, and their names for messages."""
+"""Visits of a mission: its task units by number, and their names for messages.
+
+A leaf is a state of the mission's state machine that executes one task; leaves are named by their
+numbers in the flow (see `argo_compiler.analysis.flow`).
+"""
 
 from dataclasses import dataclass
 from functools import cached_property

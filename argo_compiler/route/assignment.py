@@ -12,8 +12,8 @@ from argo_compiler.route.pruning import Pruned, least_arc_times
 def assignment_bound(network: StepNetwork, pruned: Pruned) -> int | None:
     """Compute a lower bound on the time of arcs and services, by an assignment problem.
 
-    In the relaxation, each step is entered once and left once. Returns 0 if the network has
-    optional steps, and None if there is no route.
+    In the relaxation, each step is entered once and left once. The bound is in the problem's unit
+    of time. Returns 0 if the network has optional steps, and None if there is no route.
     """
     if not pruned.possible:
         return None

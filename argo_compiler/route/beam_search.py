@@ -1,4 +1,9 @@
-"""Beam search over labels with two measures, which keeps only the most promising of each layer."""
+"""Beam search over labels with two measures, which keeps only the most promising of each layer.
+
+A label describes the beginning of a path: the set of its steps, its last node, the time at which
+the node is completed, and a second measure. Layer k has the labels of sets of k steps; parameters
+`size` are this number.
+"""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -155,8 +160,8 @@ class BeamSearch:
     ) -> tuple[_Labels, Vector] | None:
         """Return the undominated labels of the next layer that may lead to a better path.
 
-        With them returns a lower bound on the cost of the paths of each; None if the time is up
-        before the end.
+        With them returns, for each, a lower bound on the cost of all paths that continue it; None
+        if the time is up before the end.
         """
         network, pruned = self._network, self._pruned
         rules = self._bits.layer(size)
@@ -187,7 +192,7 @@ class BeamSearch:
         return undominated, self._least_costs(size + 1, undominated)
 
     def _least_end_times(self, size: int, labels: _Labels) -> Vector:
-        """Return a lower bound on the end time of the paths of each label."""
+        """Return, for each label, a lower bound on the end time of all paths that continue it."""
         remaining = self._bound.remaining_cost(size, labels.mask, labels.last)
         end = labels.time + remaining[0]
         if len(remaining) > 1:
@@ -197,7 +202,7 @@ class BeamSearch:
         return np.asarray(end, np.int64)
 
     def _least_costs(self, size: int, labels: _Labels) -> Vector:
-        """Return a lower bound on the cost of the paths of each label."""
+        """Return, for each label, a lower bound on the cost of all paths that continue it."""
         if self._counts_travel:
             remaining = self._bound.remaining_cost(size, labels.mask, labels.last)
             return np.asarray(labels.second + remaining[0])

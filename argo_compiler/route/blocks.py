@@ -83,9 +83,11 @@ class Blocks:
         return not made & (self.followers[block] | 1 << block) and not self.needs[block] & ~made
 
     def drive(self, origins: Locations, goal: int) -> Arrival | None:
-        """Return the arrival after a drive to a location, or None if it is impossible.
+        """Return the worst arrival after a drive to a location, or None if it may be impossible.
 
-        A drive is impossible without a path, and if it needs more energy than a full battery has.
+        The robot may be at any of `origins`, its possible locations. So the longest time and the
+        highest energy of the drives from them count. A drive is impossible without a path, and if
+        it needs more energy than a full battery has.
         """
         self._spend()
         battery = self.problem.battery
@@ -98,7 +100,7 @@ class Blocks:
         return time, energy, frozenset([goal])
 
     def executions(self, block: int, origins: Locations) -> list[tuple[Arrival, tuple[int, ...]]]:
-        """Return the possible executions of a block, from the locations before it.
+        """Return the possible executions of a block, from the robot's possible locations before it.
 
         Each has the arrival at the end of a round, or at a visit before its service, and the order
         of the members.
@@ -183,9 +185,9 @@ class Blocks:
         return times
 
     def _departures(self, locations: Locations) -> list[tuple[int, Locations]]:
-        """Return where the next drive may start, and the least time until then.
+        """Return the possible origins of the next drive, and the least time until it starts.
 
-        It starts at the robot's locations, or at a charger after a charge.
+        It starts at one of the robot's possible locations, or at a charger after a charge.
         """
         departures = [(0, locations)]
         for charger in range(len(self.problem.chargers)):

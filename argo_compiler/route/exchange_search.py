@@ -4,7 +4,11 @@ It reverses no stretch, so it suits asymmetric times and precedences. This is th
 L. M. Gambardella and M. Dorigo (INFORMS Journal on Computing 12, 2000), restricted to the nearest
 nodes and to the parts of the route that changed last. Each iteration applies some random exchanges,
 or ruin and recreate (see `argo_compiler.route.ruin_recreate`), and then all exchanges that save
-cost. Simulated annealing decides whether to accept the result; its runs double in length.
+cost. Simulated annealing decides whether to accept the result. Its runs, from a high to a low
+temperature, double in length.
+
+A line is a route as the search changes it, as nodes from start to end; it may still lack mandatory
+steps. The state holds the current line of the annealing and the best line so far.
 """
 
 from importlib import import_module
@@ -102,9 +106,10 @@ class _Kernel:
 
 
 def _restart(kernel: ModuleType, kernel_network: Any, state: Any, search: Search) -> None:
-    """Start a run from the best known route if it is better than the best line.
+    """Start an annealing run from the best route of all solvers if the best line is worse.
 
-    Otherwise the run continues from the current line; the first run may start from an empty one.
+    Otherwise the run continues from the current line. The first run starts from an empty line if no
+    solver has found a route yet.
     """
     best, m = search.best, search.network.size
     path = best.path if best is not None else None

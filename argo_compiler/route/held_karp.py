@@ -4,6 +4,10 @@ This is Held and Karp's programme, computed in layers with NumPy. Layer k holds,
 steps that may come first (an ideal of the partial order) and each last node, the earliest time at
 which the robot completes the node. To be earlier is never worse, so time windows, limits and
 optional steps add no states. The limit of the method is the number of sets, which is counted first.
+
+A step is a visit or a round, and a node one of the modes in which a step can be made (see
+`argo_compiler.route.network`). A path is a route as a sequence of nodes. The best path wins the
+highest prize and, among equal prizes, ends first.
 """
 
 from collections.abc import Callable, Iterator
@@ -167,7 +171,11 @@ def compute_layers(
 
 
 def best_path(network: StepNetwork, layers: list[Layer], pruned: Pruned) -> BestPath | None:
-    """Return the best path of the layers, or None if there is none."""
+    """Return the best path of the layers, or None if there is none.
+
+    A path may end in any layer, if it has made all mandatory steps and is within the limit of time.
+    It is traced back from its end.
+    """
     best = _best_end(network, StepBits(network, pruned), layers)
     if best is None:
         return None

@@ -1,5 +1,6 @@
 """Dynamic programming over labels with two measures: time, and energy used or travel.
 
+A label describes the beginning of a path: the set of its steps, its last node and the two measures.
 Energy counts since the last charge. The earliest time is not always best if the battery is charged
 on the way, or if waiting costs nothing. So each set and last node has several labels that do not
 dominate each other in the two measures. Labels that cannot lead to a better route than the best

@@ -72,7 +72,10 @@ class _Stage:
     """lowest prize of the routes that count; None: the prize is the objective"""
 
     def run(self, *, to_optimality: bool) -> None:
-        """Compute a bound, and if `to_optimality`, search until the optimum is proven."""
+        """Compute a bound, and if `to_optimality`, search until the optimum is proven.
+
+        Bounds and routes are reported to the search, whose limit may end the work earlier.
+        """
         search, network = self.search, self.search.network
         relaxation = LinearRelaxation(network, search.pruned, self.costs, self.least_prize or None)
         relaxation.solve(search.share(0.5 if to_optimality else 1.0), self._best_value())

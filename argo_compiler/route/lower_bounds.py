@@ -1,4 +1,8 @@
-"""Lower bounds on the remaining cost of labels, from tables or from dual prices."""
+"""Lower bounds on the remaining cost of labels, from tables or from dual prices.
+
+A label describes the beginning of a path (see `argo_compiler.route.beam_search`). Its remaining
+cost is that from its last node to the end.
+"""
 
 from typing import Protocol
 

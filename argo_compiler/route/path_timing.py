@@ -1,4 +1,8 @@
-"""Times along a path of nodes, and the best positions to charge."""
+"""Times along a path of nodes, and the best positions to charge.
+
+A label describes the robot after the first nodes of a path. There are several if none dominates
+the others, that is, if none is at least as good in every measure.
+"""
 
 from dataclasses import dataclass
 

@@ -48,7 +48,7 @@ class RouteInstance:
 
     @property
     def start(self) -> int:
-        """Row of the robot's start."""
+        """Row of the robot's start in `arrival`, `need`, `travel` and `positions`."""
         return self.size
 
     @cached_property

@@ -92,7 +92,7 @@ def contents() -> Contents:
 
 
 def write_problem() -> str | None:
-    """Return the reason why the cache can't be written to, or None if it can."""
+    """Return the reason why the cache's folder can't be written to, or None if it can."""
     from tempfile import TemporaryFile
 
     try:

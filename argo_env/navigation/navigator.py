@@ -321,9 +321,10 @@ class Navigator:
         return arrays["costs"]
 
     def turning_poses(self, floor: int) -> NDArray[np.float64]:
-        """Return poses (x, y, z, yaw) on a floor's deck at which the robot can turn all round.
+        """Return all poses (x, y, z, yaw) on a floor's deck at which the robot can turn all round.
 
-        The shape is (n, 4), in m and rad.
+        The deck is the floor's plate; poses within 1 cm of its height count. There is one for each
+        cell of the grid, with yaw 0. The shape is (n, 4), in m and rad.
 
         Raises:
             NotFound: There is no such floor.

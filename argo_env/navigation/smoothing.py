@@ -174,7 +174,8 @@ def _centers_near(
 def smooth(path: Path, flat_map: Callable[[float], FlatMap], robot: RobotSpec) -> Path:
     """Return the path with level stretches shortened where that saves time.
 
-    This applies to stretches that are driven forwards.
+    This applies to stretches that are driven forwards. `flat_map` returns the map of the cells
+    whose height counts as flat about a height (m).
     """
     motions: list[Motion] = []
     stretch: list[Motion] = []

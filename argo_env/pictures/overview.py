@@ -213,7 +213,14 @@ def _path_times(record: RunRecord) -> Iterator[float]:
 
 
 def _visible(pixels: NDArray[np.float64], view: CameraView) -> NDArray[np.bool_]:
-    """Return a mask of the points that nothing hides, by the majority of the points about each."""
+    """Return a mask of the points of a path that nothing in the view hides.
+
+    The majority of seven consecutive points decides for the middle one.
+
+    Args:
+        pixels: Column and row (px) and depth (m) of the points, in the path's order, shape (n, 3).
+        view: View of the scene without the path.
+    """
     height, width = view.depth.shape
     column = np.clip(pixels[:, 0].astype(int), 0, width - 1)
     row = np.clip(pixels[:, 1].astype(int), 0, height - 1)
@@ -266,7 +273,10 @@ def _pin(
     ink: str | tuple[int, int, int],
     font: ImageFont.ImageFont | ImageFont.FreeTypeFont,
 ) -> None:
-    """Draw a label above a dot at (x, y), with a line between them."""
+    """Draw a label above a dot at (x, y) in px, with a line between them.
+
+    The dot and the box of the label have the colour `ink`; the text in the box is white.
+    """
     n = _FINER
     half = max(17 * n, draw.textlength(text, font=font) / 2 + 11 * n)
     middle, radius = y - 44 * n, 17 * n

@@ -78,7 +78,12 @@ def draw_site_plan(
 
 
 def _shade(image: Image.Image, sheet: FloorSheet, number: int, standing: SafeStates) -> None:
-    """Shade the reachable part of a floor, and hatch the unreachable one."""
+    """Shade the part of a floor that the robot can reach, and hatch the rest.
+
+    To reach a part means to drive there from the first usable docking station and back, over the
+    poses of `standing`. Parts that are too narrow for a robot are not hatched. The floor with this
+    number is drawn in its panel of the picture.
+    """
     from scipy.ndimage import binary_dilation, binary_opening
 
     surface, site = standing.lattice.surface, standing.site

@@ -71,10 +71,10 @@ def is_drawable(hfsm: Hfsm) -> bool:
 
 
 def machine(hfsm: Hfsm) -> Node:
-    """Draw the machine.
+    """Draw the state machine as SVG.
 
-    The drawing has one element of class `state` for each leaf and composite, and one of class `way`
-    for each transition and for the start.
+    The drawing has one element of the CSS class `state` for each leaf and composite, and one of the
+    CSS class `way` for each transition and for the start.
     """
     rows = _rows(hfsm)
     index = {row.key: i for i, row in enumerate(rows)}

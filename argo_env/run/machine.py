@@ -56,7 +56,8 @@ class OpenMachine:
     """Machine of a mission whose tasks are appended one by one; holds the events it has handled.
 
     With each task it becomes the machine of the longer mission and handles the same events again.
-    So its state is as if the task had been in the mission from the beginning.
+    So its state is as if the task had been in the mission from the beginning. The mission stays
+    open, for further tasks, until `close` is called.
     """
 
     def __init__(self, mission: Mission) -> None:
@@ -117,7 +118,7 @@ class OpenMachine:
 
     @property
     def finished(self) -> bool:
-        """True if the mission was closed and has ended."""
+        """True if no task can follow, as `close` was called, and the mission has ended."""
         return self._closed and self._executor.finished
 
     @property

@@ -1,6 +1,7 @@
 """Odometry of a run: distance, climb, contacts with the site, and mishaps of the drive.
 
-Touches that follow each other closely are one contact, from the first touch to the last.
+Touches that follow each other closely are one contact, from the first touch to the last. A contact
+is open, and may still go on, until no touch has followed for CONTACT_GAP.
 """
 
 import math
@@ -19,7 +20,7 @@ CONTACT_GAP = 0.5  # s without a touch that end a contact; after a shorter gap i
 class ContactTracker:
     """Tracker that joins touches to contacts, one for each pair of robot link and site element.
 
-    It holds the open contacts, those that may still go on.
+    It holds the open contacts.
     """
 
     def __init__(self) -> None:
@@ -27,7 +28,7 @@ class ContactTracker:
 
     @property
     def open(self) -> tuple[Contact, ...]:
-        """Contacts that may still go on."""
+        """Contacts whose last touch is so recent that a further one would continue them."""
         return tuple(self._open.values())
 
     def restore(self, contacts: Iterable[Contact]) -> None:
@@ -76,7 +77,7 @@ class Odometry:
 
     @property
     def touching(self) -> tuple[Contact, ...]:
-        """Contacts that may still go on."""
+        """Open contacts, as `ContactTracker.open`."""
         return self._contacts.open
 
     def restore(self, entry: Entry) -> None:

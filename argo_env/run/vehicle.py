@@ -221,7 +221,11 @@ class Vehicle:
         return Sensed(found=found) if found else _NOTHING_SENSED
 
     def state(self) -> dict[str, Any]:
-        """Return the fields of an entry that hold the robot's state."""
+        """Return the robot's state, as fields of an entry of the log.
+
+        These are pose, distance, climb, charge and open contacts, and the mishaps and ended
+        contacts that no entry has yet.
+        """
         pose, odometry = self.setup.drive.pose, self.odometry
         return {
             "pose": (pose.x, pose.y, pose.z, pose.yaw, pose.pitch),

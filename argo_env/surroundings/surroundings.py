@@ -147,7 +147,7 @@ class Shadow:
     """number of the floor; None: all floors"""
 
     def contains(self, pose: BodyPose, site: Site) -> bool:
-        """Return True if a robot at `pose` is in this part."""
+        """Return True if a robot at `pose` is in this part, and so has no radio signal."""
         if self.floor is not None and site.floor_at(pose.z) != self.floor:
             return False
         if self.rect is None:

@@ -103,7 +103,7 @@ _SPEC_OPTIONS = (
     "site", "seed", "drive", "sensor", "optimise", "start_area", "end_area", "value", "event",
     "faults",
 )  # fmt: skip
-"""options that the spec of a run replaces"""
+"""options whose values the spec of a run sets, so that they can't be given with one"""
 
 
 def run_command(
@@ -247,7 +247,7 @@ def _times_text(record: RunRecord, loading: float, running: float) -> str:
 
 
 def _require_no_spec_options(context: typer.Context, source: Path) -> None:
-    """Raise Invalid if an option is given that the spec of a run replaces."""
+    """Raise Invalid if an option is given although the spec of a run sets its value."""
     for name in given_options(context):
         if name in _SPEC_OPTIONS:
             raise Invalid(

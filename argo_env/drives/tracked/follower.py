@@ -93,7 +93,11 @@ class Follower:
         return [Motion(short, end, gear=1 if left > 0 else -1)]
 
     def remaining(self, motion: Motion, pose: BodyPose) -> float:
-        """Return the horizontal distance (m) to the point where a straight motion should stop."""
+        """Return the distance (m) to the point where a straight motion should stop.
+
+        It is horizontal, along the motion's line, and less than 0 beyond that point. The point is
+        the motion's end; before a turn it is offset so that the pivot of the turn is at that end.
+        """
         ahead = math.cos(motion.start.yaw), math.sin(motion.start.yaw)
         x, y = motion.end.x - pose.x, motion.end.y - pose.y
         stop_after = 0.0

@@ -1,4 +1,4 @@
-"""What the end-to-end tests share: the command as a user runs it, and the scripts to run it on."""
+"""Fixtures and helpers of the end-to-end tests: the command `argo`, and scripts for it."""
 
 import json
 import os
@@ -21,15 +21,17 @@ ORIGINALS = os.environ.get("ARGO_ORIGINALS")
 Argo = Callable[..., subprocess.CompletedProcess[str]]
 
 
-def answer_signals() -> None:
-    """For a new process: a suite that runs in the background may have to ignore some signals, and
-    what it starts would as well."""
+def reset_signal_handlers() -> None:
+    """Let signals end this process, for use in a new process.
+
+    A suite in the background may ignore some signals, and its child processes would inherit that.
+    """
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_DFL)
 
 
-def started(*arguments: object, **options: Any) -> subprocess.Popen[str]:
-    """Begin a process of the command, with pipes for what it prints, and return it."""
+def start_argo(*arguments: object, **options: Any) -> subprocess.Popen[str]:
+    """Start a process of `argo` with pipes for its output and errors, and return it."""
     return subprocess.Popen(
         [sys.executable, "-m", "argo_planner", *map(str, arguments)],
         **{
@@ -38,40 +40,40 @@ def started(*arguments: object, **options: Any) -> subprocess.Popen[str]:
             "stderr": subprocess.PIPE,
             "text": True,
             "env": {**os.environ, "COLUMNS": "120"},
-            "preexec_fn": answer_signals,
+            "preexec_fn": reset_signal_handlers,
             **options,
         },
     )
 
 
-def ended(
+def require_status(
     arguments: tuple[object, ...], status: int, output: str, errors: str, wanted: int | None
 ) -> subprocess.CompletedProcess[str]:
-    """Return what has become of a command, whose exit status has to be the wanted one, if any."""
+    """Return the result of a command; assert that its exit status is the wanted one, if any."""
     assert wanted in (None, status), f"{status}: {output}{errors}"
     return subprocess.CompletedProcess(arguments, status, output, errors)
 
 
-def told_until(process: subprocess.Popen[str], words: str) -> str:
-    """Return what a process prints as errors, up to the line that has these words."""
+def read_errors_until(process: subprocess.Popen[str], words: str) -> str:
+    """Return the standard error of a process up to the first line that has these words."""
     assert process.stderr
-    said = ""
-    while words not in said:
+    errors = ""
+    while words not in errors:
         line = process.stderr.readline()
-        assert line, said
-        said += line
-    return said
+        assert line, errors
+        errors += line
+    return errors
 
 
-def reported(folder: Path) -> RunRecord:
-    """Return the record of the run that a folder has the report of."""
+def read_run_record(folder: Path) -> RunRecord:
+    """Return the record in a folder with the report of a run."""
     return RunRecord.model_validate_json((folder / "report.json").read_bytes())
 
 
 class ForkedArgo:
-    """Runs `argo` in processes that need no time to load: forked from one that has loaded it.
+    """Function that runs `argo` in processes forked from one that has already loaded it.
 
-    Holds that process, and a folder for what the others print.
+    Holds that process, and a folder for the output of the forked ones.
     """
 
     def __init__(self, process: subprocess.Popen[str], folder: Path) -> None:
@@ -80,13 +82,13 @@ class ForkedArgo:
     def __call__(
         self, *arguments: object, cwd: Path | None = None, status: int | None = None
     ) -> subprocess.CompletedProcess[str]:
-        """Runs a command to its end, which has to have that exit status, if one is given."""
+        """Run a command to its end; assert that its exit status is `status`, if that is given."""
         files = self._folder / "stdout", self._folder / "stderr"
         for file in files:
             file.unlink(missing_ok=True)
-        found = self._carry_out(arguments, cwd or Path.cwd(), *files, None)
-        return ended(
-            arguments, found, *(file.read_text(encoding="utf-8") for file in files), status
+        exit_status = self._run_command(arguments, cwd or Path.cwd(), *files, None)
+        return require_status(
+            arguments, exit_status, *(file.read_text(encoding="utf-8") for file in files), status
         )
 
     def kill(
@@ -96,19 +98,24 @@ class ForkedArgo:
         after: float | None,
         number: signal.Signals = signal.SIGKILL,
     ) -> int:
-        """Runs a command, adds what it prints to a file and kills it after a time (s), or sends it
-        another signal; its exit status, -9 if it was killed."""
-        return self._carry_out(arguments, ROOT, output, output, after, number)
+        """Run a command, send it a signal after a time, and return its exit status.
+
+        Args:
+            output: File to which the command's output and errors are appended.
+            after: Seconds until the signal is sent; None: never.
+            number: The signal. After SIGKILL the exit status is -9.
+        """
+        return self._run_command(arguments, ROOT, output, output, after, number)
 
     def open(self, site: object) -> None:
-        """Makes a site ready for all later commands."""
+        """Open a site and prepare its navigator for all later commands."""
         assert self._ask({"open": str(site)}) == 0
 
     def drive(self, mission: object, start_area: int, end_area: int) -> None:
-        """Make the ways of a mission on UMAD known to all later commands."""
+        """Run a mission on UMAD once, so that all later commands know its paths."""
         assert self._ask({"drive": [str(mission), start_area, end_area]}) == 0
 
-    def _carry_out(
+    def _run_command(
         self,
         arguments: tuple[object, ...],
         cwd: Path,
@@ -139,14 +146,14 @@ class ForkedArgo:
 
 @pytest.fixture(scope="session")
 def argo(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ForkedArgo]:
-    """Runs `argo` with arguments, without the time that it takes to start."""
+    """Yield a function that runs `argo` with arguments in a forked process."""
     with subprocess.Popen(
         [sys.executable, "-m", "tests.e2e.forked_argo"],
         cwd=ROOT,
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         text=True,
-        preexec_fn=answer_signals,
+        preexec_fn=reset_signal_handlers,
     ) as process:
         argo = ForkedArgo(process, tmp_path_factory.mktemp("argo"))
         argo.open("umad")
@@ -158,33 +165,32 @@ def argo(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ForkedArgo]:
 
 @pytest.fixture(scope="session")
 def argo_process() -> Argo:
-    """Runs `argo` with arguments in a process of its own, from its start on."""
+    """Return a function that runs `argo` with arguments in a new process."""
 
     def call(
         *arguments: object, cwd: Path | None = None, status: int | None = None
     ) -> subprocess.CompletedProcess[str]:
-        process = started(*arguments, cwd=cwd)
+        process = start_argo(*arguments, cwd=cwd)
         output, errors = process.communicate(timeout=300)
-        return ended(arguments, process.returncode, output, errors, status)
+        return require_status(arguments, process.returncode, output, errors, status)
 
     return call
 
 
 @pytest.fixture(scope="module")
 def navigator() -> Navigator:
-    """Return the navigator of the yard."""
     return yard()
 
 
 @pytest.fixture(scope="session")
 def missions() -> Path:
-    """The folder with the scripts that the project ships."""
+    """Return the folder with the scripts that the project ships."""
     return ROOT / "scenarios" / "umad" / "missions"
 
 
 @pytest.fixture(scope="session")
 def originals() -> Path:
-    """The folder with the competition's own scripts, which the project does not ship."""
+    """Return the folder with the competition's own scripts, which the project does not ship."""
     if not ORIGINALS:
         pytest.skip("left out: the competition's own scripts; ARGO_ORIGINALS names their folder")
     return Path(ORIGINALS)

@@ -1,11 +1,15 @@
-"""`argo` again and again without loading anew: for tests of what it does, not of how it starts.
+"""Server that runs `argo` in forked processes, for tests that do not depend on how it starts.
 
-Loads the commands once. Then each line of standard input is a JSON object: `{"open": site}` makes
-a site ready for all that follow, `{"drive": [mission, area, area]}` finds the ways of a mission on
-UMAD, from one starting area to another; any other is a command that a forked process carries out:
-`arguments`, `cwd`, `environment`, the files that `stdout` and `stderr` are added to, and `after`
-how many seconds it is sent the `signal` if it still runs (null: never). The answer is the exit
-status.
+It loads the commands once. Each line of standard input is then a request, a JSON object:
+
+- `{"open": site}` opens a site and prepares its navigator for all later requests.
+- `{"drive": [mission, start area, end area]}` runs a mission on UMAD, so that all later requests
+  know its paths.
+- Any other object is a command for a forked process: `arguments`, `cwd`, `environment`, the files
+  to which `stdout` and `stderr` are appended, and the `signal` that is sent `after` so many seconds
+  if the command still runs (null: never).
+
+The response is a line with the exit status.
 """
 
 import gc
@@ -35,12 +39,12 @@ from argo_planner.use_cases import evaluating
 from argo_planner.use_cases.importing import import_mission
 from tests.forking import draw_small_overviews, load_late_modules
 
-# On a busy machine anything may take so long that it is shown.
+# On a busy machine any stage may take long enough to be shown.
 stage_display.AFTER = float("inf")
 # These tests do not look at pictures.
 draw_small_overviews()
 film.MP4_SIZE = film.GIF_SIZE = (128, 80)
-# Workers of an evaluation are forked from the command, which has loaded all that they need.
+# Workers of an evaluation are forked from the command, which has loaded all modules they need.
 evaluating.context_with = lambda *_: multiprocessing.get_context("fork")
 
 
@@ -52,32 +56,32 @@ def serve() -> None:
     run_report._template()
     for name in ("evaluation.html.j2", "comparison.html.j2"):
         evaluation_report._template(name)
-    gc.freeze()  # forked processes need not look through what is loaded
+    gc.freeze()  # the collector of forked processes need not visit the loaded objects
     end_at_once()  # as `argo` itself begins
-    kept = []
+    opened = []
     for line in sys.stdin:
         request, status = json.loads(line), 0
         if "open" in request:
-            kept.append(open_site(request["open"]))
-            kept[-1].navigator.prepare()
+            opened.append(open_site(request["open"]))
+            opened[-1].navigator.prepare()
         elif "drive" in request:
             _drive(*request["drive"])
         elif child := os.fork():
-            status = _end_of(child, request["after"], request["signal"])
+            status = _wait_for_end(child, request["after"], request["signal"])
         else:
-            # Not `exit`: the parent's buffers and handlers are not ours.
-            os._exit(_status(lambda request=request: _carry_out(request)))
+            # Not `exit`: that would flush the parent's buffers and run its handlers.
+            os._exit(_exit_status(lambda request=request: _run_command(request)))
         print(os.waitstatus_to_exitcode(status), flush=True)
 
 
 def _drive(path: str, start_area: int, end_area: int) -> None:
-    """Run a mission as evaluations do: the site keeps the ways that it has found."""
+    """Run a mission as evaluations do: the site keeps the paths that it has found."""
     site = open_site("umad")
     mission = import_mission(read_upload(Path(path)), site, start_area, end_area).mission
     simulate(RunSpec(mission=mission, site=site.reference, drive="route"), site)
 
 
-def _carry_out(request: dict[str, Any]) -> None:
+def _run_command(request: dict[str, Any]) -> None:
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     for number, name in ((1, "stdout"), (2, "stderr")):
         os.dup2(os.open(request[name], os.O_WRONLY | os.O_CREAT | os.O_APPEND), number)
@@ -88,8 +92,8 @@ def _carry_out(request: dict[str, Any]) -> None:
     main()
 
 
-def _status(act: Callable[[], None]) -> int:
-    """The status that Python would exit with, after what it would print."""
+def _exit_status(act: Callable[[], None]) -> int:
+    """Call a function as a program; return its exit status and print errors as Python would."""
     try:
         act()
     except SystemExit as end:
@@ -107,9 +111,13 @@ def _status(act: Callable[[], None]) -> int:
     return 1
 
 
-def _end_of(child: int, after: float | None, number: int) -> int:
-    """Waits for the end of a process, and sends it a signal after a time (s) if it has not come by
-    then."""
+def _wait_for_end(child: int, after: float | None, number: int) -> int:
+    """Wait for the end of a process and return its wait status.
+
+    Args:
+        after: Seconds after which a process that still runs gets the signal; None: never.
+        number: The signal.
+    """
     deadline = time.monotonic() + (after or 0.0)
     while after is not None and time.monotonic() < deadline:
         ended, status = os.waitpid(child, os.WNOHANG)

@@ -1,7 +1,7 @@
-"""`argo --version` with a signal at each line that it carries out in what answers signals.
+"""Test program that sends `argo --version` a signal at each line of the code that handles signals.
 
-`python -m tests.e2e.signal_at_each_line NUMBER` forks a process for each of these lines, and prints
-the exit status of each with what it wrote to standard error.
+`python -m tests.e2e.signal_at_each_line NUMBER` forks a process for each of these lines. It prints
+the exit status and the standard error of each.
 """
 
 import json
@@ -21,19 +21,25 @@ _TRACED = {module.__file__ for module in (cli, output, signals)}
 
 
 def main(number: int) -> None:
-    for status, error in takewhile(bool, (_interrupted(line, number) for line in count(1))):
+    for status, error in takewhile(bool, (_run_interrupted(line, number) for line in count(1))):
         print(json.dumps([status, error]))
 
 
-def _interrupted(line: int, number: int) -> tuple[int, str] | None:
-    """Return the exit status and standard error of the command that gets the signal at its `line`,
-    or None if it has fewer lines."""
+def _run_interrupted(line: int, number: int) -> tuple[int, str] | None:
+    """Return the exit status and standard error of a command that gets a signal at a line.
+
+    Args:
+        line: Number of the executed line, counted from 1 over the traced modules.
+
+    Returns:
+        None if the command executes fewer lines.
+    """
     with tempfile.TemporaryFile() as error, tempfile.TemporaryFile() as reached:
         child = os.fork()
         if child == 0:
             os.dup2(error.fileno(), 2)
             os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-            _carry_out(line, number, reached.fileno())
+            _run_command(line, number, reached.fileno())
         status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
         if not os.fstat(reached.fileno()).st_size:
             return None
@@ -41,7 +47,7 @@ def _interrupted(line: int, number: int) -> tuple[int, str] | None:
         return status, error.read().decode()
 
 
-def _carry_out(line: int, number: int, reached: int) -> None:
+def _run_command(line: int, number: int, reached: int) -> None:
     lines = count(1)
 
     def trace(frame: FrameType, event: str, _: Any) -> Any:
@@ -68,7 +74,7 @@ def _carry_out(line: int, number: int, reached: int) -> None:
 
 
 if __name__ == "__main__":
-    # A test may run where signals are ignored.
+    # The parent process may ignore signals, and this one would inherit that.
     for each in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(each, signal.SIG_DFL)
     main(int(sys.argv[1]))

@@ -1,4 +1,4 @@
-"""`argo check` as a user runs it; what it finds is tested in `tests/argo_planner/test_check.py`."""
+"""`argo check` from a shell; `tests/argo_planner/test_check.py` tests its diagnostics."""
 
 import json
 from pathlib import Path
@@ -8,7 +8,7 @@ from argo_compiler import __version__
 WRONG = {"tasks": [{"name": "A", "action": "MEASURE", "object_id": "77"}]}
 
 
-def test_findings_are_written_for_a_code_host(argo, tmp_path: Path) -> None:
+def test_diagnostics_are_written_for_a_code_host(argo, tmp_path: Path) -> None:
     (tmp_path / "plan.json").write_text(json.dumps(WRONG))
     check = ("check", "plan.json", "--format", "sarif", "-o", "f.sarif")
     result = argo(*check, cwd=tmp_path, status=2)
@@ -21,7 +21,7 @@ def test_the_version_is_printed(argo_process) -> None:
     assert argo_process("--version").stdout == f"argo {__version__}\n"
 
 
-def test_a_finding_is_not_announced_by_the_programs_name(argo, missions: Path, tmp_path) -> None:
+def test_diagnostics_do_not_begin_with_the_programs_name(argo, missions: Path, tmp_path) -> None:
     result = argo("import", missions / "mission_1.txt", "-o", tmp_path / "m.json", status=2)
     assert not any(line.startswith("argo:") for line in result.stderr.splitlines())
     assert "2 errors" in result.stderr.splitlines()[-1]

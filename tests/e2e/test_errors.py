@@ -17,8 +17,8 @@ SHEET = (
 )
 
 
-def refused(result: subprocess.CompletedProcess[str]) -> str:
-    """The message of a run that was refused as it should be."""
+def require_refusal(result: subprocess.CompletedProcess[str]) -> str:
+    """Assert that a command failed with a message and no traceback; return the message."""
     assert result.returncode == 2, result.stdout + result.stderr
     assert "Traceback" not in result.stderr + result.stdout
     assert result.stderr.strip()
@@ -27,7 +27,7 @@ def refused(result: subprocess.CompletedProcess[str]) -> str:
 
 @pytest.mark.parametrize("command", ["run", "import", "compile"])
 @pytest.mark.parametrize(
-    ("name", "content", "says"),
+    ("name", "content", "expected"),
     [
         ("empty.txt", b"", "empty"),
         ("blank.txt", b" \n\t\n", "empty"),
@@ -47,37 +47,37 @@ def refused(result: subprocess.CompletedProcess[str]) -> str:
         ),
     ],
 )
-def test_a_bad_script_is_refused(argo, tmp_path: Path, command, name, content, says) -> None:
+def test_a_bad_script_is_refused(argo, tmp_path: Path, command, name, content, expected) -> None:
     script = tmp_path / name
     script.write_bytes(content)
     output = [] if command == "run" else ["-o", tmp_path / "out.json"]
-    message = refused(argo(command, script, *output))
+    message = require_refusal(argo(command, script, *output))
     assert name in message
-    assert says in message
+    assert expected in message
     assert not (tmp_path / "out.json").exists()
 
 
-def test_an_unknown_word_is_shown_in_its_line_with_what_was_expected(
-    argo_process, tmp_path
-) -> None:
+def test_an_unknown_word_is_shown_in_its_line_with_a_hint(argo_process, tmp_path) -> None:
     script = tmp_path / "script.txt"
     line = "2. Checkpoint #4: befriend the position of valve R25"
     script.write_text(SHEET + line + "\n")
     result = argo_process("run", script)
-    message = refused(result)
+    message = require_refusal(result)
     assert f"{script}:8:19" in message
     assert line in result.stderr
     assert "^" in result.stderr
     assert "hint" in message
 
 
-def test_the_choice_of_area_is_asked_for(argo, missions: Path, tmp_path: Path) -> None:
-    message = refused(argo("import", missions / "mission_1.txt", "-o", tmp_path / "m.json"))
+def test_missing_areas_are_refused_with_the_options_for_them(
+    argo, missions: Path, tmp_path: Path
+) -> None:
+    message = require_refusal(argo("import", missions / "mission_1.txt", "-o", tmp_path / "m.json"))
     assert "--start-area" in message
     assert "--end-area" in message
 
 
-def test_a_window_without_a_display_is_refused(argo, tmp_path: Path, monkeypatch) -> None:
+def test_gui_without_a_display_is_refused(argo, tmp_path: Path, monkeypatch) -> None:
     monkeypatch.delenv("DISPLAY", raising=False)
     (tmp_path / "sheet.txt").write_text(SHEET)
-    assert "DISPLAY" in refused(argo("run", tmp_path / "sheet.txt", "--gui"))
+    assert "DISPLAY" in require_refusal(argo("run", tmp_path / "sheet.txt", "--gui"))

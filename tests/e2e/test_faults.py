@@ -1,12 +1,12 @@
-"""Faults on the command line: told as they are found, kept in the journal, shown in the report."""
+"""Faults on the command line: printed when detected, stored in the journal, shown in the report."""
 
 import json
 import re
 
 import pytest
 
-from tests.e2e.conftest import reported
-from tests.e2e.test_errors import refused
+from tests.e2e.conftest import read_run_record
+from tests.e2e.test_errors import require_refusal
 from tests.yard import cut, measure, mission, waypoint, write_yard
 
 FAULTS = """\
@@ -27,7 +27,7 @@ def folder(tmp_path):
     return tmp_path
 
 
-def test_found_told_kept_and_shown(argo, folder):
+def test_faults_are_detected_logged_and_reported(argo, folder):
     ran = argo(*RUN, "--report", "out", "--journal", "run.journal", cwd=folder, status=0)
     shown = ran.stdout + ran.stderr
     for kind in ("positive obstacle", "connection lost", "connection restored"):
@@ -36,7 +36,7 @@ def test_found_told_kept_and_shown(argo, folder):
     assert re.search(noticed, shown)
     assert "4 findings" in ran.stdout
     assert "platform alarm did not happen: begins at 4000 s, the mission ended at" in ran.stdout
-    record = reported(folder / "out")
+    record = read_run_record(folder / "out")
     assert len(record.anomalies) == 5
     assert all((a.place or a.noticed_from) and a.floor == 1 for a in record.anomalies)
     assert [f.kind for f in record.faults] == [
@@ -45,13 +45,13 @@ def test_found_told_kept_and_shown(argo, folder):
     page = (folder / "out" / "report.html").read_text(encoding="utf-8")
     assert "<h2>Findings</h2>" in page
     assert "the base station answers" in page
-    # From half of its journal it goes on with the same faults, and with one more event.
+    # Resumed from half of its journal, the run has the same faults and one more event.
     cut(folder / "run.journal")
     go_on = ("resume", "run.journal", "--report", "again", "--event", "1=hot_spot")
     resumed = argo(*go_on, cwd=folder, status=0)
-    again = reported(folder / "again")
-    told = [a.kind for a in again.anomalies if a.is_reported]
-    assert told == ["hot_spot"]
+    again = read_run_record(folder / "again")
+    reported = [a.kind for a in again.anomalies if a.is_reported]
+    assert reported == ["hot_spot"]
     assert "hot spot at " in resumed.stdout
     sensed = sorted(a.kind for a in again.anomalies if not a.is_reported)
     assert sensed == sorted(a.kind for a in record.anomalies)
@@ -60,21 +60,21 @@ def test_found_told_kept_and_shown(argo, folder):
 
 
 @pytest.mark.parametrize(
-    ("text", "says"),
+    ("text", "message"),
     [
         ("faults:\n  - {kind: brick, floor: 3}\n", "faults[0] (brick): site yard has no floor 3"),
         ("faults:\n  - {kind: bricks}\n", "faults.yaml:2:5: error: faults[0]: no kind `bricks`"),
     ],
 )
-def test_faults_that_make_no_sense(argo, folder, text, says):
+def test_invalid_faults_are_refused(argo, folder, text, message):
     (folder / "faults.yaml").write_text(text, encoding="utf-8")
-    assert says in refused(argo(*RUN, cwd=folder))
+    assert message in require_refusal(argo(*RUN, cwd=folder))
 
 
-def test_a_drive_without_a_world_finds_no_brick(argo, folder):
-    assert "choose another drive" in refused(argo(*RUN, "--drive", "route", cwd=folder))
+def test_obstacles_are_refused_with_the_route_drive(argo, folder):
+    assert "choose another drive" in require_refusal(argo(*RUN, "--drive", "route", cwd=folder))
 
 
-def test_the_schema(argo):
+def test_the_schema_lists_the_kinds_of_faults(argo):
     fault = json.loads(argo("schema", "faults").stdout)["properties"]["faults"]["items"]
     assert "gas_leak" in fault["discriminator"]["mapping"]

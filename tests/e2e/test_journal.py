@@ -1,4 +1,4 @@
-"""Processes that are killed while they run a mission, and others that go on with it.
+"""Processes that are killed while they run a mission, and others that resume it.
 
 ARGO_EXAMPLES=200 makes it a campaign.
 """
@@ -21,13 +21,13 @@ from argo_env.run.record import RunRecord
 from argo_env.run.session import resume
 from argo_env.run.spec import logged_events
 from tests.conftest import FIRST_SEED, examples
-from tests.e2e.conftest import reported, started
-from tests.e2e.test_errors import refused
+from tests.e2e.conftest import read_run_record, start_argo
+from tests.e2e.test_errors import require_refusal
 from tests.mission_writing import above, wait
 from tests.yard import measure, mission, opened, shelter, simulated, waypoint, write_yard
 
 KILLS = examples(32)
-LONGEST = 1.2  # s that a process lives; a whole run takes somewhat longer
+LONGEST = 1.2  # s after which a process is killed at the latest; a whole run takes longer
 
 PLAN = mission(
     wait("Rest", duration=6.0),
@@ -76,34 +76,34 @@ def folder(tmp_path_factory, argo):
     return folder
 
 
-def run_of(folder: Path, seed: int = 3) -> tuple[object, ...]:
-    """The arguments of a run of the plan."""
+def run_arguments(folder: Path, seed: int = 3) -> tuple[object, ...]:
+    """Return the arguments of a run of the mission."""
     return (
         "run", folder / "plan.json", "--site", folder / "yard.yaml", "--seed", seed, *OPTIONS,
     )  # fmt: skip
 
 
-def announced(text: str) -> list[tuple[float, str, int, float]]:
-    """The readings that a process said it had made: time, task, checkpoint and value."""
-    # A process may be killed in the middle of a line, which then says nothing.
-    found = ANNOUNCED.findall(text[: text.rfind("\n") + 1])
-    return [(float(t), task, int(id), float(value)) for t, task, id, value in found]
+def parse_announced(text: str) -> list[tuple[float, str, int, float]]:
+    """Return the readings that a process printed: time (s), task, checkpoint and value."""
+    # A process may be killed in the middle of a line, which is ignored then.
+    matches = ANNOUNCED.findall(text[: text.rfind("\n") + 1])
+    return [(float(t), task, int(id), float(value)) for t, task, id, value in matches]
 
 
-def announced_in(output: Path) -> list[tuple[float, str, int, float]]:
-    return announced(output.read_text(encoding="utf-8")) if output.exists() else []
+def read_announced(output: Path) -> list[tuple[float, str, int, float]]:
+    return parse_announced(output.read_text(encoding="utf-8")) if output.exists() else []
 
 
-def require_complete(record: RunRecord, reference: RunRecord, told) -> None:
-    """All that was told is in the record, and all that was to be done was done once."""
+def require_complete(record: RunRecord, reference: RunRecord, printed) -> None:
+    """Assert that a record has each printed reading once and the results of a reference run."""
     readings = [(r.t, r.task, r.checkpoint, r.value) for r in record.readings]
-    assert set(told) <= set(readings)
-    assert len(set(told)) == len(told), "nothing is told twice"
+    assert set(printed) <= set(readings)
+    assert len(set(printed)) == len(printed), "a reading was printed twice"
     assert len({r[0] for r in readings}) == len(readings)
     assert [r[1:] for r in readings] == [
         (r.task, r.checkpoint, r.value) for r in reference.readings
     ]
-    assert _done(record) == _done(reference)
+    assert _done_tasks(record) == _done_tasks(reference)
     assert record.result.outcome is reference.result.outcome
     assert record.result.success
     assert [w.task for w in record.waits] == [w.task for w in reference.waits]
@@ -115,9 +115,12 @@ def require_complete(record: RunRecord, reference: RunRecord, told) -> None:
     assert list(record.path) == sorted(record.path, key=lambda sample: sample.t)
 
 
-def _done(record: RunRecord) -> list[str]:
-    """The tasks of the plan that were done, in order. Which action an event interrupts, and whether
-    a reaction's drive ends before the all-clear, depends on when an action was begun anew."""
+def _done_tasks(record: RunRecord) -> list[str]:
+    """Return the names of the mission's own tasks that were done, in order.
+
+    Interrupted tasks and those of reactions are left out. Which action an event interrupts, and
+    whether a reaction's drive ends before the all-clear, depends on when an action was restarted.
+    """
     return [t.task for t in record.tasks if t.outcome == "done" and record.mission.task(t.task)]
 
 
@@ -126,47 +129,49 @@ def settings(seed: int) -> dict[str, Any]:
 
 
 @pytest.mark.long
-def test_runs_that_are_killed_lose_nothing(argo, folder, navigator, record_property) -> None:
+def test_killed_runs_lose_nothing(argo, folder, navigator, record_property) -> None:
     rng = random.Random(7 + FIRST_SEED)
     kills, done, silent, seeds = 0, 0, 0, count()
     while kills < KILLS:
         seed = next(seeds)
         reference = simulated(PLAN, navigator, **settings(seed))
         journal = folder / f"{seed}.journal"
-        begin = (*run_of(folder, seed), "--journal", journal)
-        told, ended = [], False
+        begin = (*run_arguments(folder, seed), "--journal", journal)
+        printed, ended = [], False
         for process in count():
             output = folder / f"{seed}-{process}.txt"
             arguments = ("resume", journal) if journal.exists() else begin
-            # The last processes of the last run may live as long as they like.
+            # After the last kill, the last run may end.
             after = rng.uniform(0.0, LONGEST) if kills < KILLS else None
             status = argo.kill(*arguments, output=output, after=after)
-            told += announced_in(output)
+            printed += read_announced(output)
             if status == 0:
                 ended = True
                 break
             assert status == -signal.SIGKILL, output.read_text(encoding="utf-8")
             kills += 1
-            silent += not announced_in(output)
+            silent += not read_announced(output)
         assert ended
         with open_journal(journal) as book:
             assert book.ended
             record = resume(book, opened(navigator))
-        require_complete(record, reference, told)
+        require_complete(record, reference, printed)
         done += 1
     record_property("kills", kills)
-    print(f"{kills} kills, {done} runs, {silent} processes that told nothing")
+    print(f"{kills} kills, {done} runs, {silent} processes that printed no reading")
 
 
 @pytest.mark.long
-def test_kill_and_resume_by_the_command(
+def test_the_command_resumes_a_killed_run(
     argo, argo_process, folder: Path, tmp_path: Path, navigator
 ) -> None:
     journal = tmp_path / "run.journal"
-    with started(*run_of(folder), "--journal", journal, stdout=subprocess.DEVNULL) as process:
+    with start_argo(
+        *run_arguments(folder), "--journal", journal, stdout=subprocess.DEVNULL
+    ) as process:
         line = process.stderr.readline()
         while not ANNOUNCED.match(line):
-            assert line, "it has ended without a reading"
+            assert line, "the run has ended without a reading"
             line = process.stderr.readline()
         process.send_signal(signal.SIGSTOP)
         refused = argo("resume", journal)
@@ -174,10 +179,10 @@ def test_kill_and_resume_by_the_command(
     assert (refused.returncode, refused.stderr.count("in use")) == (2, 1)
     result = argo_process("resume", journal, "--report", tmp_path / "report", status=0)
     assert "The run continues at" in result.stderr
-    record = reported(tmp_path / "report")
-    told = announced(line + result.stderr)
+    record = read_run_record(tmp_path / "report")
+    printed = parse_announced(line + result.stderr)
     reference = simulated(PLAN, navigator, **settings(3))
-    require_complete(record, reference, told)
+    require_complete(record, reference, printed)
     assert len(record.resumed) == 1
     again = argo("resume", journal, "--report", tmp_path / "again", status=0)
     assert "had ended already" in again.stderr
@@ -186,12 +191,12 @@ def test_kill_and_resume_by_the_command(
 
 
 @pytest.mark.parametrize(
-    ("arguments", "says"),
+    ("arguments", "message"),
     [
         (["run", "plan.json", "--event", "60=flood"], "no event `flood`; there are: gas_leak"),
         (["run", "plan.json", "--journal", "plan.json"], "is the input"),
         (["resume", "plan.json"], "is no journal"),
     ],
 )
-def test_what_is_refused_before_anything_is_loaded(argo, folder: Path, arguments, says) -> None:
-    assert says in refused(argo(*arguments, cwd=folder))
+def test_wrong_events_and_journals_are_refused(argo, folder: Path, arguments, message) -> None:
+    assert message in require_refusal(argo(*arguments, cwd=folder))

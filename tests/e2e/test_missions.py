@@ -1,4 +1,4 @@
-"""Whole missions, from the script's text to the report, by the command alone."""
+"""Whole missions with the command `argo` alone, from the text of a script to the report."""
 
 import re
 from pathlib import Path
@@ -8,14 +8,14 @@ import pytest
 from argo_compiler.files.mission_file import read_mission
 from argo_compiler.hfsm import Hfsm
 from argo_env.run.record import RunRecord
-from tests.e2e.conftest import reported
+from tests.e2e.conftest import read_run_record
 
 AREAS = ("--start-area", 1, "--end-area", 2)
 
 
 @pytest.fixture(scope="module")
 def first(argo_process, missions: Path, tmp_path_factory: pytest.TempPathFactory):
-    """Mission #1, run and reported once."""
+    """Run mission #1 once; return the result of the command and the folder of the report."""
     folder = tmp_path_factory.mktemp("first")
     return argo_process("run", missions / "mission_1.txt", *AREAS, "--report", folder), folder
 
@@ -50,14 +50,14 @@ def require_protocol_2(record: RunRecord) -> None:
 def test_mission_1_runs_to_success(first) -> None:
     result, folder = first
     assert result.returncode == 0, result.stderr
-    require_mission_1(reported(folder))
+    require_mission_1(read_run_record(folder))
     assert "Success" in result.stdout
     assert "pressure gauge 5" in result.stdout
     assert str(folder / "report.html") in result.stdout.replace("\n", "")
     assert (folder / "site.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_every_healed_word_is_shown(first) -> None:
+def test_a_corrected_word_is_shown(first) -> None:
     result, _ = first
     assert "durat tion" in result.stderr or "durat\ttion" in result.stderr
     assert "duration" in result.stderr
@@ -68,7 +68,7 @@ def test_every_healed_word_is_shown(first) -> None:
 def test_protocol_2_runs_to_success(argo, request, folder: str, tmp_path: Path) -> None:
     script = request.getfixturevalue(folder) / "protocol_2.txt"
     argo("run", script, "--report", tmp_path, status=0)
-    require_protocol_2(reported(tmp_path))
+    require_protocol_2(read_run_record(tmp_path))
 
 
 @pytest.mark.long
@@ -77,7 +77,7 @@ def test_the_original_of_mission_1_runs_to_success(argo, originals: Path, tmp_pa
     script = originals / "mission_1.txt"
     areas = ("--start-area", area, "--end-area", area)
     argo("run", script, *areas, "--report", tmp_path, status=0)
-    require_mission_1(reported(tmp_path))
+    require_mission_1(read_run_record(tmp_path))
 
 
 @pytest.mark.long
@@ -117,34 +117,34 @@ def test_import_compile_and_run_step_by_step(argo, first, missions: Path, tmp_pa
         "MEASURE 1", "MEASURE 4", "MEASURE 8", "DOCK",
     ]  # fmt: skip
     assert diagram.read_text(encoding="utf-8").startswith("stateDiagram-v2")
-    readings = reported(tmp_path / "by steps").readings
-    assert readings == reported(at_once).readings
-    # Another drive takes another time, and reads the same.
-    assert [r.value for r in readings] == [r.value for r in reported(folder).readings]
+    readings = read_run_record(tmp_path / "by steps").readings
+    assert readings == read_run_record(at_once).readings
+    # Another drive takes another time, but the readings are the same.
+    assert [r.value for r in readings] == [r.value for r in read_run_record(folder).readings]
 
 
-def test_an_abnormal_value_is_flagged_and_no_failure_and_another_seed_gives_other_readings(
+def test_an_abnormal_value_is_no_failure_and_another_seed_gives_other_readings(
     argo, first, missions: Path, tmp_path: Path
 ) -> None:
     _, folder = first
     script, given = missions / "mission_1.txt", ("--value", "8=9.5", "--seed", 1)
-    way = ("--start-area", 2, "--end-area", 2, "--drive", "route")
-    result = argo("run", script, *way, *given, "--report", tmp_path, status=0)
+    options = ("--start-area", 2, "--end-area", 2, "--drive", "route")
+    result = argo("run", script, *options, *given, "--report", tmp_path, status=0)
     assert re.search(r"9\.50 bar.*abnormal", result.stdout)
-    readings = reported(tmp_path).readings
+    readings = read_run_record(tmp_path).readings
     assert [r.normal for r in readings] == [True, True, False]
-    usual = [r.value for r in reported(folder).readings]
+    usual = [r.value for r in read_run_record(folder).readings]
     assert all(r.value != value for r, value in zip(readings[:2], usual[:2], strict=True))
 
 
-def test_a_mission_over_its_time_is_no_success(argo, missions: Path, tmp_path: Path) -> None:
+def test_a_mission_over_its_maximum_duration_fails(argo, missions: Path, tmp_path: Path) -> None:
     text = (missions / "mission_1.txt").read_text(encoding="utf-8").replace("20'", "2'")
     script = tmp_path / "hasty.txt"
     script.write_text(text, encoding="utf-8")
     areas = ("--start-area", 1, "--end-area", 1)
     result = argo("run", script, *areas, "--drive", "route", "--report", tmp_path, status=1)
     assert "of at most 120 s" in result.stdout
-    assert not reported(tmp_path).result.within_max_duration
+    assert not read_run_record(tmp_path).result.within_max_duration
 
 
 @pytest.mark.parametrize("name", ["run.gif", pytest.param("run.mp4", marks=pytest.mark.long)])
@@ -159,8 +159,8 @@ def test_a_run_is_filmed_without_a_display(argo, tmp_path: Path, name: str) -> N
     assert head.startswith(b"GIF89a") or head[4:8] == b"ftyp"
 
 
-def test_the_report_needs_nothing_from_elsewhere(first) -> None:
+def test_the_report_loads_no_other_files(first) -> None:
     _, folder = first
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert not re.search(r"""(?:src|href)\s*=\s*["'](?!#|data:)""", page)
-    assert reported(folder).seed == 0
+    assert read_run_record(folder).seed == 0

@@ -1,4 +1,4 @@
-"""A mission with waits, planned rounds, time windows and a repeat until a value, by the command."""
+"""A run of a mission with waits, planned rounds, time windows and a group that ends at a value."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ import pytest
 
 from argo_compiler.hfsm import Outcome
 from argo_env.run.record import WindowOutcome
-from tests.e2e.conftest import reported
+from tests.e2e.conftest import read_run_record
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios" / "umad"
 MISSION = SCENARIOS / "missions" / "rounds_and_windows.json"
@@ -16,21 +16,21 @@ MISSION = SCENARIOS / "missions" / "rounds_and_windows.json"
     scope="module",
     params=["route", *(pytest.param(d, marks=pytest.mark.long) for d in ("kinematic", "tracked"))],
 )
-def done(request, argo, tmp_path_factory):
+def completed_run(request, argo, tmp_path_factory):
     folder = tmp_path_factory.mktemp(request.param)
     result = argo(
         "run", MISSION, "--faults", SCENARIOS / "missions" / "falling_pressure.yaml",
         "--drive", request.param, "--report", folder,
     )  # fmt: skip
-    return result, reported(folder), folder
+    return result, read_run_record(folder), folder
 
 
-def test_check_finds_no_error_in_it(argo) -> None:
+def test_the_check_finds_no_errors(argo) -> None:
     argo("check", MISSION, status=0)
 
 
-def test_it_is_completed_with_failures(done) -> None:
-    result, record, _ = done
+def test_the_mission_is_completed_with_failures(completed_run) -> None:
+    result, record, _ = completed_run
     assert result.returncode == 1, result.stderr
     assert record.result.outcome is Outcome.COMPLETED_WITH_FAILURES
     assert record.result.docked
@@ -39,8 +39,8 @@ def test_it_is_completed_with_failures(done) -> None:
     assert "Completed with failures: missed the time window: Valve R25. 5 findings" in line
 
 
-def test_it_waits(done) -> None:
-    result, record, _ = done
+def test_a_task_waits(completed_run) -> None:
+    result, record, _ = completed_run
     (settle,) = record.waits
     assert (settle.task, settle.start) == ("Settle", 0.0)
     assert settle.end == pytest.approx(15.0, abs=0.11)
@@ -49,8 +49,8 @@ def test_it_waits(done) -> None:
     assert "waits for" in result.stdout
 
 
-def test_rounds_begin_when_they_are_due(done) -> None:
-    _, record, _ = done
+def test_rounds_begin_when_they_are_due(completed_run) -> None:
+    _, record, _ = completed_run
     patrol = [one for one in record.rounds if one.group == "Patrol"]
     assert [one.number for one in patrol] == [1, 2]
     assert patrol[1].due == pytest.approx(patrol[0].began + 75.0, abs=1e-6)
@@ -59,23 +59,23 @@ def test_rounds_begin_when_they_are_due(done) -> None:
     assert starts == pytest.approx([one.began for one in patrol], abs=0.11)
 
 
-def test_a_missed_window_has_its_branch(done) -> None:
-    _, record, _ = done
+def test_a_missed_window_leads_to_its_own_target(completed_run) -> None:
+    _, record, _ = completed_run
     names = [run.task for run in record.tasks]
     assert names[names.index("Valve R25") + 1] == "Lookout"
-    kept = {one.task: one for one in record.windows}
-    assert kept["Valve R25"].kept is WindowOutcome.MISSED
-    assert kept["Valve R25"].ended == pytest.approx(240.0)
+    windows = {one.task: one for one in record.windows}
+    assert windows["Valve R25"].kept is WindowOutcome.MISSED
+    assert windows["Valve R25"].ended == pytest.approx(240.0)
     run = next(run for run in record.tasks if run.task == "Valve R25")
     assert (run.outcome, run.reason) == ("cancelled", "its time window is over")
-    assert kept["Level"].kept is WindowOutcome.KEPT
+    assert windows["Level"].kept is WindowOutcome.KEPT
     level = next(run for run in record.tasks if run.task == "Level")
     assert level.early[1] == 330.0
     assert level.measuring[0][0] == pytest.approx(330.0, abs=0.11)
 
 
-def test_it_repeats_until_the_value_is_normal(done) -> None:
-    _, record, _ = done
+def test_a_group_is_repeated_until_the_value_is_normal(completed_run) -> None:
+    _, record, _ = completed_run
     watch = [one for one in record.rounds if one.group == "Watch"]
     read = [r.value for r in record.readings if r.task == "Pressure"]
     assert len(watch) == len(read) >= 2
@@ -84,8 +84,8 @@ def test_it_repeats_until_the_value_is_normal(done) -> None:
     assert len(watch) < 8
 
 
-def test_the_report_shows_each(done) -> None:
-    _, record, folder = done
+def test_the_report_shows_waits_rounds_and_windows(completed_run) -> None:
+    _, record, folder = completed_run
     page = (folder / "report.html").read_text(encoding="utf-8")
     for words in (
         "Waits, rounds and time windows", 'id="waits"', 'id="windows"', 'id="rounds"',

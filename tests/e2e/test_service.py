@@ -1,4 +1,4 @@
-"""`argo serve` as people run it: killed and begun again, nothing that was acknowledged is lost."""
+"""`argo serve` from a shell: if it is killed and restarted, no acknowledged edit is lost."""
 
 import asyncio
 import json
@@ -19,15 +19,15 @@ from websockets.exceptions import ConnectionClosed, InvalidHandshake
 from tests.argo_planner.service.test_live import Listener
 from tests.argo_planner.service.test_plan import mission
 from tests.conftest import examples
-from tests.e2e.conftest import started, told_until
-from tests.e2e.test_errors import refused
+from tests.e2e.conftest import read_errors_until, start_argo
+from tests.e2e.test_errors import require_refusal
 
 TOKEN = "token-of-the-test-of-kills"
 HEADERS = {"authorization": f"Bearer {TOKEN}"}
 
 
-class Serving:
-    """A process of `argo serve` at a port that stays the same."""
+class ServiceProcess:
+    """Process of `argo serve` that can be result and restarted at the same port."""
 
     def __init__(self, folder: Path) -> None:
         with socket.create_server(("127.0.0.1", 0)) as free:
@@ -36,48 +36,48 @@ class Serving:
         self.folder = folder
 
     def client(self, kind: Any = httpx.Client, timeout: float = 60) -> Any:
-        """Return a client that may do everything, of one of the kinds that HTTPX has."""
+        """Return an HTTPX client of a class, with a token that has all rights."""
         return kind(base_url=f"http://{self.address}", headers=HEADERS, timeout=timeout)
 
     def begin(self) -> None:
-        self.process = started(
+        self.process = start_argo(
             *("serve", self.folder, "--port", self.port),
             stdout=None,
             env=os.environ | {"ARGO_TOKEN": TOKEN},
             start_new_session=True,  # a group of its own, as in a terminal
         )
-        told_until(self.process, "Ctrl-C")
+        read_errors_until(self.process, "Ctrl-C")
 
     def end(self, number: int) -> str:
-        """Ends it by a signal; what it has said."""
+        """Send the process a signal and wait for its end; return its standard error."""
         self.process.send_signal(number)
         return self.process.communicate(timeout=60)[1] or ""
 
     def interrupt(self) -> str:
-        """Ctrl-C in its terminal: the signal goes to all of its processes. What they have said."""
+        """Send SIGINT to the whole process group, as Ctrl-C does; return its standard error."""
         os.killpg(self.process.pid, signal.SIGINT)
         return self.process.communicate(timeout=60)[1] or ""
 
 
 @pytest.fixture
-def serving(tmp_path):
-    found = Serving(tmp_path / "missions")
-    found.begin()
-    yield found
-    if found.process.poll() is None:
-        found.end(signal.SIGKILL)
+def service(tmp_path):
+    service_process = ServiceProcess(tmp_path / "missions")
+    service_process.begin()
+    yield service_process
+    if service_process.process.poll() is None:
+        service_process.end(signal.SIGKILL)
 
 
-def test_the_service_begins_says_where_it_is_and_ends(serving: Serving) -> None:
-    with serving.client() as client:
+def test_the_service_starts_answers_and_ends(service: ServiceProcess) -> None:
+    with service.client() as client:
         assert client.get("/api/service").json()["site"] == "umad"
-    said = serving.end(signal.SIGINT)
-    assert "Traceback" not in said
-    assert serving.process.returncode in (0, 130)
+    errors = service.end(signal.SIGINT)
+    assert "Traceback" not in errors
+    assert service.process.returncode in (0, 130)
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "message"),
     [
         (["--host", "0.0.0.0"], "give --token or --token-file"),
         (["--token", "short"], "at least 16 characters"),
@@ -87,12 +87,12 @@ def test_the_service_begins_says_where_it_is_and_ends(serving: Serving) -> None:
         (["--host", "no.such.host.invalid", "--token", "x" * 20], "the service can't listen at"),
     ],
 )
-def test_what_can_not_be_served_is_said(argo, tmp_path, options, said) -> None:
-    assert said in refused(argo("serve", tmp_path / "m", *options))
+def test_wrong_options_are_refused(argo, tmp_path, options, message) -> None:
+    assert message in require_refusal(argo("serve", tmp_path / "m", *options))
 
 
-def evaluating(client: httpx.Client) -> str:
-    """Begins an evaluation that takes long, and waits for its first rows; its id."""
+def start_evaluation(client: httpx.Client) -> str:
+    """Start a long evaluation and wait for its first rows; return its id."""
     plan = client.post(
         "/api/missions",
         json={"name": "Round", "mission": mission("A", "B").model_dump(mode="json")},
@@ -116,38 +116,40 @@ def wait_for_rows(client: httpx.Client, job: str) -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize("end", ["Ctrl-C", "kill -9"])
-def test_an_evaluation_ends_with_the_service_and_goes_on(serving: Serving, end: str) -> None:
-    with serving.client() as client:
-        job = evaluating(client)
-    rows = serving.folder / "evaluations" / job / "rows.log"
+def test_an_evaluation_ends_with_the_service_and_goes_on(service: ServiceProcess, end: str) -> None:
+    with service.client() as client:
+        job = start_evaluation(client)
+    rows = service.folder / "evaluations" / job / "rows.log"
     if end == "Ctrl-C":
-        assert serving.interrupt() == "argo: interrupted\n"
+        assert service.interrupt() == "argo: interrupted\n"
     else:
-        serving.end(signal.SIGKILL)
-        time.sleep(3)  # workers look once a second whether it is there
-    kept = rows.stat().st_size
+        service.end(signal.SIGKILL)
+        time.sleep(3)  # workers check once a second if the service still runs
+    size = rows.stat().st_size
     time.sleep(1)
-    assert rows.stat().st_size == kept > 0, "nothing goes on running"
-    serving.begin()
-    with serving.client() as client:
+    assert rows.stat().st_size == size > 0, "a worker still runs"
+    service.begin()
+    with service.client() as client:
         assert client.get(f"/api/jobs/{job}").json()["state"] == "interrupted"
         assert client.post(f"/api/jobs/{job}/go_on").status_code == 202
         wait_for_rows(client, job)
-    assert rows.stat().st_size >= kept
-    serving.end(signal.SIGTERM)
+    assert rows.stat().st_size >= size
+    service.end(signal.SIGTERM)
 
 
 @pytest.mark.long
-def test_one_service_has_a_folder(serving: Serving, argo_process) -> None:
-    ended = argo_process("serve", str(serving.folder), "--port", "0", "--token", TOKEN)
-    assert "another service uses this folder" in refused(ended)
+def test_a_second_service_with_the_same_folder_is_refused(
+    service: ServiceProcess, argo_process
+) -> None:
+    result = argo_process("serve", str(service.folder), "--port", "0", "--token", TOKEN)
+    assert "another service uses this folder" in require_refusal(result)
 
 
 class Subscriber(Listener):
-    """Follows a mission over all that happens to the service."""
+    """Client that follows a mission, and connects again after the service was killed."""
 
-    def __init__(self, serving: Serving, id: str, author: str) -> None:
-        self.url = f"ws://{serving.address}/api/missions/{id}/live?author={author}"
+    def __init__(self, service: ServiceProcess, id: str, author: str) -> None:
+        self.url = f"ws://{service.address}/api/missions/{id}/live?author={author}"
         self.connections = 0
 
     async def follow(self) -> None:
@@ -165,12 +167,12 @@ class Subscriber(Listener):
 
 
 async def edit_until(
-    stopped: asyncio.Event, serving: Serving, id: str, acknowledged: Counter[str]
+    stopped: asyncio.Event, service: ServiceProcess, id: str, acknowledged: Counter[str]
 ) -> int:
     """Send twenty edits a second, each until it is acknowledged; return the highest revision."""
     loop = asyncio.get_running_loop()
     number, highest = 0, 1
-    async with serving.client(httpx.AsyncClient, timeout=10) as client:
+    async with service.client(httpx.AsyncClient, timeout=10) as client:
         while not stopped.is_set():
             number += 1
             edit = {"kind": "change_task", "name": f"t{number % 50}", "velocity": number / 1e4}
@@ -192,35 +194,37 @@ async def edit_until(
     return highest
 
 
-async def connected(pages: Sequence[Subscriber], times: int) -> None:
-    """Wait until each has connected so many times: a slow machine takes seconds for it."""
+async def wait_for_connections(pages: Sequence[Subscriber], times: int) -> None:
+    """Wait until each page has connected so many times, which takes seconds on a slow machine."""
     async with asyncio.timeout(60):
         while any(page.connections < times for page in pages):
             await asyncio.sleep(0.05)
 
 
-async def play(serving: Serving, seconds: float, subscribers: int, kills: int) -> None:
-    async with serving.client(httpx.AsyncClient, timeout=30) as client:
+async def edit_while_killing(
+    service: ServiceProcess, seconds: float, subscribers: int, kills: int
+) -> None:
+    async with service.client(httpx.AsyncClient, timeout=30) as client:
         tasks = mission(*(f"t{k}" for k in range(50))).model_dump(mode="json")
         for task in tasks["tasks"]:
             task["object_id"] = "1"
         made = await client.post("/api/missions", json={"name": "Round", "mission": tasks})
         id = made.json()["id"]
-    pages = [Subscriber(serving, id, f"p{k}") for k in range(subscribers)]
+    pages = [Subscriber(service, id, f"p{k}") for k in range(subscribers)]
     following = [asyncio.create_task(page.follow()) for page in pages]
-    await connected(pages, 1)
+    await wait_for_connections(pages, 1)
     acknowledged: Counter[str] = Counter()
     stopped = asyncio.Event()
-    editing = asyncio.create_task(edit_until(stopped, serving, id, acknowledged))
+    editing = asyncio.create_task(edit_until(stopped, service, id, acknowledged))
     for kill in range(kills):
         await asyncio.sleep(seconds / (kills + 1))
-        await asyncio.to_thread(serving.end, signal.SIGKILL)
-        await asyncio.to_thread(serving.begin)
-        await connected(pages, kill + 2)
+        await asyncio.to_thread(service.end, signal.SIGKILL)
+        await asyncio.to_thread(service.begin)
+        await wait_for_connections(pages, kill + 2)
     await asyncio.sleep(seconds / (kills + 1))
     stopped.set()
     highest = await editing
-    async with serving.client(httpx.AsyncClient) as client:
+    async with service.client(httpx.AsyncClient) as client:
         state = (await client.get(f"/api/missions/{id}")).json()
     assert state["revision"] == highest
     assert sorted(acknowledged.values()) == [*range(2, highest + 1)], "lost, or done twice"
@@ -238,10 +242,10 @@ async def play(serving: Serving, seconds: float, subscribers: int, kills: int) -
 
 
 @pytest.mark.long
-def test_nothing_is_lost_or_done_twice_when_the_service_is_killed(serving: Serving) -> None:
-    asyncio.run(play(serving, seconds=4, subscribers=5, kills=1))
+def test_nothing_is_lost_or_done_twice_when_the_service_is_killed(service: ServiceProcess) -> None:
+    asyncio.run(edit_while_killing(service, seconds=4, subscribers=5, kills=1))
 
 
 @pytest.mark.long
-def test_fifty_subscribers_and_two_kills(serving: Serving) -> None:
-    asyncio.run(play(serving, seconds=examples(60), subscribers=50, kills=2))
+def test_fifty_subscribers_and_two_kills(service: ServiceProcess) -> None:
+    asyncio.run(edit_while_killing(service, seconds=examples(60), subscribers=50, kills=2))

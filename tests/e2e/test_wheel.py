@@ -1,4 +1,4 @@
-"""Argo installed as a wheel, in an empty environment, away from the checkout."""
+"""Argo installed from a wheel in an empty environment, outside the checkout."""
 
 import os
 import subprocess

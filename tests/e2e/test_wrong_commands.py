@@ -1,5 +1,4 @@
-"""Command lines as people get them wrong, newcomers and those with a folder full of files: each is
-told what is wrong and where, and every file is as it was."""
+"""Wrong command lines that people may type: each error is named with its place; no file changes."""
 
 import json
 import re
@@ -93,7 +92,7 @@ FILES: dict[str, str | bytes] = {
     "braces.yaml": '{"budget": 20 min, }}\n',
     "maybe.yaml": "keep_order: maybe\n",
     "unknown.yaml": "mandatory: [99]\n",
-    # of the wrong kind
+    # other kinds of files
     "titel.yaml": "name: bad\ntitel: Bad\n",
     "list.json": "[1, 2]",
     "config.json": '{"name": "my project"}',
@@ -105,7 +104,7 @@ FILES: dict[str, str | bytes] = {
     "empty": "",
 }
 
-NAMED = {
+IN_ERRORS = {
     # misspelt
     "rum s.txt": "rum",
     "launch s.txt": "launch",
@@ -150,7 +149,7 @@ NAMED = {
     "run s.txt --faults s.txt": "s.txt",
     "sites m.json": "m.json",
     "run faults.yaml": "faults.yaml",
-    # places for results
+    # files for results
     "run no.txt --report new": "no.txt",
     "run s.txt --report a/new --faults fire.yaml": "fire.yaml:2:",
     "route s.txt --budget 1s --pictures new": "",
@@ -213,9 +212,9 @@ NAMED = {
     "sites generated:storeys=3": "storeys",
     "run s.txt --site generated:seed=x": "seed",
 }
-"""By command line: what standard error names."""
+"""words that standard error must have, by command line"""
 
-SAID = {
+IN_OUTPUT = {
     # documents, pictures and other people's files as scripts
     "run mission.docx": "mission.docx: is a binary file",
     "check mission.pdf": "mission.pdf: error: is a document (PDF), not plain text",
@@ -304,7 +303,7 @@ SAID = {
     "run s.txt --event gas_leak=60": "write TIME=KIND in s",
     "run s.txt --event ' 60 = gas-leak '": "no event `gas-leak`",
     "sites 'generated:floors=3;seed=7'": "floors can't be `3;seed=7`",
-    # runs that are kept
+    # stored runs
     "resume out": "out: is a folder; name the journal in it: out/run.journal",
     "resume out/report.json": "out/report.json: is no journal",
     "resume head.journal --report new": "head.journal: is no journal, or its first line is damaged",
@@ -314,7 +313,7 @@ SAID = {
     "replay run.journal": "run.journal: is no .mcap file",
     "replay cut.mcap --report new": "cut.mcap: has no record of the run",
     "replay cut.mcap --render new.gif": "cut.mcap: has no record of the run",
-    # places for results
+    # files for results
     "run s.txt --report out": "out/report.json: already exists",
     "run s.txt --report out/report.html --force": "out/report.html: is a file, but a folder",
     "run s.txt --report new --drive car": "no drive `car`; there are: route, kinematic, tracked",
@@ -333,12 +332,12 @@ SAID = {
     "run “s.txt”": "“s.txt”: can't be read: it does not exist",
     "run s.txt —report new": "unexpected extra argument(s) (—report new)",
 }
-"""By command line: what its answer says."""
+"""words that output or standard error must have, by command line"""
 
 
 @pytest.fixture(scope="module")
 def folder(argo, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The files, and a run that was kept and recorded, with what is left of it after a crash."""
+    """Return a folder with the files, a journal and a recording, and damaged copies of both."""
     folder = tmp_path_factory.mktemp("files")
     for name, content in FILES.items():
         file = folder / name
@@ -363,8 +362,8 @@ def contents(folder: Path) -> dict[str, bytes | None]:
     }
 
 
-@pytest.mark.parametrize("line", [*NAMED, *SAID])
-def test_what_is_wrong_is_said_and_every_file_is_as_it_was(argo, folder: Path, line: str) -> None:
+@pytest.mark.parametrize("line", [*IN_ERRORS, *IN_OUTPUT])
+def test_wrong_commands_name_their_error_and_change_no_file(argo, folder: Path, line: str) -> None:
     before = contents(folder)
     result = argo(*shlex.split(line), cwd=folder)
     error, output = (
@@ -373,12 +372,12 @@ def test_what_is_wrong_is_said_and_every_file_is_as_it_was(argo, folder: Path, l
     )
     assert result.returncode == 2, error + output
     assert "Traceback" not in error + output
-    assert NAMED[line] in error if line in NAMED else SAID[line] in error + output
+    assert IN_ERRORS[line] in error if line in IN_ERRORS else IN_OUTPUT[line] in error + output
     assert contents(folder) == before
     assert max(map(len, result.stderr.splitlines()), default=0) < 400
 
 
-def test_of_a_recording_that_breaks_off_what_is_there_is_shown(argo, folder: Path) -> None:
+def test_a_recording_that_breaks_off_is_shown_up_to_there(argo, folder: Path) -> None:
     before = contents(folder)
     result = argo("replay", "cut.mcap", cwd=folder, status=1)
     assert "Tasks that have ended: 1; the last: MEASURE 1 (done)." in result.stdout

@@ -100,10 +100,8 @@ class ForkedArgo:
     ) -> int:
         """Run a command, send it a signal after a time, and return its exit status.
 
-        Args:
-            output: File to which the command's output and errors are appended.
-            after: Seconds until the signal is sent; None: never.
-            number: The signal. After SIGKILL the exit status is -9.
+        The output and errors are appended to the file `output`. The signal is sent after `after` s,
+        or never if that is None; a command that SIGKILL ends has the exit status -9.
         """
         return self._run_command(arguments, ROOT, output, output, after, number)
 

@@ -114,9 +114,7 @@ def _exit_status(act: Callable[[], None]) -> int:
 def _wait_for_end(child: int, after: float | None, number: int) -> int:
     """Wait for the end of a process and return its wait status.
 
-    Args:
-        after: Seconds after which a process that still runs gets the signal; None: never.
-        number: The signal.
+    If it still runs after `after` s, it gets the signal `number`; `after` None means never.
     """
     deadline = time.monotonic() + (after or 0.0)
     while after is not None and time.monotonic() < deadline:

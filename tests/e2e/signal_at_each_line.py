@@ -28,11 +28,7 @@ def main(number: int) -> None:
 def _run_interrupted(line: int, number: int) -> tuple[int, str] | None:
     """Return the exit status and standard error of a command that gets a signal at a line.
 
-    Args:
-        line: Number of the executed line, counted from 1 over the traced modules.
-
-    Returns:
-        None if the command executes fewer lines.
+    Executed lines of the traced modules are counted from 1; None: the command executes fewer lines.
     """
     with tempfile.TemporaryFile() as error, tempfile.TemporaryFile() as reached:
         child = os.fork()

@@ -1,4 +1,4 @@
-"""What the tests of the page share: a service with the built page, and browsers."""
+"""Fixtures of the tests of the page: a service with the built page, and browsers."""
 
 from collections.abc import Iterator
 
@@ -18,40 +18,40 @@ def umad() -> OpenedSite:
 
 @pytest.fixture(scope="module")
 def service(tmp_path_factory, umad) -> Iterator[Served]:
-    """One for all tests of a file."""
+    """Yield a service that all tests of a file share."""
     if not (page_folder() / "index.html").is_file():
         pytest.skip("the page is not built: `make page` builds it")
-    with served(tmp_path_factory.mktemp("missions"), umad) as found:
-        yield found
+    with served(tmp_path_factory.mktemp("missions"), umad) as running:
+        yield running
 
 
 @pytest.fixture(scope="module")
 def chromium() -> Iterator[Browsers]:
     if CHROMIUM is None:
         pytest.skip(NO_CHROMIUM)
-    # Few pixels: they are drawn in software, which takes most of the time. Of the picture of the
-    # site, at which nobody looks, still fewer; what a click hits in it does not depend on that.
-    found = Browsers(scale=0.5, scene=0.1)
-    yield found
-    found.close()
+    # Pixels are drawn in software, which takes most of the time, so there are few. The picture of
+    # the site has even fewer: no test looks at it, and clicks in it do not depend on them.
+    browsers = Browsers(scale=0.5, scene=0.1)
+    yield browsers
+    browsers.close()
 
 
 @pytest.fixture
 def browsers(chromium: Browsers) -> Iterator[Browsers]:
-    """Browsers in which nothing went wrong by the end of the test."""
+    """Yield browsers; after the test, close their windows and fail if there were problems."""
     yield chromium
-    chromium.leave()
+    chromium.close_windows()
 
 
 @pytest.fixture(scope="module")
 def address(service: Served) -> str:
-    """Where the page is, with the token."""
+    """Return the address of the page, with the token."""
     return f"http://{service.address}/?token={ALL}"
 
 
 @pytest.fixture
 def ann(browsers: Browsers, address: str) -> Person:
-    """Return somebody at the list of missions, in a window of their own."""
+    """Return a person at the list of missions, in a window of their own."""
     ann = browsers.person(address)
     ann.open()
     expect(ann.button("New mission")).to_be_enabled()
@@ -60,14 +60,17 @@ def ann(browsers: Browsers, address: str) -> Person:
 
 @pytest.fixture(scope="module")
 def window(chromium: Browsers, address: str) -> Person:
-    """Somebody whose window stays open for all tests of a file."""
+    """Return a person whose window stays open for all tests of a file."""
     return chromium.person(address, stays=True)
 
 
 @pytest.fixture
-def resident(browsers: Browsers, window: Person, request: pytest.FixtureRequest) -> Person:  # noqa: ARG001
-    """Somebody at the list of missions. The page is loaded once for all tests of a file, and again
-    after a test that failed; with a mission it forgets what was seen and in hand there."""
+def shared_person(browsers: Browsers, window: Person, request: pytest.FixtureRequest) -> Person:  # noqa: ARG001
+    """Return a person at the list of missions in the window that all tests of a file share.
+
+    The page is loaded once, and again after a test that failed. When it leaves a mission, it
+    forgets the mission's view, selection and tool.
+    """
     failed = request.session.testsfailed
     if window.loaded_after is None:
         window.open()

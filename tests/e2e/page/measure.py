@@ -1,4 +1,4 @@
-"""How fast the page is: `python -m tests.e2e.page.measure`. Printed, and never asserted."""
+"""Speed of the page: `python -m tests.e2e.page.measure` prints it, and no test asserts it."""
 
 import argparse
 import tempfile
@@ -35,63 +35,65 @@ def mission(count: int, site: str) -> dict[str, Any]:
 @contextmanager
 def serving(site: str) -> Iterator[Served]:
     opened = open_site(site).prepare()
-    with tempfile.TemporaryDirectory() as folder, served(Path(folder), opened) as found:
-        yield found
+    with tempfile.TemporaryDirectory() as folder, served(Path(folder), opened) as service:
+        yield service
 
 
-def rows_there(person: Person) -> None:
+def wait_for_rows(person: Person) -> None:
     expect(person.page.get_by_role("treeitem").first).to_be_visible()
     expect(person.button("Add")).to_be_enabled()
 
 
-def opening(browsers: Browsers, service: Served, count: int) -> None:
-    """From the address to where one can work, and to where all is drawn; the second time, as the
-    first one fills the caches of the service."""
+def measure_opening(browsers: Browsers, service: Served, count: int) -> None:
+    """Print the seconds until a mission can be edited and until it is drawn.
+
+    It is opened twice, as the first time fills the caches of the service.
+    """
     id = service.create(f"{count} tasks", mission(count, "umad"))
     for attempt in ("first", "again"):
         person = browsers.person(f"http://{service.address}/?token={ALL}")
         begun = time.perf_counter()
         person.open(f"/missions/{id}")
-        rows_there(person)
+        wait_for_rows(person)
         usable = time.perf_counter() - begun
-        person.idle()
+        person.wait_for_scene()
         drawn = time.perf_counter() - begun
         print(f"{count:5} tasks, {attempt}: usable in {usable:.2f} s, all drawn in {drawn:.2f} s")
-        browsers.leave()
+        browsers.close_windows()
 
 
-def many_pages(browsers: Browsers, service: Served, count: int) -> None:
-    """Many pages of one mission that open at once, each in a context of its own."""
+def measure_many_pages(browsers: Browsers, service: Served, count: int) -> None:
+    """Print the seconds that many pages of one mission take to open at once."""
     id = service.create("Together", mission(200, "umad"))
     people = [browsers.person(f"http://{service.address}/?token={ALL}") for _ in range(count)]
     begun = time.perf_counter()
     for person in people:
         person.page.goto(f"{person.address}#/missions/{id}", wait_until="commit")
     for person in people:
-        rows_there(person)
+        wait_for_rows(person)
     took = time.perf_counter() - begun
     print(f"{count} pages with 200 tasks: the last one usable in {took:.1f} s")
-    # One browser draws so many scenes with one processor: what it says of that is not the page's.
-    print(*sorted({said for person in people for said in person.complaints}), sep="\n")
+    # One browser process draws all scenes; its messages about that are no problems of the page.
+    print(*sorted({text for person in people for text in person.problems}), sep="\n")
     for person in people:
-        person.complaints.clear()
-    browsers.leave()
+        person.problems.clear()
+    browsers.close_windows()
 
 
-def asked_by_a_page(browsers: Browsers, service: Served, id: str) -> list[str]:
-    """Paths of all that a page asks of the service until it has drawn all."""
+def record_requests(browsers: Browsers, service: Served, id: str) -> list[str]:
+    """Return the paths of all requests of a page until it has drawn everything."""
     person = browsers.person(f"http://{service.address}/?token={ALL}")
     paths: list[str] = []
     person.page.on("request", lambda request: paths.append(request.url.split(service.address)[1]))
     person.open(f"/missions/{id}")
-    rows_there(person)
-    person.idle()
-    browsers.leave()
+    wait_for_rows(person)
+    person.wait_for_scene()
+    browsers.close_windows()
     return paths
 
 
-def ask_all(address: str, paths: list[str], id: str, start: Barrier) -> None:
-    """Asks what a page asks, on one connection, and opens its live connection."""
+def request_all(address: str, paths: list[str], id: str, start: Barrier) -> None:
+    """Send the requests of a page on one connection, and open its event feed."""
     connection = HTTPConnection(address)
     headers = {"authorization": f"Bearer {ALL}", "accept-encoding": "gzip"}
     start.wait()
@@ -106,10 +108,11 @@ def ask_all(address: str, paths: list[str], id: str, start: Barrier) -> None:
         live.recv()
 
 
-def ask_for_many(address: str, paths: list[str], id: str, count: int) -> None:
+def measure_requests(address: str, paths: list[str], id: str, count: int) -> None:
+    """Print the seconds for the requests of many pages at once, with a thread for each page."""
     start = Barrier(count + 1)
     with ThreadPoolExecutor(count) as pool:
-        asked = [pool.submit(ask_all, address, paths, id, start) for _ in range(count)]
+        asked = [pool.submit(request_all, address, paths, id, start) for _ in range(count)]
         start.wait()
         begun = time.perf_counter()
         for one in asked:
@@ -118,17 +121,17 @@ def ask_for_many(address: str, paths: list[str], id: str, count: int) -> None:
     print(f"{count} times all of the {len(paths)} answers that a page needs: {took:.1f} s")
 
 
-def answering(browsers: Browsers, service: Served, count: int) -> None:
-    """What the service does for many pages that open at once, without their browsers."""
+def measure_service(browsers: Browsers, service: Served, count: int) -> None:
+    """Print the seconds that the service needs for many pages at once, without their browsers."""
     id = service.create("Answers", mission(200, "umad"))
-    paths = asked_by_a_page(browsers, service, id)
-    asking = Process(target=ask_for_many, args=(service.address, paths, id, count))
+    paths = record_requests(browsers, service, id)
+    asking = Process(target=measure_requests, args=(service.address, paths, id, count))
     asking.start()
     asking.join()
 
 
-def line_of_text(browsers: Browsers, service: Served, count: int) -> None:
-    """What as many browsers take for a text: the least that any page could."""
+def measure_text_page(browsers: Browsers, service: Served, count: int) -> None:
+    """Print the seconds that many pages with a line of text take to open: a lower limit."""
     people = [browsers.person(f"http://{service.address}/api/service") for _ in range(count)]
     begun = time.perf_counter()
     for person in people:
@@ -137,17 +140,17 @@ def line_of_text(browsers: Browsers, service: Served, count: int) -> None:
         expect(person.page.locator("body")).to_be_visible()
     print(f"{count} pages with a line of text: {time.perf_counter() - begun:.1f} s")
     for person in people:
-        person.complaints.clear()
-    browsers.leave()
+        person.problems.clear()
+    browsers.close_windows()
 
 
-def hovering(browsers: Browsers, service: Served, site: str) -> None:
-    """The verdict under the pointer, and what it asks of the service."""
+def measure_hover(browsers: Browsers, service: Served, site: str) -> None:
+    """Print the duration (ms) of verdicts under the pointer, and the number of requests."""
     id = service.create("Ghost", mission(3, site))
     person = browsers.person(f"http://{service.address}/?token={ALL}")
     person.open(f"/missions/{id}")
-    rows_there(person)
-    person.idle()
+    wait_for_rows(person)
+    person.wait_for_scene()
     person.key("n")
     person.page.wait_for_timeout(3000)
     asked: list[str] = []
@@ -157,11 +160,11 @@ def hovering(browsers: Browsers, service: Served, site: str) -> None:
     for k in range(MOVES):
         x = box["x"] + box["width"] * (0.25 + 0.5 * k / MOVES)
         person.page.mouse.move(x, box["y"] + box["height"] * (0.4 + 0.3 * (k % 10) / 10))
-    took = sorted(person.ask("() => window.argo.figures().hover"))
+    took = sorted(person.evaluate("() => window.argo.figures().hover"))
     solids = sum(len(element.solids) for element in open_site(site).site.elements)
     last = took[int(0.95 * len(took))]
     print(f"{solids} solids: verdict p95 {last:.2f} ms of {len(took)}, {len(asked)} requests")
-    browsers.leave()
+    browsers.close_windows()
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -172,13 +175,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
     given = parser.parse_args(arguments)
     browsers = Browsers()
     with serving(given.large) as service:
-        hovering(browsers, service, given.large)
+        measure_hover(browsers, service, given.large)
     with serving("umad") as service:
         for count in given.tasks:
-            opening(browsers, service, count)
-        answering(browsers, service, given.pages)
-        line_of_text(browsers, service, given.pages)
-        many_pages(browsers, service, given.pages)
+            measure_opening(browsers, service, count)
+        measure_service(browsers, service, given.pages)
+        measure_text_page(browsers, service, given.pages)
+        measure_many_pages(browsers, service, given.pages)
     browsers.close()
 
 

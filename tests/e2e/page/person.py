@@ -1,4 +1,4 @@
-"""People at the page: real browsers, whose inputs are counted, and lines that can be cut."""
+"""People at the page: real browsers, whose inputs are counted, and connections that can be cut."""
 
 import os
 import shutil
@@ -34,39 +34,38 @@ _OPTIONS = [
     "--disable-sync",
 ]
 PATIENCE_S = 240
-"""after which a test gives up: far more than anything takes, also on a busy machine"""
+"""s after which a wait fails: far more than anything takes, also on a busy machine"""
 expect.set_options(timeout=1000 * PATIENCE_S)
 
-# Not the page's: what the browser says of its software renderer, and that a request was refused,
-# which the page shows as a message.
-_NOT_OURS = ("GL Driver Message", "Failed to load resource", "GPU stall")
+# Messages of the browser's software renderer, and of refused requests, which the page itself shows.
+_IGNORED_MESSAGES = ("GL Driver Message", "Failed to load resource", "GPU stall")
 
 
 @dataclass
 class Person:
-    """Somebody at the page in a browser of their own. Counts what they do with their hands."""
+    """Person at the page in a browser context of their own. Counts key presses and clicks."""
 
     page: Page
     context: BrowserContext
     address: str
     stays: bool = False
-    """whether the window is open from test to test"""
+    """True if the window stays open from test to test"""
     loaded_after: int | None = None
-    """how many tests had failed when the page was loaded in a window that stays"""
+    """number of failed tests when the page was loaded; None: not loaded in a window that stays"""
     inputs: int = 0
-    complaints: list[str] = field(default_factory=list)
-    """what the browser or the service found wrong"""
+    problems: list[str] = field(default_factory=list)
+    """errors of the page and the service, warnings of the browser, requests to other hosts"""
 
-    def open(self, place: str = "") -> None:
-        """Opens the page; `place` is what follows the `#`."""
-        self.page.goto(f"{self.address}{'#' + place if place else ''}")
+    def open(self, fragment: str = "") -> None:
+        """Load the page, with the address's fragment (what follows the `#`)."""
+        self.page.goto(f"{self.address}{'#' + fragment if fragment else ''}")
 
-    def go(self, place: str) -> None:
-        """Goes from what is open to another place, and the page is not loaded anew."""
-        self.ask("place => { location.hash = place }", place)
+    def go(self, fragment: str) -> None:
+        """Change the address's fragment without loading the page again."""
+        self.evaluate("fragment => { location.hash = fragment }", fragment)
 
     def click(self, target: Any, **options: Any) -> None:
-        """A click on what is named: a locator, or a point of the page."""
+        """Click on a locator or on a point of the page (x, y in px)."""
         self.inputs += 1
         if isinstance(target, tuple):
             self.page.mouse.click(*target, **options)
@@ -74,68 +73,76 @@ class Person:
             target.click(timeout=PATIENCE_S * 1000, **options)
 
     def key(self, *keys: str) -> None:
-        """One key after the other; a chord such as `Alt+ArrowUp` is one input."""
+        """Press keys one after the other; a chord such as `Alt+ArrowUp` counts as one input."""
         for key in keys:
             self.inputs += 1
             self.page.keyboard.press(key)
 
     def type(self, text: str) -> None:
-        """A text, of which each character is an input."""
+        """Type a text; each character counts as an input."""
         self.inputs += len(text)
         self.page.keyboard.type(text)
 
     def button(self, name: str, exact: bool = True) -> Any:
         return self.page.get_by_role("button", name=name, exact=exact).first
 
-    def focus(self, what: Any) -> None:
-        """Puts the focus on something, once it can have it."""
-        expect(what).to_be_enabled()
-        what.focus()
-        expect(what).to_be_focused()
+    def focus(self, target: Any) -> None:
+        """Focus a locator once it is enabled."""
+        expect(target).to_be_enabled()
+        target.focus()
+        expect(target).to_be_focused()
 
     @property
-    def saved(self) -> Any:
-        """Where the page says whether all is saved."""
+    def save_status(self) -> Any:
+        """Locator of the text that states if all edits are saved."""
         return self.page.locator("argo-topbar [role=status]")
 
-    def ask(self, expression: str, argument: Any = None) -> Any:
-        """What an expression of the page says."""
+    def evaluate(self, expression: str, argument: Any = None) -> Any:
+        """Evaluate a JavaScript expression in the page and return its value."""
         return self.page.evaluate(expression, argument)
 
-    def until(self, what: Callable[[], Any], said: str) -> Any:
-        """Waits until something is so."""
+    def wait_until(self, condition: Callable[[], Any], description: str) -> Any:
+        """Wait until a condition is true and return its value; fail after PATIENCE_S."""
         end = time.monotonic() + PATIENCE_S
-        while not (found := what()):
+        while not (result := condition()):
             if time.monotonic() > end:
-                pytest.fail(f"not in {PATIENCE_S} s: {said}")
+                pytest.fail(f"not within {PATIENCE_S} s: {description}")
             self.page.wait_for_timeout(20)
-        return found
+        return result
 
-    def idle(self) -> None:
-        """Waits until the scene has drawn all that there is."""
-        self.until(lambda: self.ask("() => window.argo?.idle() ?? false"), "the scene is idle")
+    def wait_for_scene(self) -> None:
+        """Wait until the scene has drawn everything."""
+        self.wait_until(
+            lambda: self.evaluate("() => window.argo?.idle() ?? false"), "the scene is idle"
+        )
 
-    def at(self, x: float, y: float, z: float) -> tuple[float, float]:
-        """Where a point of the site is in the window."""
-        found = self.ask("p => window.argo.project(...p)", [x, y, z])
-        return found["x"], found["y"]
+    def project(self, x: float, y: float, z: float) -> tuple[float, float]:
+        """Return where a point of the site (m) appears in the window (px)."""
+        point = self.evaluate("p => window.argo.project(...p)", [x, y, z])
+        return point["x"], point["y"]
 
-    def heard(self, message: ConsoleMessage) -> None:
-        if message.type in ("error", "warning") and not any(n in message.text for n in _NOT_OURS):
-            self.complaints.append(f"console: {message.text}")
+    def on_console(self, message: ConsoleMessage) -> None:
+        if message.type in ("error", "warning") and not any(
+            n in message.text for n in _IGNORED_MESSAGES
+        ):
+            self.problems.append(f"console: {message.text}")
 
-    def asked(self, request: Request) -> None:
+    def on_request(self, request: Request) -> None:
         host = urlsplit(request.url)
         if host.scheme in ("http", "https") and host.netloc != urlsplit(self.address).netloc:
-            self.complaints.append(f"another host was asked: {request.url}")
+            self.problems.append(f"request to another host: {request.url}")
 
 
 class Browsers:
-    """Chromium, and the people who use it."""
+    """Chromium, with the people who use it."""
 
     def __init__(self, scale: float = 1.0, scene: float | None = None) -> None:
-        """`scale`: px that are drawn for one of the page, `scene`: for one of the picture of the
-        site (None: as the page has it)."""
+        """Start Chromium.
+
+        Args:
+            scale: Pixels drawn for one px of the page.
+            scene: Pixels drawn for one px of the site's picture; None: as for the page.
+        """
         self._scale = scale
         self._scene = scene
         self._playwright = sync_playwright().start()
@@ -147,7 +154,7 @@ class Browsers:
     def person(
         self, address: str, name: str = "ann", stays: bool = False, **context: Any
     ) -> Person:
-        """Somebody new, who has not opened the page yet."""
+        """Return a new person, who has not opened the page yet."""
         options: dict[str, Any] = {
             "viewport": {"width": 1400, "height": 850},
             "locale": "en-GB",
@@ -155,43 +162,45 @@ class Browsers:
         }
         options |= context
         opened = self._browser.new_context(**options)
-        kept = (
+        set_author = (
             f"localStorage.getItem('argo.author') ?? localStorage.setItem('argo.author', '{name}')"
         )
-        opened.add_init_script(kept)
+        opened.add_init_script(set_author)
         if self._scene is not None:
-            told = f"Object.defineProperty(window, 'devicePixelRatio', {{ value: {self._scene} }})"
-            opened.add_init_script(told)
+            set_ratio = (
+                f"Object.defineProperty(window, 'devicePixelRatio', {{ value: {self._scene} }})"
+            )
+            opened.add_init_script(set_ratio)
         page = opened.new_page()
         page.set_default_timeout(PATIENCE_S * 1000)
         person = Person(page, opened, address, stays)
-        page.on("console", person.heard)
-        page.on("pageerror", lambda error: person.complaints.append(f"error: {error}"))
-        page.on("request", person.asked)
+        page.on("console", person.on_console)
+        page.on("pageerror", lambda error: person.problems.append(f"error: {error}"))
+        page.on("request", person.on_request)
         page.on(
             "response",
-            lambda r: r.status >= 500 and person.complaints.append(f"{r.status}: {r.url}"),
+            lambda r: r.status >= 500 and person.problems.append(f"{r.status}: {r.url}"),
         )
         self.people.append(person)
         return person
 
-    def leave(self) -> None:
-        """All but those who stay close their windows. What was complained of fails the test."""
-        complaints = [said for person in self.people for said in person.complaints]
+    def close_windows(self) -> None:
+        """Close the windows that do not stay; fail if anyone had problems."""
+        problems = [problem for person in self.people for problem in person.problems]
         for person in self.people:
-            person.complaints.clear()
+            person.problems.clear()
             if not person.stays:
                 person.context.close()
         self.people = [person for person in self.people if person.stays]
-        assert complaints == []
+        assert problems == []
 
     def close(self) -> None:
         self._browser.close()
         self._playwright.stop()
 
 
-class Line:
-    """A connection to a service that can be cut: a port of its own, behind which it is."""
+class Proxy:
+    """Proxy of a service whose connections can be cut; it has a port of its own."""
 
     def __init__(self, address: str) -> None:
         host, _, port = address.rpartition(":")
@@ -199,11 +208,11 @@ class Line:
         self._listening = socket.create_server(("127.0.0.1", 0))
         self.address = f"127.0.0.1:{self._listening.getsockname()[1]}"
         self._open: set[socket.socket] = set()
-        self._whole = threading.Event()
-        self._whole.set()
+        self._connected = threading.Event()
+        self._connected.set()
         threading.Thread(target=self._serve, daemon=True).start()
 
-    def __enter__(self) -> "Line":
+    def __enter__(self) -> "Proxy":
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -211,16 +220,16 @@ class Line:
         self.cut()
 
     def cut(self) -> None:
-        """All connections break, and no other is had."""
-        self._whole.clear()
+        """Break all connections and refuse new ones until `restore`."""
+        self._connected.clear()
         for one in list(self._open):
             with suppress(OSError):
                 one.shutdown(socket.SHUT_RDWR)
             one.close()
         self._open.clear()
 
-    def mend(self) -> None:
-        self._whole.set()
+    def restore(self) -> None:
+        self._connected.set()
 
     def _serve(self) -> None:
         while True:
@@ -228,7 +237,7 @@ class Line:
                 near, _ = self._listening.accept()
             except OSError:
                 return
-            if not self._whole.is_set():
+            if not self._connected.is_set():
                 near.close()
                 continue
             far = socket.create_connection(self._service)

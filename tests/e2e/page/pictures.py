@@ -1,5 +1,7 @@
-"""Makes the pictures of `docs/planner.md` from the real page:
-`python -m tests.e2e.page.pictures docs/images`."""
+"""Pictures of `docs/planner.md`, made from the real page.
+
+`python -m tests.e2e.page.pictures docs/images` writes them.
+"""
 
 import re
 import sys
@@ -17,83 +19,83 @@ from tests.e2e.page.person import Browsers, Person
 SCRIPT = Path(__file__).parents[3] / "scenarios" / "umad" / "missions" / "protocol_3.txt"
 
 
-def imported(service: Served) -> str:
-    """Import the mission of the pictures; return its id."""
+def import_mission(service: Served) -> str:
+    """Import the mission of the pictures and return its id."""
     return service.imported(SCRIPT.read_text(encoding="utf-8"), filename=SCRIPT.name)
 
 
-def opened(browsers: Browsers, service: Served, id: str, **context: Any) -> Person:
+def open_mission(browsers: Browsers, service: Served, id: str, **context: Any) -> Person:
     person = browsers.person(f"http://{service.address}/?token={ALL}", "Ann", **context)
     person.open(f"/missions/{id}")
     return person
 
 
-def settled(person: Person) -> None:
-    """Waits until the ways and the analysis are there and drawn."""
+def wait_for_analysis(person: Person) -> None:
+    """Wait until paths and the results of the analysis are drawn."""
     expect(person.page.locator("argo-strip")).to_contain_text("Time")
     person.page.wait_for_timeout(1500)
-    person.idle()
+    person.wait_for_scene()
 
 
-def take(person: Person, folder: Path, name: str) -> None:
+def take_picture(person: Person, folder: Path, name: str) -> None:
     path = folder / f"planner-{name}.png"
     person.page.screenshot(path=path)
     with Image.open(path) as picture:
-        fewer = picture.convert("RGB").quantize(256, dither=Image.Dither.NONE)
-    fewer.save(path, optimize=True)
+        quantized = picture.convert("RGB").quantize(256, dither=Image.Dither.NONE)
+    quantized.save(path, optimize=True)
     print(path)
 
 
-def planning(browsers: Browsers, service: Served, folder: Path) -> None:
-    id = imported(service)
+def picture_planning(browsers: Browsers, service: Served, folder: Path) -> None:
+    id = import_mission(service)
     for theme in ("light", "dark"):
-        ann = opened(browsers, service, id, color_scheme=theme)
-        settled(ann)
-        take(ann, folder, theme)
-        browsers.leave()
-    ann = opened(browsers, service, id)
+        ann = open_mission(browsers, service, id, color_scheme=theme)
+        wait_for_analysis(ann)
+        take_picture(ann, folder, theme)
+        browsers.close_windows()
+    ann = open_mission(browsers, service, id)
     ann.page.get_by_role("treeitem").nth(2).click()
-    settled(ann)
-    take(ann, folder, "form")
+    wait_for_analysis(ann)
+    take_picture(ann, folder, "form")
     ann.page.locator("argo-scene").get_by_role("radio", name=re.compile("Floor 1")).click()
-    ann.idle()
+    ann.wait_for_scene()
     ann.key("n")
-    ann.page.mouse.move(*ann.at(3.05, 4.0, 0.0))
+    ann.page.mouse.move(*ann.project(3.05, 4.0, 0.0))
     ann.page.wait_for_timeout(1500)
-    ann.idle()
-    take(ann, folder, "ghost")
-    browsers.leave()
+    ann.wait_for_scene()
+    take_picture(ann, folder, "ghost")
+    browsers.close_windows()
 
 
-def running(browsers: Browsers, service: Served, folder: Path) -> None:
-    id = imported(service)
-    ann = opened(browsers, service, id)
-    ann.idle()
+def picture_run(browsers: Browsers, service: Served, folder: Path) -> None:
+    id = import_mission(service)
+    ann = open_mission(browsers, service, id)
+    ann.wait_for_scene()
     ann.page.get_by_role("tab", name="Run").click()
     ann.page.locator("argo-run").get_by_role("button", name="Start the run", exact=True).click()
     expect(ann.page.locator("#speed")).to_be_visible()
     ann.page.locator("#speed").select_option("10")
-    ann.until(
-        lambda: service.client.get("/api/runs").json()["runs"][0]["readings"], "something is read"
+    ann.wait_until(
+        lambda: service.client.get("/api/runs").json()["runs"][0]["readings"], "there is a reading"
     )
     ann.page.wait_for_timeout(500)
-    take(ann, folder, "run")
-    phone = opened(browsers, service, id, viewport={"width": 400, "height": 850})
+    take_picture(ann, folder, "run")
+    phone = open_mission(browsers, service, id, viewport={"width": 400, "height": 850})
     phone.page.locator("#tab-run").click()
     expect(phone.page.locator("argo-scene .loading")).to_be_hidden()
     phone.page.wait_for_timeout(3000)
-    take(phone, folder, "phone")
+    take_picture(phone, folder, "phone")
     ann.page.locator("argo-run").get_by_role("button", name="Take over", exact=True).click()
     give_back = ann.page.locator("argo-run").get_by_role("button", name="Give back", exact=True)
     expect(give_back).to_be_enabled()
-    take(ann, folder, "taken-over")
-    browsers.leave()
+    take_picture(ann, folder, "taken-over")
+    browsers.close_windows()
 
 
-def evaluating(browsers: Browsers, service: Served, folder: Path) -> None:
-    id = imported(service)
-    ann = opened(browsers, service, id)
-    settled(ann)
+def picture_evaluation(browsers: Browsers, service: Served, folder: Path) -> None:
+    id = import_mission(service)
+    ann = open_mission(browsers, service, id)
+    wait_for_analysis(ann)
     page = ann.page
     page.locator("#tab-evaluate").click()
     page.locator("argo-evaluate-start summary").click()
@@ -106,22 +108,22 @@ def evaluating(browsers: Browsers, service: Served, folder: Path) -> None:
     page.locator("argo-evaluate-start summary").click()
     expect(page.locator("#rate")).to_be_visible()
     expect(result).to_have_attribute("data-state", "done", timeout=600_000)
-    ann.idle()
-    take(ann, folder, "evaluated")
+    ann.wait_for_scene()
+    take_picture(ann, folder, "evaluated")
     page.locator("#failing button").first.click()
     expect(page.locator("#evaluated")).to_be_visible()
-    ann.idle()
-    take(ann, folder, "replayed")
-    browsers.leave()
+    ann.wait_for_scene()
+    take_picture(ann, folder, "replayed")
+    browsers.close_windows()
 
 
 def main(folder: Path) -> None:
     site = open_site("umad").prepare()
     with tempfile.TemporaryDirectory() as missions, served(Path(missions), site) as service:
         browsers = Browsers()
-        planning(browsers, service, folder)
-        evaluating(browsers, service, folder)
-        running(browsers, service, folder)
+        picture_planning(browsers, service, folder)
+        picture_evaluation(browsers, service, folder)
+        picture_run(browsers, service, folder)
         browsers.close()
 
 

@@ -1,4 +1,4 @@
-"""For everyone: axe finds nothing serious, in both themes and languages, wide and narrow."""
+"""Accessibility: axe finds no serious violations, in both themes and languages, wide and narrow."""
 
 from pathlib import Path
 from typing import Any
@@ -18,36 +18,35 @@ THEME = "() => document.documentElement.dataset.theme"
 
 
 def require_accessible(person: Person, where: str) -> None:
-    """Assert that axe finds nothing serious or critical in either theme."""
-    if not person.ask("() => 'axe' in window"):
-        person.ask(AXE.read_text(encoding="utf-8"))
-    theme = person.ask(THEME)
-    require_nothing_serious(person, where)
+    """Assert that axe finds no serious or critical violation in either theme."""
+    if not person.evaluate("() => 'axe' in window"):
+        person.evaluate(AXE.read_text(encoding="utf-8"))
+    theme = person.evaluate(THEME)
+    require_no_violations(person, where)
     change_theme(person)
-    assert person.ask(THEME) != theme
-    require_nothing_serious(person, f"{where}, in the other theme")
+    assert person.evaluate(THEME) != theme
+    require_no_violations(person, f"{where}, in the other theme")
     change_theme(person)
-    assert person.ask(THEME) == theme
+    assert person.evaluate(THEME) == theme
 
 
 def change_theme(person: Person) -> None:
-    """Press the button that changes the theme, without the focus or the pointer that go with a
-    real press."""
+    """Press the button that changes the theme, without moving the focus or the pointer."""
     names = ("Dark colours", "Light colours", "Dunkle Farben", "Helle Farben")
     button = person.page.locator(",".join(f"argo-topbar [aria-label='{name}']" for name in names))
     button.evaluate("button => button.click()")
-    # The page's style, and then what has changed in it, follow with the next frames.
-    person.ask("() => new Promise((done) => requestAnimationFrame(() => setTimeout(done)))")
+    # The page takes on the new style within the next frames.
+    person.evaluate("() => new Promise((done) => requestAnimationFrame(() => setTimeout(done)))")
 
 
-def require_nothing_serious(person: Person, where: str) -> None:
-    """Assert that axe finds nothing serious or critical in what is shown."""
-    found: list[dict[str, Any]] = person.ask(
+def require_no_violations(person: Person, where: str) -> None:
+    """Assert that axe finds no serious or critical violation in the current theme."""
+    violations: list[dict[str, Any]] = person.evaluate(
         "() => axe.run(document, { resultTypes: ['violations'] }).then(r => r.violations)"
     )
     serious = [
         (one["id"], node["target"], node.get("failureSummary"))
-        for one in found
+        for one in violations
         if one["impact"] in ("serious", "critical")
         for node in one["nodes"]
     ]
@@ -59,11 +58,11 @@ def test_planning_is_accessible(browsers, address, plan, locale, theme) -> None:
     ann = browsers.person(address, locale=locale, color_scheme=theme)
     ann.open()
     expect(ann.page.locator("argo-home button.main")).to_be_enabled()
-    assert ann.ask(THEME) == theme
+    assert ann.evaluate(THEME) == theme
     require_accessible(ann, "the list of missions")
     ann.open(f"/missions/{plan}")
     ann.click(row(ann, "A1"))
-    ann.idle()
+    ann.wait_for_scene()
     require_accessible(ann, "planning")
     for panel in ("script", "route", "evaluate", "run"):
         ann.click(ann.page.locator(f"#tab-{panel}"))
@@ -74,21 +73,21 @@ def test_planning_is_accessible(browsers, address, plan, locale, theme) -> None:
     ann.page.locator("select[name=drive]").select_option("kinematic")
     ann.page.locator("argo-evaluate-start select[name=worlds]").select_option("20")
     ann.page.locator("input[name=require]").fill("50")
-    require_accessible(ann, "what is asked of an evaluation")
+    require_accessible(ann, "the settings of an evaluation")
     ann.page.locator("select[name=drive]").select_option("route")
     ann.click(ann.page.locator("argo-evaluate-start argo-faults button"))
     ann.click(ann.page.locator("#evaluate"))
     result = ann.page.locator("argo-evaluate-result section")
     expect(result).to_have_attribute("data-state", "done")
-    require_accessible(ann, "what came of an evaluation")
+    require_accessible(ann, "the results of an evaluation")
     ann.key("?")
-    require_accessible(ann, "the sheet of keys")
+    require_accessible(ann, "the overview of keyboard shortcuts")
 
 
-def test_a_phone_shows_the_run(browsers, address, plan) -> None:
+def test_a_run_on_a_phone_is_accessible(browsers, address, plan) -> None:
     ann = browsers.person(address, viewport={"width": 400, "height": 800})
     ann.open(f"/missions/{plan}")
     ann.click(ann.page.locator("#tab-run"))
-    ann.idle()
+    ann.wait_for_scene()
     require_accessible(ann, "a phone")
-    assert ann.ask("() => document.documentElement.scrollWidth") <= 400
+    assert ann.evaluate("() => document.documentElement.scrollWidth") <= 400

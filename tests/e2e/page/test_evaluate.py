@@ -1,4 +1,4 @@
-"""The evaluation of the mission in the page: begun, watched, ended, its failures replayed."""
+"""Evaluations in the page: started, watched, stopped, and their failed runs replayed."""
 
 import re
 from typing import Any
@@ -6,15 +6,15 @@ from typing import Any
 import pytest
 from playwright.sync_api import expect
 
-from tests.e2e.page.test_list import at, plan, row
+from tests.e2e.page.test_list import open_mission, plan, row
 
 pytestmark = pytest.mark.long
 
 __all__ = ["plan"]
 
 
-def opened(browsers: Any, address: str, plan: str) -> Any:
-    person = at(browsers, address, plan)
+def open_evaluation(browsers: Any, address: str, plan: str) -> Any:
+    person = open_mission(browsers, address, plan)
     person.page.locator("#tab-evaluate").click()
     return person
 
@@ -23,14 +23,16 @@ def jobs(service: Any) -> Any:
     return service.client.get("/api/jobs").json()["jobs"]
 
 
-def runs_in(done: Any) -> int:
-    """How many runs have ended, as the page says."""
+def ended_runs(done: Any) -> int:
+    """Return the number of ended runs that the page shows."""
     return int(done.inner_text().split(" ")[0].replace(",", ""))
 
 
-def test_rates_close_in_and_a_failing_run_is_replayed(browsers, address, plan, service) -> None:
-    ann = opened(browsers, address, plan)
-    bob = opened(browsers, address, plan)
+def test_an_evaluation_shows_its_rate_and_replays_a_failed_run(
+    browsers, address, plan, service
+) -> None:
+    ann = open_evaluation(browsers, address, plan)
+    bob = open_evaluation(browsers, address, plan)
     page = ann.page
     page.get_by_text("Evaluation settings").click()
     page.get_by_label("Charge at the start (%), from").fill("0.1")
@@ -49,7 +51,7 @@ def test_rates_close_in_and_a_failing_run_is_replayed(browsers, address, plan, s
     kind = "valid although the requirement decides when to stop"
     expect(page.locator("#kind")).to_contain_text(kind)
     expect(bob.page.locator("#rate")).to_have_text(page.locator("#rate").inner_text())
-    # What had happened by then is there when the page is read again.
+    # A reloaded page shows the same evaluation.
     page.reload()
     expect(row(ann, "C4")).to_be_visible()
     page.locator("#tab-evaluate").click()
@@ -58,8 +60,8 @@ def test_rates_close_in_and_a_failing_run_is_replayed(browsers, address, plan, s
     key = first.get_attribute("data-key")
     (failed,) = (one for one in standing["failing"] if one["key"] == key)
     ann.click(first)
-    told = page.locator("#evaluated")
-    expect(told).to_contain_text(f"world {failed['seed']}")
+    replayed = page.locator("#evaluated")
+    expect(replayed).to_contain_text(f"world {failed['seed']}")
     band = page.locator("argo-run-band #mode")
     expect(band).to_have_attribute("data-mode", "bad")
     expect(band).to_contain_text(failed["reason"])
@@ -67,15 +69,15 @@ def test_rates_close_in_and_a_failing_run_is_replayed(browsers, address, plan, s
     expect(page.locator("argo-run a", has_text="report")).to_have_count(0)
     ann.click(page.locator("#to-evaluation"))
     expect(page.locator("#failing")).to_be_visible()
-    # Who takes the robot over sees the robot, and not the replay.
+    # Whoever takes over the robot sees the run and not the replay.
     begun = service.run(plan, speed=1.0)
     assert begun.status_code in (201, 202), begun.text
     expect(page.locator("argo-run-badge")).to_contain_text("Driving autonomously")
     page.locator("#tab-evaluate").click()
     ann.click(first)
-    expect(told).to_be_visible()
+    expect(replayed).to_be_visible()
     ann.key("F9")
-    expect(told).to_have_count(0)
+    expect(replayed).to_have_count(0)
     expect(page.locator("argo-run-band")).to_contain_text("You control the robot")
     stopped = service.post(f"/api/runs/{begun.json()['id']}/requests", kind="stop", id="end")
     assert stopped.status_code == 202, stopped.text
@@ -89,8 +91,8 @@ def test_rates_close_in_and_a_failing_run_is_replayed(browsers, address, plan, s
     report.close()
 
 
-def test_an_evaluation_is_ended_and_goes_on(browsers, address, plan, service) -> None:
-    ann = opened(browsers, address, plan)
+def test_an_evaluation_is_stopped_and_resumed(browsers, address, plan, service) -> None:
+    ann = open_evaluation(browsers, address, plan)
     page = ann.page
     page.locator("argo-evaluate-start select[name=worlds]").select_option("10000")
     ann.click(page.locator("#evaluate"))
@@ -98,9 +100,9 @@ def test_an_evaluation_is_ended_and_goes_on(browsers, address, plan, service) ->
     begin = page.locator("#evaluate")
     expect(begin).to_have_attribute("aria-disabled", "true")
     expect(page.locator("#why-not")).to_contain_text("is running: wait for it, or stop it")
-    # Another mission can't be evaluated meanwhile, and leads here.
+    # Another mission can't be evaluated meanwhile; its page links to the running evaluation.
     other = service.post(f"/api/missions/{plan}/duplicate", name="another one").json()["id"]
-    bob = opened(browsers, address, other)
+    bob = open_evaluation(browsers, address, other)
     expect(bob.page.locator("#why-not")).to_contain_text("is being evaluated, started by")
     bob.click(bob.page.locator("#why-not a"))
     expect(bob.page.locator("#rate")).to_be_visible()
@@ -112,18 +114,18 @@ def test_an_evaluation_is_ended_and_goes_on(browsers, address, plan, service) ->
     expect(page.locator("#kind")).to_contain_text("valid for any reason to stop")
     expect(page.get_by_role("link", name="Report with all tables and pictures")).to_be_visible()
     expect(begin).to_have_attribute("aria-disabled", "false")
-    before = runs_in(done)
+    before = ended_runs(done)
     ann.click(page.locator("#go-on"))
     expect(result).to_have_attribute("data-state", "running")
-    assert runs_in(done) >= before
+    assert ended_runs(done) >= before
     ann.click(page.locator("#cancel"))
     expect(result).to_have_attribute("data-state", "cancelled")
-    assert runs_in(done) >= before
-    # By somebody else, in another way.
+    assert ended_runs(done) >= before
+    # Another evaluation, started by another client.
     service.post(f"/api/missions/{plan}/evaluations", "*", worlds=3).raise_for_status()
     expect(page.locator("#done")).to_have_text("3 of 3 runs")
     expect(result).to_contain_text("No run failed.")
-    # The one before can still be looked at, and deleted.
+    # The previous one can still be viewed and deleted.
     which = page.locator("#which")
     expect(which.locator("option")).to_have_count(2)
     which.select_option(index=1)
@@ -134,9 +136,11 @@ def test_an_evaluation_is_ended_and_goes_on(browsers, address, plan, service) ->
     assert len([one for one in jobs(service) if one["mission"] == plan]) == 1
 
 
-def test_ranges_that_make_no_sense_are_told_at_once(browsers, address, plan, service) -> None:
+def test_invalid_ranges_are_reported_before_an_evaluation_starts(
+    browsers, address, plan, service
+) -> None:
     before = len(jobs(service))
-    ann = opened(browsers, address, plan)
+    ann = open_evaluation(browsers, address, plan)
     page = ann.page
     page.get_by_text("Evaluation settings").click()
     expect(page.get_by_label("Also without faults")).to_be_hidden()

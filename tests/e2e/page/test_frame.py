@@ -1,4 +1,4 @@
-"""Around the mission: the list of missions, import, names, the bin, people without the right."""
+"""The frame of the page: list of missions, import, names, deletion, rights, languages, focus."""
 
 import json
 from pathlib import Path
@@ -12,9 +12,9 @@ HOSTILE = '"><img src=x onerror=alert(1)>{{7*7}}${7*7}'
 SCRIPT = Path(__file__).parents[3] / "scenarios" / "umad" / "missions" / "mission_1.txt"
 
 
-def test_a_mission_is_made_named_deleted_and_taken_back(ann, service) -> None:
+def test_a_mission_is_created_renamed_deleted_and_restored(ann, service) -> None:
     ann.click(ann.button("New mission"))
-    expect(ann.saved).to_have_text("Saved")
+    expect(ann.save_status).to_have_text("Saved")
     ann.click(ann.page.get_by_title("Rename the mission"))
     ann.page.keyboard.type("Night round")
     ann.key("Enter")
@@ -29,18 +29,18 @@ def test_a_mission_is_made_named_deleted_and_taken_back(ann, service) -> None:
 
 
 @pytest.mark.long
-def test_a_script_that_leaves_its_areas_open_asks_for_them(ann, service) -> None:
+def test_the_import_asks_for_areas_that_a_script_does_not_name(ann, service) -> None:
     ann.page.set_input_files("#file", SCRIPT)
     ann.page.get_by_label("Start area").select_option("1")
     ann.page.get_by_label("End area").select_option("2")
     ann.click(ann.button("Import"))
-    expect(ann.saved).to_have_text("Saved")
+    expect(ann.save_status).to_have_text("Saved")
     id = ann.page.url.rpartition("/")[2]
     mission = service.mission(id)
     assert (mission["start_area"], mission["end_area"]) == (1, 2)
 
 
-def test_a_script_that_is_wrong_says_where(ann, tmp_path) -> None:
+def test_a_script_with_an_error_is_refused_with_its_message(ann, tmp_path) -> None:
     wrong = tmp_path / "wrong.txt"
     wrong.write_text("Steps\n1. Measure checkpoint 4711\n", encoding="utf-8")
     ann.page.set_input_files("#file", wrong)
@@ -62,7 +62,7 @@ def test_hostile_names_are_text(ann, service) -> None:
 
 
 @pytest.mark.long
-def test_who_may_only_look_can_change_nothing(browsers, service) -> None:
+def test_viewers_can_not_edit(browsers, service) -> None:
     id = service.create("For looking")
     viewer = browsers.person(f"http://{service.address}/?token={SECRETS['view']}")
     viewer.open(f"/missions/{id}")
@@ -72,21 +72,21 @@ def test_who_may_only_look_can_change_nothing(browsers, service) -> None:
     expect(viewer.page.get_by_label("Designation")).to_be_disabled()
 
 
-def test_the_policy_of_the_page_lets_nothing_in(ann) -> None:
+def test_the_content_security_policy_has_no_unsafe_sources(ann) -> None:
     response = ann.page.request.get(ann.address)
     policy = response.headers["content-security-policy"]
     assert "unsafe-eval" not in policy
     assert "unsafe-inline" not in policy.partition("script-src")[2].partition(";")[0]
 
 
-def test_the_sheet_of_keys_opens_and_closes(ann) -> None:
+def test_the_overview_of_shortcuts_opens_and_closes(ann) -> None:
     ann.key("?")
     expect(ann.page.get_by_role("dialog")).to_contain_text("navigation tool")
     ann.key("Escape")
     expect(ann.page.get_by_role("dialog")).to_have_count(0)
 
 
-def test_german_is_spoken_where_the_browser_does(browsers, address) -> None:
+def test_the_page_is_german_in_a_german_browser(browsers, address) -> None:
     otto = browsers.person(address, "otto", locale="de-DE")
     otto.open()
     expect(otto.button("Neue Mission")).to_be_visible()
@@ -97,15 +97,15 @@ POSE = json.loads('{"x": 3.05, "y": 1.55, "z": 0.0, "yaw": 0.0}')
 
 @pytest.mark.long
 def test_the_focus_is_never_lost(ann) -> None:
-    """Where what has the focus goes, it goes to what is beside it."""
+    """If the focused element disappears, the focus moves to one beside it."""
     focused = """() => {
         let at = document.activeElement;
         while (at?.shadowRoot?.activeElement) at = at.shadowRoot.activeElement;
         return at?.getAttribute("aria-label") ?? at?.textContent.trim() ?? "";
     }"""
 
-    def expect_focus(said: str) -> None:
-        ann.until(lambda: said in ann.ask(focused), f"the focus is on {said}")
+    def expect_focus(label: str) -> None:
+        ann.wait_until(lambda: label in ann.evaluate(focused), f"the focus is on {label}")
 
     ann.focus(ann.button("New mission"))
     ann.key("Enter")
@@ -126,7 +126,7 @@ def test_the_focus_is_never_lost(ann) -> None:
     expect_focus("Mission: copy")
     ann.focus(ann.page.get_by_role("tree"))
     for _ in range(2):
-        ann.key("Control+v")  # nothing that could be pasted
+        ann.key("Control+v")  # nothing has been copied that could be pasted
         expect(ann.page.locator("argo-notices article")).to_have_count(1)
         ann.focus(ann.button("Dismiss"))
         ann.key("Enter")

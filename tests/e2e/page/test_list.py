@@ -1,4 +1,4 @@
-"""The list of tasks and its forms, by mouse and by keys."""
+"""The list of tasks and its forms, with mouse and keyboard."""
 
 import re
 from itertools import pairwise
@@ -15,7 +15,7 @@ DOCK = {"x": 3.05, "y": -2.55, "z": -0.03, "yaw": 3.141592653589793}
 
 @pytest.fixture
 def plan(service: Served) -> str:
-    """A mission with a start and three tasks."""
+    """Return the id of a mission with a start and three tasks."""
     id = service.create("Round")
     tasks: list[dict[str, Any]] = [{"name": "START", "action": "START", "pose": DOCK}]
     tasks += [{"name": n, "action": "MEASURE", "object_id": n[-1]} for n in ("A1", "B2", "C4")]
@@ -25,27 +25,29 @@ def plan(service: Served) -> str:
 
 
 @pytest.fixture
-def ann(resident, plan) -> Person:
-    resident.go(f"/missions/{plan}")
-    expect_open(resident)
-    return resident
+def ann(shared_person, plan) -> Person:
+    shared_person.go(f"/missions/{plan}")
+    expect_open(shared_person)
+    return shared_person
 
 
-def at(browsers: Any, address: str, plan: str, name: str = "ann", **context: Any) -> Person:
-    """Open the mission of the plan for somebody, in a window of their own."""
-    found: Person = browsers.person(address, name, **context)
-    found.open(f"/missions/{plan}")
-    expect_open(found)
-    return found
+def open_mission(
+    browsers: Any, address: str, plan: str, name: str = "ann", **context: Any
+) -> Person:
+    """Return a person who has opened the mission, in a window of their own."""
+    person: Person = browsers.person(address, name, **context)
+    person.open(f"/missions/{plan}")
+    expect_open(person)
+    return person
 
 
 def expect_open(person: Person) -> None:
-    """Wait until the four tasks are there and can be edited."""
+    """Wait until the four tasks are shown and can be edited."""
     expect(person.page.get_by_role("treeitem")).to_have_count(4)
     expect(person.button("Add")).to_be_enabled()
 
 
-def tasks(service: Served, plan: str) -> list[str]:
+def task_names(service: Served, plan: str) -> list[str]:
     return [task["name"] for task in service.mission(plan)["tasks"]]
 
 
@@ -53,8 +55,8 @@ def row(person: Person, name: str) -> Any:
     return person.page.get_by_role("treeitem").filter(has_text=re.compile(rf"^\s*{name}"))
 
 
-def order(person: Person, *names: str) -> None:
-    """Waits until the list shows these rows."""
+def expect_order(person: Person, *names: str) -> None:
+    """Wait until the list shows these rows."""
     expect(person.page.locator("argo-list [role=treeitem] .names > :first-child")).to_have_text(
         list(names)
     )
@@ -67,7 +69,7 @@ def test_checkpoints_are_added_by_keys_one_after_the_other(ann, service, plan) -
     for number in ("14", "2"):
         ann.type(number)
         ann.key("Enter")
-    order(ann, "START", "A1", "B2", "C4", "MEASURE 14", "MEASURE 2")
+    expect_order(ann, "START", "A1", "B2", "C4", "MEASURE 14", "MEASURE 2")
     expect(row(ann, "MEASURE 2")).to_have_attribute("aria-selected", "true")
     ann.key("Escape", "ArrowUp")
     expect(row(ann, "MEASURE 14")).to_have_attribute("aria-selected", "true")
@@ -78,18 +80,18 @@ def test_checkpoints_are_added_by_keys_one_after_the_other(ann, service, plan) -
 def test_tasks_are_moved_by_keys_even_when_they_are_pressed_fast(ann, service, plan) -> None:
     ann.click(row(ann, "C4"))
     ann.key("Alt+ArrowUp", "Alt+ArrowUp")
-    order(ann, "START", "C4", "A1", "B2")
+    expect_order(ann, "START", "C4", "A1", "B2")
     ann.key("Alt+ArrowDown")
-    order(ann, "START", "A1", "C4", "B2")
-    assert tasks(service, plan) == ["START", "A1", "C4", "B2"]
+    expect_order(ann, "START", "A1", "C4", "B2")
+    assert task_names(service, plan) == ["START", "A1", "C4", "B2"]
 
 
 @pytest.mark.long
-def test_a_group_is_made_left_entered_and_moved_as_a_whole(ann, service, plan) -> None:
+def test_a_group_is_created_left_entered_and_moved_as_a_whole(ann, service, plan) -> None:
     ann.click(row(ann, "A1"))
     ann.click(row(ann, "B2"), modifiers=["Shift"])
     ann.key("g")
-    order(ann, "START", "Round", "A1", "B2", "C4")
+    expect_order(ann, "START", "Round", "A1", "B2", "C4")
     ann.click(row(ann, "C4"))
     ann.key("Alt+ArrowRight")
     group = expect(row(ann, "Round"))
@@ -98,51 +100,51 @@ def test_a_group_is_made_left_entered_and_moved_as_a_whole(ann, service, plan) -
     group.to_contain_text("2 tasks")
     ann.click(row(ann, "Round"))
     ann.key("Alt+ArrowDown")
-    order(ann, "START", "C4", "Round", "A1", "B2")
-    found = service.mission(plan)["groups"]
-    assert [(g["name"], g["start"], g["end"]) for g in found] == [("Round", "A1", "B2")]
+    expect_order(ann, "START", "C4", "Round", "A1", "B2")
+    groups = service.mission(plan)["groups"]
+    assert [(g["name"], g["start"], g["end"]) for g in groups] == [("Round", "A1", "B2")]
     ann.key("ArrowLeft")
-    order(ann, "START", "C4", "Round")
+    expect_order(ann, "START", "C4", "Round")
     ann.key("ArrowRight")
-    order(ann, "START", "C4", "Round", "A1", "B2")
+    expect_order(ann, "START", "C4", "Round", "A1", "B2")
 
 
 @pytest.mark.long
-def test_a_group_folds_though_a_task_in_it_is_selected(ann) -> None:
+def test_a_group_with_a_selected_task_can_be_folded(ann) -> None:
     ann.click(row(ann, "B2"))
     ann.key("g", "Escape")
-    order(ann, "START", "A1", "Round", "B2", "C4")
+    expect_order(ann, "START", "A1", "Round", "B2", "C4")
     ann.click(row(ann, "B2"))
     ann.click(row(ann, "Round").locator(".fold"))
-    order(ann, "START", "A1", "Round", "C4")
+    expect_order(ann, "START", "A1", "Round", "C4")
     ann.click(row(ann, "Round").locator(".fold"))
-    order(ann, "START", "A1", "Round", "B2", "C4")
+    expect_order(ann, "START", "A1", "Round", "B2", "C4")
 
 
 @pytest.mark.long
 def test_several_tasks_are_dragged_at_once_into_a_group(ann, service, plan) -> None:
     ann.click(row(ann, "C4"))
     ann.key("g")
-    order(ann, "START", "A1", "B2", "Round", "C4")
+    expect_order(ann, "START", "A1", "B2", "Round", "C4")
     ann.click(row(ann, "A1"))
     ann.click(row(ann, "B2"), modifiers=["Shift"])
     row(ann, "A1").drag_to(row(ann, "C4"), target_position={"x": 80, "y": 40})
-    order(ann, "START", "Round", "C4", "A1", "B2")
+    expect_order(ann, "START", "Round", "C4", "A1", "B2")
     (group,) = service.mission(plan)["groups"]
     assert (group["start"], group["end"]) == ("C4", "B2")
 
 
 @pytest.mark.long
-def test_what_was_done_is_undone_and_done_again(ann) -> None:
+def test_edits_are_undone_and_redone(ann) -> None:
     ann.click(row(ann, "B2"))
     ann.key("Delete")
-    order(ann, "START", "A1", "C4")
+    expect_order(ann, "START", "A1", "C4")
     ann.key("Control+z")
-    order(ann, "START", "A1", "B2", "C4")
+    expect_order(ann, "START", "A1", "B2", "C4")
     ann.key("Control+y")
-    order(ann, "START", "A1", "C4")
+    expect_order(ann, "START", "A1", "C4")
     ann.click(ann.button("Undo"))
-    order(ann, "START", "A1", "B2", "C4")
+    expect_order(ann, "START", "A1", "B2", "C4")
 
 
 @pytest.mark.long
@@ -150,11 +152,11 @@ def test_tasks_are_copied_and_pasted(ann) -> None:
     ann.context.grant_permissions(["clipboard-read", "clipboard-write"])
     ann.click(row(ann, "A1"))
     ann.key("Control+c", "End", "Control+v")
-    order(ann, "START", "A1", "B2", "C4", "A1 (2)")
+    expect_order(ann, "START", "A1", "B2", "C4", "A1 (2)")
 
 
 @pytest.mark.long
-def test_a_group_is_copied_with_what_it_says(ann, service, plan) -> None:
+def test_a_group_is_copied_with_its_settings(ann, service, plan) -> None:
     ann.context.grant_permissions(["clipboard-read", "clipboard-write"])
     ann.click(row(ann, "A1"))
     ann.click(row(ann, "B2"), modifiers=["Shift"])
@@ -162,24 +164,24 @@ def test_a_group_is_copied_with_what_it_says(ann, service, plan) -> None:
     rounds = ann.page.get_by_label("Rounds")
     rounds.fill("3")
     rounds.press("Enter")
-    ann.until(lambda: service.mission(plan)["groups"][0]["max_repeat_count"] == 3, "3 rounds")
-    expect(ann.saved).to_have_text("Saved")
+    ann.wait_until(lambda: service.mission(plan)["groups"][0]["max_repeat_count"] == 3, "3 rounds")
+    expect(ann.save_status).to_have_text("Saved")
     ann.click(row(ann, "Round"))
     ann.key("Control+c", "Control+v")
-    order(ann, "START", "Round", "A1", "B2", "Round (2)", "A1 (2)", "B2 (2)", "C4")
+    expect_order(ann, "START", "Round", "A1", "B2", "Round (2)", "A1 (2)", "B2 (2)", "C4")
     groups = service.mission(plan)["groups"]
     assert [group["max_repeat_count"] for group in groups] == [3, 3]
 
 
 @pytest.mark.long
-def test_a_task_is_renamed_in_its_place_once(ann, service, plan) -> None:
+def test_a_task_is_renamed_in_its_row_with_one_edit(ann, service, plan) -> None:
     before = service.client.get(f"/api/missions/{plan}").json()["revision"]
     ann.click(row(ann, "B2"))
     ann.key("F2", "Control+a")
     ann.type("Pump")
     ann.key("Enter")
-    order(ann, "START", "A1", "Pump", "C4")
-    assert ann.ask("() => document.activeElement.tagName") == "ARGO-APP"
+    expect_order(ann, "START", "A1", "Pump", "C4")
+    assert ann.evaluate("() => document.activeElement.tagName") == "ARGO-APP"
     assert service.client.get(f"/api/missions/{plan}").json()["revision"] == before + 1
     expect(ann.page.locator("argo-notices article")).to_have_count(0)
     ann.key("ArrowDown")
@@ -197,26 +199,26 @@ def test_a_name_that_is_refused_stays_in_the_field(ann) -> None:
     expect(field).to_have_value("C4")
     expect(field).to_be_focused()
     ann.key("Escape")
-    order(ann, "START", "A1", "B2", "C4")
+    expect_order(ann, "START", "A1", "B2", "C4")
     ann.key("Escape")
     expect(ann.page.locator("argo-notices article")).to_have_count(0)
     expect(row(ann, "B2")).to_have_attribute("aria-selected", "true")
 
 
 @pytest.mark.long
-def test_a_place_is_a_waypoint_where_something_is_planned(ann, service, plan) -> None:
+def test_a_place_added_after_other_tasks_is_a_waypoint(ann, service, plan) -> None:
     gone = {"kind": "remove_task", "name": "START"}
     assert service.command(plan, "*", gone).status_code == 200
-    order(ann, "A1", "B2", "C4")
+    expect_order(ann, "A1", "B2", "C4")
     ann.click(row(ann, "C4"))
     ann.key("w")
     ann.type("dock")
     ann.key("Enter")
-    order(ann, "A1", "B2", "C4", "DOCK")
+    expect_order(ann, "A1", "B2", "C4", "DOCK")
     assert service.mission(plan)["tasks"][-1]["action"] == "WAYPOINT"
 
 
-def test_a_form_takes_times_as_people_write_them(ann, service, plan) -> None:
+def test_a_form_accepts_durations_with_units_and_refuses_other_text(ann, service, plan) -> None:
     ann.key("Escape")
     field = ann.page.get_by_label("Maximum duration")
     field.fill("soon")
@@ -231,7 +233,7 @@ def test_a_form_takes_times_as_people_write_them(ann, service, plan) -> None:
 
 
 @pytest.mark.long
-def test_a_condition_is_made_in_the_form(ann, service, plan) -> None:
+def test_a_condition_is_added_in_the_form(ann, service, plan) -> None:
     ann.click(row(ann, "A1"))
     ann.click(ann.button("Add a conditional transition"))
     ann.page.get_by_label("is", exact=True).select_option("MEASURED_VALUE_LESS")
@@ -242,28 +244,28 @@ def test_a_condition_is_made_in_the_form(ann, service, plan) -> None:
     then.select_option("C4")
     expect(row(ann, "A1")).to_contain_text("is below 2.5")
 
-    def way():
+    def transition():
         return service.mission(plan)["tasks"][1]["transitions"][0]
 
-    ann.until(lambda: way()["target"] == "C4", "it goes on with C4")
-    assert (way()["conditions"][0]["type"], way()["conditions"][0]["param1"]) == (
+    ann.wait_until(lambda: transition()["target"] == "C4", "the transition leads to C4")
+    assert (transition()["conditions"][0]["type"], transition()["conditions"][0]["param1"]) == (
         "MEASURED_VALUE_LESS",
         2.5,
     )
 
 
-def test_what_is_refused_is_said_at_the_field(ann, service, plan) -> None:
+def test_a_refused_value_has_its_message_at_the_field(ann, service, plan) -> None:
     ann.click(row(ann, "A1"))
     name = ann.page.get_by_label("Name", exact=True)
     name.fill("B2")
     name.press("Enter")
     expect(ann.page.get_by_role("alert")).to_contain_text("B2")
     expect(name).to_have_value("B2")
-    assert tasks(service, plan) == ["START", "A1", "B2", "C4"]
+    assert task_names(service, plan) == ["START", "A1", "B2", "C4"]
 
 
-def test_a_problem_leads_to_its_task_and_has_its_way_out(ann, service, plan) -> None:
-    way = {
+def test_a_problem_is_shown_with_its_remedy(ann, service, plan) -> None:
+    transition = {
         "kind": "add_transition",
         "task": "A1",
         "at": 0,
@@ -272,7 +274,7 @@ def test_a_problem_leads_to_its_task_and_has_its_way_out(ann, service, plan) -> 
             "conditions": [{"type": "MEASURED_VALUE_LESS", "object_id": "20", "param1": 1}],
         },
     }
-    assert service.command(plan, "*", way).status_code == 200
+    assert service.command(plan, "*", transition).status_code == 200
     summary = ann.page.locator("argo-problems summary")
     expect(summary).to_contain_text("problem")
     ann.click(summary)

@@ -8,10 +8,10 @@ from tests.e2e.page.person import CHROMIUM, NO_CHROMIUM
 
 @pytest.mark.long
 @pytest.mark.usefixtures("service")  # skips where the page is not built
-def test_what_is_printed(capfd):
+def test_the_measurements_are_printed(capfd):
     if CHROMIUM is None:
         pytest.skip(NO_CHROMIUM)
     measure.main(["--large", "umad", "--tasks", "3", "--pages", "2"])
-    said = capfd.readouterr().out  # of a process of its own as well
+    output = capfd.readouterr().out  # also that of the child process
     for figure in ("verdict p95", "3 tasks, again: usable in", "times all of the", "2 pages with"):
-        assert figure in said
+        assert figure in output

@@ -1,4 +1,4 @@
-"""Random hands at the list: what the page shows is what the service has, whatever was done."""
+"""Random keys in the list: after each, the page shows the mission that the service has."""
 
 import random
 from typing import Any
@@ -9,7 +9,7 @@ from playwright.sync_api import expect
 from tests.argo_planner.service.served import Served
 from tests.conftest import FIRST_SEED, examples
 from tests.e2e.page.person import Person
-from tests.e2e.page.test_list import at, plan  # noqa: F401
+from tests.e2e.page.test_list import open_mission, plan  # noqa: F401
 
 pytestmark = pytest.mark.long
 
@@ -21,12 +21,12 @@ KEYS = (
 )
 
 
-def rows_of(found: dict[str, Any]) -> list[tuple[str, int]]:
-    """The rows that the list is to show: names and depths, a group before its tasks."""
-    at = {task["name"]: index for index, task in enumerate(found["tasks"])}
-    spans = [(g["name"], at[g["start"]], at[g["end"]]) for g in found["groups"]]
+def expected_rows(mission: dict[str, Any]) -> list[tuple[str, int]]:
+    """Return the rows that the list has to show: names and depths, a group before its tasks."""
+    at = {task["name"]: index for index, task in enumerate(mission["tasks"])}
+    spans = [(g["name"], at[g["start"]], at[g["end"]]) for g in mission["groups"]]
     rows = []
-    for index, task in enumerate(found["tasks"]):
+    for index, task in enumerate(mission["tasks"]):
         around = sum(first < index <= last for _, first, last in spans)
         begun = [one for one in spans if one[1] == index]
         for deeper, (name, _, _) in enumerate(
@@ -37,7 +37,7 @@ def rows_of(found: dict[str, Any]) -> list[tuple[str, int]]:
     return rows
 
 
-def rows_shown(person: Person) -> list[tuple[str, int]]:
+def shown_rows(person: Person) -> list[tuple[str, int]]:
     script = """() => {
         const rows = [...document.querySelector("argo-app").shadowRoot
             .querySelector("argo-list").shadowRoot.querySelectorAll("[role=treeitem]")];
@@ -45,20 +45,20 @@ def rows_shown(person: Person) -> list[tuple[str, int]]:
         return rows.map((row) => [
             row.querySelector(".names > :first-child").textContent.trim(), Number(row.ariaLevel)]);
     }"""
-    return [(name, level) for name, level in person.ask(script)]
+    return [(name, level) for name, level in person.evaluate(script)]
 
 
 def expect_same(person: Person, service: Served, id: str) -> None:
-    expect(person.saved).to_have_text("Saved")
-    person.until(
-        lambda: rows_shown(person) == rows_of(service.mission(id)),
-        f"{rows_shown(person)} is {rows_of(service.mission(id))}",
+    expect(person.save_status).to_have_text("Saved")
+    person.wait_until(
+        lambda: shown_rows(person) == expected_rows(service.mission(id)),
+        f"{shown_rows(person)} is {expected_rows(service.mission(id))}",
     )
 
 
 @pytest.mark.parametrize(("seed", "steps"), [(7, 10), (8 + FIRST_SEED, examples(400))])
-def test_the_list_is_what_the_service_has(browsers, address, service, plan, seed, steps) -> None:  # noqa: F811
-    ann = at(browsers, address, plan, viewport={"width": 1400, "height": 2400})
+def test_the_list_shows_the_mission(browsers, address, service, plan, seed, steps) -> None:  # noqa: F811
+    ann = open_mission(browsers, address, plan, viewport={"width": 1400, "height": 2400})
     ann.context.grant_permissions(["clipboard-read", "clipboard-write"])
     chosen = random.Random(seed)
     for _ in range(steps):

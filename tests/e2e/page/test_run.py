@@ -1,11 +1,11 @@
-"""Runs: what is edited meanwhile, what another mission shows of it, and the report."""
+"""Runs in the page: edits during supervision, the view from another mission, and the report."""
 
 from typing import Any
 
 import pytest
 from playwright.sync_api import expect
 
-from tests.e2e.page.test_list import at, order, plan, row
+from tests.e2e.page.test_list import expect_order, open_mission, plan, row
 
 __all__ = ["plan"]
 
@@ -19,10 +19,10 @@ def panel(person: Any) -> Any:
 
 
 @pytest.mark.long
-def test_an_edited_mission_is_given_back_edited_and_the_report_is_readable(
+def test_the_run_continues_with_edits_and_its_report_is_readable(
     browsers, address, plan, service
 ) -> None:
-    ann = at(browsers, address, plan)
+    ann = open_mission(browsers, address, plan)
     ann.key("F8")
     expect(ann.button("Start the run")).to_be_focused()
     expect(ann.button("Start the run")).to_be_enabled()
@@ -33,15 +33,17 @@ def test_an_edited_mission_is_given_back_edited_and_the_report_is_readable(
     expect(ann.button("Give back")).to_be_focused()
     ann.click(row(ann, "C4"))
     ann.key("Delete")
-    order(ann, "START", "A1", "B2")
+    expect_order(ann, "START", "A1", "B2")
     ann.page.locator("#speed").select_option("null")
     edited = ann.button("Give back with edits")
     expect(ann.page.locator("argo-run-controls button.main")).to_have_text("Give back with edits")
     ann.click(edited)
-    ann.until(lambda: runs(service)[0]["status"] == "ended", "the run ends")
+    ann.wait_until(lambda: runs(service)[0]["status"] == "ended", "the run ends")
     assert [task["task"] for task in runs(service)[0]["tasks"]] == ["A1", "B2"]
     address_of = f"/api/runs/{runs(service)[0]['id']}/report/report.html"
-    ann.until(lambda: service.client.get(address_of).status_code == 200, "the report has been made")
+    ann.wait_until(
+        lambda: service.client.get(address_of).status_code == 200, "the report has been made"
+    )
     with ann.context.expect_page() as opening:
         ann.click(ann.page.get_by_role("link", name="Open the report"))
     report = opening.value
@@ -53,14 +55,14 @@ def test_an_edited_mission_is_given_back_edited_and_the_report_is_readable(
 
 
 @pytest.mark.long
-def test_the_run_of_another_mission_does_not_offer_this_one_s_tasks(
+def test_the_run_of_another_mission_does_not_offer_tasks_of_this_one(
     browsers, address, plan, service
 ) -> None:
     begun = service.run(plan, speed=0.5)
     assert begun.status_code == 201, begun.text
     run = begun.json()["id"]
     other = service.create("Another", service.mission(plan))
-    ann = at(browsers, address, other)
+    ann = open_mission(browsers, address, other)
     ann.page.locator("#tab-run").click()
     take_over = ann.button("Take over")
     expect(take_over).to_be_enabled()
@@ -68,4 +70,4 @@ def test_the_run_of_another_mission_does_not_offer_this_one_s_tasks(
     expect(ann.button("Give back")).to_be_enabled()
     expect(ann.page.locator("argo-run-hand #task")).to_have_count(0)
     service.post(f"/api/runs/{run}/requests", kind="stop", id="end").raise_for_status()
-    ann.until(lambda: runs(service)[0]["status"] == "ended", "the run ends")
+    ann.wait_until(lambda: runs(service)[0]["status"] == "ended", "the run ends")

@@ -21,7 +21,7 @@ const FULL = "full";
 let author = "";
 
 /** Set the name of the person that all further requests carry. */
-export function workAs(name: string): void {
+export function setAuthor(name: string): void {
   author = name;
 }
 
@@ -44,7 +44,7 @@ interface Answer<T> {
 }
 
 /** Return the data of a response. Throws `Refusal` or `Unreached`. */
-export async function answered<T>(asked: Promise<Answer<T>>): Promise<T> {
+export async function responseData<T>(asked: Promise<Answer<T>>): Promise<T> {
   const { data, error, response } = await asked;
   if (response.ok) return data as T;
   if (isProblem(error) && error.code !== FULL) throw new Refusal(error);
@@ -56,7 +56,7 @@ function isProblem(found: unknown): found is Problem {
 }
 
 /** Download a file of the service. Throws `Unreached`. */
-export async function fetched(path: string): Promise<ArrayBuffer> {
+export async function fetchFile(path: string): Promise<ArrayBuffer> {
   try {
     const response = await fetch(path);
     if (response.ok) return await response.arrayBuffer();
@@ -77,19 +77,19 @@ export function authorQuery(): string {
   return author === "" ? "" : `author=${encodeURIComponent(encodeURIComponent(author))}`;
 }
 
-export function pause(ms: number): Promise<void> {
+export function delay(ms: number): Promise<void> {
   return new Promise((resolve) => setTimeout(resolve, ms));
 }
 
 /** Send a request, and repeat it every `ms` while the service can't be reached and the request is still
  * wanted. Throws `Refusal`, or `Unreached` if the request is no longer wanted. */
-export async function untilReached<T>(send: () => Promise<T>, wanted: () => boolean, ms: number): Promise<T> {
+export async function retryUntilReached<T>(send: () => Promise<T>, wanted: () => boolean, ms: number): Promise<T> {
   for (;;)
     try {
       return await send();
     } catch (error) {
       if (!(error instanceof Unreached) || !wanted()) throw error;
-      await pause(ms);
+      await delay(ms);
       if (!wanted()) throw error;
     }
 }

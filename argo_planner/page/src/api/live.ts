@@ -4,14 +4,14 @@ const SOONEST_MS = 250;
 const LATEST_MS = 4_000;
 const GONE = 4404;
 
-export interface Telling<Message> {
+export interface LiveHandlers<Message> {
   /** Returns path and query of the socket. It is called at each attempt, because the query names what is known. */
   address: () => string;
-  heard: (message: Message) => void;
+  onMessage: (message: Message) => void;
   /** Called when the connection opens or closes. */
-  changed: (connected: boolean) => void;
+  onConnection: (connected: boolean) => void;
   /** Called when the mission or run no longer exists; the connection is not reopened. */
-  gone?: () => void;
+  onDeleted?: () => void;
 }
 
 export class LiveConnection<Message> {
@@ -20,7 +20,7 @@ export class LiveConnection<Message> {
   private pause = SOONEST_MS;
   private closed = false;
 
-  constructor(private readonly telling: Telling<Message>) {
+  constructor(private readonly handlers: LiveHandlers<Message>) {
     this.connect();
     addEventListener("online", this.retry);
     addEventListener("offline", this.lost);
@@ -48,7 +48,7 @@ export class LiveConnection<Message> {
   };
 
   private ended(): void {
-    this.telling.changed(false);
+    this.handlers.onConnection(false);
     this.waiting = setTimeout(this.retry, this.pause * (0.75 + Math.random() / 2));
     this.pause = Math.min(2 * this.pause, LATEST_MS);
   }
@@ -60,18 +60,18 @@ export class LiveConnection<Message> {
   };
 
   private connect(): void {
-    const url = new URL(this.telling.address(), location.href);
+    const url = new URL(this.handlers.address(), location.href);
     url.protocol = url.protocol.replace("http", "ws");
     const socket = new WebSocket(url);
     this.socket = socket;
     socket.onopen = () => {
       if (this.socket !== socket) return;
       this.pause = SOONEST_MS;
-      this.telling.changed(true);
+      this.handlers.onConnection(true);
     };
     socket.onmessage = (event: MessageEvent<string>) => {
       if (this.socket !== socket) return;
-      this.telling.heard(JSON.parse(event.data) as Message);
+      this.handlers.onMessage(JSON.parse(event.data) as Message);
     };
     socket.onclose = (event) => {
       if (this.socket !== socket) return;
@@ -79,8 +79,8 @@ export class LiveConnection<Message> {
       if (this.closed) return;
       if (event.code !== GONE) return this.ended();
       this.closed = true;
-      this.telling.changed(false);
-      this.telling.gone?.();
+      this.handlers.onConnection(false);
+      this.handlers.onDeleted?.();
     };
   }
 }

@@ -52,10 +52,10 @@ export type RequestState = Schemas["RequestState"];
 export type Entry = Schemas["EntryTold"]["entry"];
 /** The kind of any fault. */
 export type FaultKind = Schemas["BeginFault"]["fault"]["kind"];
-export type RunQuestion =
+export type RunRequestBody =
   import("./schema").operations["ask_run"]["requestBody"]["content"]["application/json"];
 
-type Told<name extends keyof webhooks> =
+type WebhookMessage<name extends keyof webhooks> =
   webhooks[name]["get"]["responses"][200]["content"]["application/json"];
-export type RoomMessage = Told<"mission">;
-export type RunMessage = Told<"robot">;
+export type RoomMessage = WebhookMessage<"mission">;
+export type RunMessage = WebhookMessage<"robot">;

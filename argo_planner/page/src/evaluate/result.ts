@@ -13,13 +13,13 @@ import { icon } from "../ui/icons";
 import { styled } from "../ui/styled";
 import {
   cancelEvaluation,
-  choose,
+  chooseEvaluation,
   evaluation,
   evaluationIsStale,
   evaluations,
-  forget,
-  goOnWithEvaluation,
-  replay,
+  deleteEvaluation,
+  resumeEvaluation,
+  replayRun,
   replaying,
 } from "./evaluation";
 
@@ -191,13 +191,13 @@ export class EvaluateResult extends PageElement {
       ${job.state === "running" && standing === null ? html`<progress></progress>` : nothing}
       ${standing === null ? nothing : this.standing(job, standing)}
       ${job.state === "running" ? button("cancel", icon("stop"), texts.cancel, cancelEvaluation) : nothing}
-      ${resumable ? button("go-on", icon("play"), texts.goOn, goOnWithEvaluation) : nothing}
+      ${resumable ? button("go-on", icon("play"), texts.goOn, resumeEvaluation) : nothing}
       ${job.state === "done" || (resumable && standing !== null)
         ? html`<a href=${`/api/jobs/${job.id}/report`} target="_blank" rel="noopener">
             ${icon("flag", 14)} ${texts.report}
           </a>`
         : nothing}
-      ${job.state === "running" ? nothing : button("forget", icon("bin", 14), texts.forget, forget, "bare")}
+      ${job.state === "running" ? nothing : button("forget", icon("bin", 14), texts.forget, deleteEvaluation, "bare")}
     </section>`;
   }
 
@@ -208,7 +208,7 @@ export class EvaluateResult extends PageElement {
     if (all.length < 2) return nothing;
     return html`<label>
       ${texts.which}
-      <select id="which" @change=${(event: Event) => choose(valueOf(event))}>
+      <select id="which" @change=${(event: Event) => chooseEvaluation(valueOf(event))}>
         ${options(
           all.map(({ id, begun, state }) => {
             const when = dateAndTime(begun, "short", "medium");
@@ -286,11 +286,11 @@ export class EvaluateResult extends PageElement {
   /** Return the number of runs, done and planned, and why there are no more. */
   private runs(job: EvaluationJob, now: EvaluationStanding): string {
     const texts = t().evaluate;
-    const said =
+    const text =
       job.state === "done" && now.done < now.planned
         ? texts.enough(figure(now.done), figure(now.planned))
         : texts.runsOf(figure(now.done), figure(job.state === "done" ? now.done : now.most));
-    return job.state === "running" || now.rate.runs === now.done ? said : `${said}, ${texts.count(figure(now.rate.runs))}`;
+    return job.state === "running" || now.rate.runs === now.done ? text : `${text}, ${texts.count(figure(now.rate.runs))}`;
   }
 
   private byFaults(now: EvaluationStanding) {
@@ -338,7 +338,7 @@ export class EvaluateResult extends PageElement {
     const texts = t().evaluate;
     const again = replaying.value === one.key;
     return html`<li>
-      <button class="bare" data-key=${one.key} ?disabled=${replaying.value !== null} @click=${() => replay(job, one)}>
+      <button class="bare" data-key=${one.key} ?disabled=${replaying.value !== null} @click=${() => replayRun(job, one)}>
         <b>${texts.failed(one.seed, withFaults ? texts.faultsNamed(one.faults) : null)}</b>
         <span class="reason">${again ? texts.replaying : one.reason}</span>
       </button>

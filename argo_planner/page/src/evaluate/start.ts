@@ -3,14 +3,14 @@
 import type { EvaluationAsked, FaultKind } from "../api/types";
 import "../run/faults";
 import { parts } from "../run/parts";
-import { broken, mission } from "../state/plan";
+import { missionHasErrors, mission } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { t } from "../texts";
 import { choice } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
 import { figure } from "../ui/figures";
 import { icon } from "../ui/icons";
-import { elsewhere, evaluate, evaluation, evaluations } from "./evaluation";
+import { evaluationElsewhere, startEvaluation, evaluation, evaluations } from "./evaluation";
 
 const WORLDS = [20, 100, 300, 1_000, 3_000, 10_000] as const;
 const DRIVES = ["route", "kinematic", "tracked"] as const;
@@ -64,7 +64,7 @@ export class EvaluateStart extends PageElement {
   override render() {
     const texts = t().evaluate;
     const reason = this.whyNot();
-    const other = elsewhere.value;
+    const other = evaluationElsewhere.value;
     return html`<form @submit=${this.begin}>
       <p class="reason">${texts.hint}</p>
       <div class="begin">
@@ -110,11 +110,11 @@ export class EvaluateStart extends PageElement {
     return html`<section class="inner">
       <h2>${texts.vary}</h2>
       ${SHARES.map((name) => {
-        const said = texts.ranges[name];
+        const text = texts.ranges[name];
         return html`<div class="range">
-          <span>${said}</span>
-          <input name=${`${name}-low`} type="number" min="0.1" max="100" step="any" aria-label=${texts.from(said)} />
-          <input name=${`${name}-high`} type="number" min="0.1" max="100" step="any" aria-label=${texts.to(said)} />
+          <span>${text}</span>
+          <input name=${`${name}-low`} type="number" min="0.1" max="100" step="any" aria-label=${texts.from(text)} />
+          <input name=${`${name}-high`} type="number" min="0.1" max="100" step="any" aria-label=${texts.to(text)} />
         </div>`;
       })}
       <div class="range one">
@@ -128,10 +128,10 @@ export class EvaluateStart extends PageElement {
     const texts = t().evaluate;
     if (!mayPlan()) return texts.mayNotPlan;
     if ((mission.value?.tasks.length ?? 0) === 0) return texts.nothing;
-    if (broken.value) return texts.hasErrors;
+    if (missionHasErrors.value) return texts.hasErrors;
     if (evaluations.value.some((one) => one.state === "running") || evaluation.value?.state === "running")
       return texts.underWay;
-    const other = elsewhere.value;
+    const other = evaluationElsewhere.value;
     return other === null ? null : texts.busy(other.name, other.author);
   }
 
@@ -157,7 +157,7 @@ export class EvaluateStart extends PageElement {
       variation,
     };
     this.starting = true;
-    await evaluate(asked as unknown as Partial<EvaluationAsked>);
+    await startEvaluation(asked as unknown as Partial<EvaluationAsked>);
     this.starting = false;
     await new Promise(requestAnimationFrame);
     // The result stands above the form.
@@ -186,6 +186,6 @@ export class EvaluateStart extends PageElement {
 }
 
 function number(form: FormData, name: string): number | null {
-  const said = form.get(name);
-  return typeof said !== "string" || said === "" ? null : Number(said);
+  const text = form.get(name);
+  return typeof text !== "string" || text === "" ? null : Number(text);
 }

@@ -14,7 +14,7 @@ type Conditions = readonly Condition[];
 type Save = (change: (was: Conditions) => Conditions) => ReturnType<Commit>;
 
 /** Create the default condition: the reading is above its normal range. */
-export function aboveNormal(object_id: string): Condition {
+export function aboveNormalCondition(object_id: string): Condition {
   const param1 = checkpointsById.value.get(object_id)?.nominal.high ?? 0;
   return { type: "MEASURED_VALUE_GREATER", id: "", object_id, param1, inclusive: false };
 }
@@ -23,7 +23,7 @@ export function aboveNormal(object_id: string): Condition {
 export function conditionList(conditions: Conditions, save: Save, label: string) {
   const texts = t().forms;
   const add = () =>
-    save((was) => [...was, aboveNormal(was[0]?.object_id ?? checkpointOptions()[0]?.value ?? "1")]);
+    save((was) => [...was, aboveNormalCondition(was[0]?.object_id ?? checkpointOptions()[0]?.value ?? "1")]);
   return html`<div class="conditions">
     ${conditions.map((condition, index) =>
       conditionForm(condition, index, save),

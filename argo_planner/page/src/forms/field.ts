@@ -1,7 +1,7 @@
 /** A field of a form. It keeps invalid input and shows the reason beside it; edits of other people don't
  * overwrite it. */
 
-import { tell } from "../state/notices";
+import { showNotice } from "../state/notices";
 import { t } from "../texts";
 import { options, valueOf } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, property, state } from "../ui/element";
@@ -188,7 +188,7 @@ export class FormField extends PageElement {
     } finally {
       this.taking = false;
     }
-    if (wrong !== null && !this.isConnected) tell("bad", `${this.label}: ${wrong}`, { details: [typed] });
+    if (wrong !== null && !this.isConnected) showNotice("bad", `${this.label}: ${wrong}`, { details: [typed] });
     if (this.typed !== typed) return;
     if (wrong === null) this.forget();
     else this.wrong = wrong;

@@ -2,7 +2,7 @@
 
 import type { Group } from "../api/types";
 import { groupKey, ownName } from "../model/outline";
-import { edit, editHere } from "../state/commands";
+import { edit, editFromForm } from "../state/commands";
 import { mission, select } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { t } from "../texts";
@@ -15,7 +15,7 @@ type Fields = Partial<Omit<Group, "name" | "source">>;
 export function groupForm(group: Group) {
   const texts = t().forms;
   const setOf = (change: (was: Group) => Fields) =>
-    editHere(() => {
+    editFromForm(() => {
       const was = mission.value?.groups.find((one) => one.name === group.name) ?? group;
       return [{ kind: "change_group", name: group.name, ...change(was) }];
     });
@@ -25,7 +25,7 @@ export function groupForm(group: Group) {
   const tasks = (mission.value?.tasks ?? []).map(({ name }) => ({ value: name, label: name }));
   const rename = async (name: string) => {
     const own_name = name.trim();
-    const wrong = await editHere(() => [{ kind: "rename_group", name: group.name, own_name }]);
+    const wrong = await editFromForm(() => [{ kind: "rename_group", name: group.name, own_name }]);
     const outer = group.name.slice(0, group.name.length - ownName(group.name).length);
     if (wrong === null) select([groupKey(outer + own_name)]);
     return wrong;

@@ -1,9 +1,9 @@
 /** The form of the mission's header. */
 
 import type { Mission } from "../api/types";
-import { editHere } from "../state/commands";
-import { tell } from "../state/notices";
-import { laterTasks, mission as open } from "../state/plan";
+import { editFromForm } from "../state/commands";
+import { showNotice } from "../state/notices";
+import { tasksAfterStart, mission as open } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { world } from "../state/world";
 import { t } from "../texts";
@@ -15,7 +15,7 @@ type Fields = Partial<Omit<Mission, "version" | "tasks" | "groups" | "reactions"
 
 /** Change fields of the mission. `change` gets its state when the edit is made. */
 function setOf(change: (now: Mission) => Fields): Promise<string | null> {
-  return editHere(() => (open.value === null ? [] : [{ kind: "set_header", ...change(open.value) }]));
+  return editFromForm(() => (open.value === null ? [] : [{ kind: "set_header", ...change(open.value) }]));
 }
 
 export function headerForm(mission: Mission) {
@@ -52,7 +52,7 @@ export function headerForm(mission: Mission) {
       set({ real_time_reporting }), "long")}
     ${textField(texts.report, mission.after_mission_report, (after_mission_report) =>
       set({ after_mission_report }), "long")}
-    ${befores(mission)}
+    ${precedenceFields(mission)}
     ${mission.left_out.length > 0
       ? html`<h3>${texts.leftOut}</h3>
           <p>${mission.left_out.join(", ")}</p>`
@@ -60,9 +60,9 @@ export function headerForm(mission: Mission) {
 }
 
 /** Render the pairs of tasks with a required order. */
-function befores(mission: Mission) {
+function precedenceFields(mission: Mission) {
   const texts = t().forms;
-  const names = laterTasks.value;
+  const names = tasksAfterStart.value;
   const choice = (name: string, label: string) =>
     html`<select name=${name} aria-label=${label}>
       ${options(names.map((one) => [one, one]))}
@@ -71,7 +71,7 @@ function befores(mission: Mission) {
     event.preventDefault();
     const form = new FormData(event.target as HTMLFormElement);
     const [first, second] = [form.get("first") as string, form.get("second") as string];
-    void editing(() => setOf((now) => ({ before: [...now.before, [first, second]] })));
+    void noticeRefusal(() => setOf((now) => ({ before: [...now.before, [first, second]] })));
   };
   return html`<details ?open=${mission.before.length > 0}>
     <summary>${texts.before}</summary>
@@ -103,7 +103,7 @@ function befores(mission: Mission) {
 }
 
 /** Show a notice if an edit was refused. */
-async function editing(work: () => Promise<string | null>): Promise<void> {
+async function noticeRefusal(work: () => Promise<string | null>): Promise<void> {
   const wrong = await work();
-  if (wrong) tell("bad", wrong);
+  if (wrong) showNotice("bad", wrong);
 }

@@ -4,7 +4,7 @@ import { keyed } from "lit/directives/keyed.js";
 
 import type { Task } from "../api/types";
 import { isTaskKey, nameOfKey } from "../model/outline";
-import { editHere } from "../state/commands";
+import { editFromForm } from "../state/commands";
 import { mission, planId, selection, tasksByName } from "../state/plan";
 import { t } from "../texts";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
@@ -115,7 +115,7 @@ export class PropertiesPanel extends PageElement {
 function severalForm(tasks: readonly Task[]) {
   const texts = t().forms;
   const set = (fields: Partial<Task>) =>
-    editHere(() => tasks.map(({ name }) => ({ kind: "change_task", name, ...fields }) as const));
+    editFromForm(() => tasks.map(({ name }) => ({ kind: "change_task", name, ...fields }) as const));
   const shared = <Key extends keyof Task>(key: Key): Task[Key] | null => {
     const [first] = tasks;
     return first && tasks.every((one) => one[key] === first[key]) ? first[key] : null;

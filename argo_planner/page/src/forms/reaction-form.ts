@@ -2,7 +2,7 @@
 
 import type { EventKind, Reaction } from "../api/types";
 import { reactionKey } from "../model/outline";
-import { edit, editHere } from "../state/commands";
+import { edit, editFromForm } from "../state/commands";
 import { mission, select } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { world } from "../state/world";
@@ -14,7 +14,7 @@ export function reactionForm(reaction: Reaction) {
   const texts = t().forms;
   const saveOf = async (change: (was: Reaction) => Partial<Reaction>) => {
     let event = reaction.event;
-    const wrong = await editHere(() => {
+    const wrong = await editFromForm(() => {
       const was = mission.value?.reactions.find((one) => one.event === reaction.event) ?? reaction;
       const now = { ...was, ...change(was), source: null };
       event = now.event;

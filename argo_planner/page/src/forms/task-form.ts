@@ -2,15 +2,15 @@
 
 import type { Task, TimeWindow, Transition, WaitRule } from "../api/types";
 import { taskKey } from "../model/outline";
-import { edit, editHere } from "../state/commands";
-import { laterTasks, select, tasksByName } from "../state/plan";
+import { edit, editFromForm } from "../state/commands";
+import { tasksAfterStart, select, tasksByName } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { lookAt } from "../state/view";
 import { checkpointsById } from "../state/world";
 import { t } from "../texts";
 import { html, nothing } from "../ui/element";
 import { icon } from "../ui/icons";
-import { aboveNormal, conditionList } from "./conditions";
+import { aboveNormalCondition, conditionList } from "./conditions";
 import {
   checkField,
   checkpointOptions,
@@ -30,15 +30,15 @@ type Fields = Partial<Omit<Task, "name" | "action" | "transitions" | "source" | 
 export function taskForm(task: Task) {
   const texts = t().forms;
   const set: Save = (fields) =>
-    editHere(() => [
+    editFromForm(() => [
       {
         kind: "change_task",
         name: task.name,
-        ...(typeof fields === "function" ? fields(now(task)) : fields),
+        ...(typeof fields === "function" ? fields(currentTask(task)) : fields),
       },
     ]);
   const rename = async (name: string) => {
-    const wrong = await editHere(() => [
+    const wrong = await editFromForm(() => [
       { kind: "rename_task", name: task.name, new_name: name.trim() },
     ]);
     if (wrong === null) select([taskKey(name.trim())]);
@@ -58,7 +58,7 @@ export function taskForm(task: Task) {
     ${task.action === "WAYPOINT" || task.action === "START"
       ? poseFields(texts.place, task.pose, (change) => set((was) => ({ pose: change(was.pose ?? null) })), null)
       : nothing}
-    ${task.action === "START" ? ways(task) : rest(task, set)}`;
+    ${task.action === "START" ? transitionFields(task) : rest(task, set)}`;
 }
 
 function rest(task: Task, set: Save) {
@@ -67,7 +67,7 @@ function rest(task: Task, set: Save) {
   return html`${moves
       ? speedField(texts.speed, task.velocity, (velocity) => set({ velocity }))
       : nothing}
-    ${ways(task)}
+    ${transitionFields(task)}
     <details ?open=${task.on_failure !== "continue" || task.retries > 0}>
       <summary>${texts.failure}</summary>
       ${countField(texts.retries, task.retries, (retries) => set({ retries: retries ?? 0 }))}
@@ -80,10 +80,10 @@ function rest(task: Task, set: Save) {
       ${selectField(texts.onFailure, task.on_failure, optionsOf(texts.failures), (value) => {
         const on_failure = value as Task["on_failure"];
         if (on_failure !== "branch") return set({ on_failure, failure_target: null });
-        return set((was) => ({ on_failure, failure_target: was.failure_target ?? followers(was)[0]?.value ?? null }));
+        return set((was) => ({ on_failure, failure_target: was.failure_target ?? possibleFollowers(was)[0]?.value ?? null }));
       })}
       ${task.on_failure === "branch"
-        ? selectField(texts.goOnWith, task.failure_target ?? "", followers(task), (failure_target) =>
+        ? selectField(texts.goOnWith, task.failure_target ?? "", possibleFollowers(task), (failure_target) =>
             set({ failure_target }),
           )
         : nothing}
@@ -167,19 +167,19 @@ function windowFields(task: Task, set: Save) {
         ${selectField(
           texts.missed,
           window.missed_target ?? "",
-          [{ value: "", label: texts.likeFailure }, ...followers(task)],
+          [{ value: "", label: texts.likeFailure }, ...possibleFollowers(task)],
           (value) => save({ missed_target: value === "" ? null : value }),
         )}`
       : nothing}`;
 }
 
 /** Render the transitions of a task. */
-function ways(task: Task) {
+function transitionFields(task: Task) {
   const texts = t().forms;
-  const { conditional, onward } = parted(task);
-  const save = (change: (ways: Ways) => Partial<Ways>) =>
-    editHere(() => {
-      const was = parted(now(task));
+  const { conditional, onward } = splitTransitions(task);
+  const save = (change: (ways: SplitTransitions) => Partial<SplitTransitions>) =>
+    editFromForm(() => {
+      const was = splitTransitions(currentTask(task));
       const next = { ...was, ...change(was) };
       const transitions = next.onward ? [...next.conditional, next.onward] : next.conditional;
       return [{ kind: "set_transitions", task: task.name, transitions }];
@@ -189,9 +189,9 @@ function ways(task: Task) {
       conditional: was.conditional.flatMap((way, at) => (at === index ? (change(way) ?? []) : way)),
     }));
   const add = () => {
-    const target = followers(task)[0]?.value;
+    const target = possibleFollowers(task)[0]?.value;
     if (target === undefined) return;
-    const condition = aboveNormal(task.object_id ?? checkpointOptions()[0]?.value ?? "1");
+    const condition = aboveNormalCondition(task.object_id ?? checkpointOptions()[0]?.value ?? "1");
     const transition = { target, conditions: [condition] };
     void edit({ kind: "add_transition", task: task.name, transition, at: conditional.length });
   };
@@ -211,7 +211,7 @@ function ways(task: Task) {
                   }),
                 texts.addCondition,
               )}
-              ${selectField(texts.then, way.target, followers(task), (target) =>
+              ${selectField(texts.then, way.target, possibleFollowers(task), (target) =>
                 saveWay(index, (was) => ({ ...was, target })),
               )}
             </div>`,
@@ -219,7 +219,7 @@ function ways(task: Task) {
     ${selectField(
       conditional.length > 0 ? texts.otherwise : texts.then,
       onward?.target ?? "",
-      [{ value: "", label: texts.endsHere }, ...followers(task)],
+      [{ value: "", label: texts.endsHere }, ...possibleFollowers(task)],
       (target) => save(() => ({ onward: target === "" ? null : { target, conditions: [] } })),
     )}
     ${start
@@ -229,13 +229,13 @@ function ways(task: Task) {
         </button>`}`;
 }
 
-interface Ways {
+interface SplitTransitions {
   readonly conditional: readonly Transition[];
   /** The transition without conditions; null: the mission ends there. */
   readonly onward: Transition | null;
 }
 
-function parted(task: Task): Ways {
+function splitTransitions(task: Task): SplitTransitions {
   return {
     conditional: task.transitions.filter((way) => way.conditions.length > 0),
     onward: task.transitions.find((way) => way.conditions.length === 0) ?? null,
@@ -243,11 +243,11 @@ function parted(task: Task): Ways {
 }
 
 /** Return the present state of the task. */
-function now(task: Task): Task {
+function currentTask(task: Task): Task {
   return tasksByName.value.get(task.name) ?? task;
 }
 
 /** Return the tasks that may follow. */
-function followers(task: Task) {
-  return laterTasks.value.filter((name) => name !== task.name).map((name) => ({ value: name, label: name }));
+function possibleFollowers(task: Task) {
+  return tasksAfterStart.value.filter((name) => name !== task.name).map((name) => ({ value: name, label: name }));
 }

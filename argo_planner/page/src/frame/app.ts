@@ -2,7 +2,7 @@
 
 import { signal } from "@preact/signals-core";
 
-import { pause, untilReached } from "../api/client";
+import { delay, retryUntilReached } from "../api/client";
 import "../evaluate/evaluate";
 import "../forms/properties";
 import "../list/list";
@@ -10,11 +10,11 @@ import "../route/route";
 import "../run/run";
 import "../script/script";
 import "../strip/strip";
-import { settled, waiting } from "../state/commands";
+import { allAnswered, waiting } from "../state/commands";
 import { closePlan, openPlan, planId, planName } from "../state/plan";
 import { followRobot } from "../state/run";
 import { beginSession, readService } from "../state/session";
-import { dismiss, tell, tellError } from "../state/notices";
+import { dismiss, showNotice, showError } from "../state/notices";
 import { panel, type Panel } from "../state/view";
 import { readWorld } from "../state/world";
 import { css, customElement, html, PageElement } from "../ui/element";
@@ -156,10 +156,10 @@ export class ArgoApp extends PageElement {
     void this.followAddress().then(readScene);
     followRobot();
     const isWanted = () => {
-      tell("warn", t().frame.readAgain);
+      showNotice("warn", t().frame.readAgain);
       return true;
     };
-    await untilReached(() => Promise.all([readService(), readWorld()]), isWanted, RETRY_MS).catch(tellError);
+    await retryUntilReached(() => Promise.all([readService(), readWorld()]), isWanted, RETRY_MS).catch(showError);
   }
 
   /** Open the mission or list that the address names. A later change of the address has precedence. */
@@ -178,7 +178,7 @@ export class ArgoApp extends PageElement {
     }
     const isMeant = () => this.opening.value === id;
     try {
-      await untilReached(() => openPlan(id, isMeant), isMeant, RETRY_MS);
+      await retryUntilReached(() => openPlan(id, isMeant), isMeant, RETRY_MS);
       await this.updateComplete;
       // The element with the focus is gone. Keys are to work at once.
       setTimeout(() => {
@@ -187,7 +187,7 @@ export class ArgoApp extends PageElement {
     } catch (error) {
       if (!isMeant()) return;
       location.hash = "";
-      tellError(error);
+      showError(error);
     } finally {
       if (isMeant()) this.opening.value = null;
     }
@@ -202,8 +202,8 @@ export class ArgoApp extends PageElement {
     };
     history.replaceState(null, "", addressOf(planId.value));
     const texts = t().frame;
-    const told = tell("bad", texts.unsent(waiting.value), { actions: [{ label: texts.leaveAnyway, act: leave }] });
-    void settled().then(() => dismiss(told)); // the message would no longer be true
+    const notice = showNotice("bad", texts.unsent(waiting.value), { actions: [{ label: texts.leaveAnyway, act: leave }] });
+    void allAnswered().then(() => dismiss(notice)); // the message would no longer be true
   }
 
   override render() {
@@ -272,25 +272,25 @@ function addressOf(id: string | null): string {
 
 /** Return whether all edits are sent, now or within a moment. */
 async function allSent(): Promise<boolean> {
-  if (waiting.value > 0) await Promise.race([settled(), pause(SENT_WITHIN_MS)]);
+  if (waiting.value > 0) await Promise.race([allAnswered(), delay(SENT_WITHIN_MS)]);
   return waiting.value === 0;
 }
 
 /** Load the scene, the largest part of the page by far, when the browser is idle. */
 async function readScene(): Promise<void> {
   while (!customElements.get("argo-scene")) {
-    await quiet();
+    await browserIdle();
     try {
       await import("../scene/scene");
     } catch {
-      tell("warn", t().frame.readAgain);
-      await pause(RETRY_MS);
+      showNotice("warn", t().frame.readAgain);
+      await delay(RETRY_MS);
     }
   }
 }
 
 /** Wait until the browser is idle, if it can tell. */
-function quiet(): Promise<void> {
-  if (!("requestIdleCallback" in window)) return pause(0);
+function browserIdle(): Promise<void> {
+  if (!("requestIdleCallback" in window)) return delay(0);
   return new Promise((resolve) => requestIdleCallback(() => resolve(), { timeout: RETRY_MS }));
 }

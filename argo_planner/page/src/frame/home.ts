@@ -1,10 +1,10 @@
 /** The list of missions: open, create, delete, restore. */
 
-import { answered, client, untilReached } from "../api/client";
+import { responseData, client, retryUntilReached } from "../api/client";
 import type { PlanSummary } from "../api/types";
 import { freeName } from "../model/naming";
-import { tell, tellError, telling } from "../state/notices";
-import { wasGone } from "../state/plan";
+import { showNotice, showError, withErrorNotice } from "../state/notices";
+import { wasDeleted } from "../state/plan";
 import { mayPlan, service } from "../state/session";
 import { t } from "../texts";
 import { iconButton } from "../ui/controls";
@@ -82,19 +82,19 @@ export class PageHome extends PageElement {
 
   private async read(): Promise<void> {
     const both = () =>
-      Promise.all([answered(client.GET("/api/missions")), answered(client.GET("/api/bin"))]);
+      Promise.all([responseData(client.GET("/api/missions")), responseData(client.GET("/api/bin"))]);
     const goesOn = () => {
-      if (this.isConnected) tell("warn", t().frame.readAgain);
+      if (this.isConnected) showNotice("warn", t().frame.readAgain);
       return this.isConnected;
     };
     if (this.reading) return;
     this.reading = true;
     try {
-      const [all, deleted] = await untilReached(both, goesOn, RETRY_MS);
+      const [all, deleted] = await retryUntilReached(both, goesOn, RETRY_MS);
       this.missions = all.missions;
       this.bin = deleted.missions;
     } catch (error) {
-      if (this.isConnected) tellError(error);
+      if (this.isConnected) showError(error);
     } finally {
       this.reading = false;
     }
@@ -106,7 +106,7 @@ export class PageHome extends PageElement {
     if (!this.focused && mayPlan()) {
       this.focused = true;
       // After a mission was deleted by others, the next key must not create a new one.
-      if (!wasGone.value) this.renderRoot.querySelector<HTMLElement>("button.main")?.focus();
+      if (!wasDeleted.value) this.renderRoot.querySelector<HTMLElement>("button.main")?.focus();
     }
   }
 
@@ -189,25 +189,25 @@ export class PageHome extends PageElement {
     const taken = new Set((this.missions ?? []).map((one) => one.name));
     const { untitled } = t().frame;
     const name = freeName(untitled, taken, (number) => `${untitled} ${number}`);
-    await telling(async () => {
-      const made = await answered(client.POST("/api/missions", { body: { name } }));
+    await withErrorNotice(async () => {
+      const made = await responseData(client.POST("/api/missions", { body: { name } }));
       location.hash = `#/missions/${made.id}`;
     });
   }
 
   private async delete(one: PlanSummary): Promise<void> {
-    await telling(async () => {
-      await answered(
+    await withErrorNotice(async () => {
+      await responseData(
         client.DELETE("/api/missions/{id}", { params: { path: { id: one.id } } }) as never,
       );
       const back = { label: t().frame.undo, act: () => void this.restore(one) };
-      tell("info", t().frame.deletedOne(one.name), { actions: [back] });
+      showNotice("info", t().frame.deletedOne(one.name), { actions: [back] });
     });
     await this.read();
   }
 
   private async restore(one: PlanSummary): Promise<void> {
-    await telling(() => answered(client.POST("/api/bin/{id}/restore", { params: { path: { id: one.id } } })));
+    await withErrorNotice(() => responseData(client.POST("/api/bin/{id}/restore", { params: { path: { id: one.id } } })));
     await this.read();
   }
 }

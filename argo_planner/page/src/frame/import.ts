@@ -1,7 +1,7 @@
 /** The import of a mission from a file. */
 
-import { answered, client, Refusal } from "../api/client";
-import { tell, tellError } from "../state/notices";
+import { responseData, client, Refusal } from "../api/client";
+import { showNotice, showError } from "../state/notices";
 import { mayPlan } from "../state/session";
 import { world } from "../state/world";
 import { t } from "../texts";
@@ -135,7 +135,7 @@ export class MissionImport extends PageElement {
   ): Promise<void> {
     try {
       const content = await file.arrayBuffer();
-      const made = await answered(
+      const made = await responseData(
         client.POST("/api/imports", {
           params: { query: { filename: file.name.slice(-200), ...areas } },
           body: content as never,
@@ -153,14 +153,14 @@ export class MissionImport extends PageElement {
 
   /** Show the errors of a file with their lines. */
   private tellImport(name: string, error: unknown): void {
-    if (!(error instanceof Refusal)) return tellError(error);
+    if (!(error instanceof Refusal)) return showError(error);
     const found = error.problem.diagnostics.filter((one) => one.severity === "error");
     const details = found.map((one) => {
       const place = one.span ? `${t().frame.line(one.span.line)}: ` : "";
       return `${place}${one.message}${one.hint ? ` – ${one.hint}` : ""}`;
     });
-    const said = found.length > 0 ? t().frame.cantImport(name) : error.message;
-    tell("bad", said, { details: details.slice(0, 6) });
+    const text = found.length > 0 ? t().frame.cantImport(name) : error.message;
+    showNotice("bad", text, { details: details.slice(0, 6) });
   }
 }
 

@@ -7,7 +7,7 @@ import { redo, undo } from "../state/commands";
 import { dismissNewest, notices } from "../state/notices";
 import { planId, select, selection } from "../state/plan";
 import { isUnderWay } from "../model/run-mode";
-import { ask, asking } from "../state/asking";
+import { sendRequest, pendingRequests } from "../state/requests";
 import { run, runIsOn, showRun } from "../state/run";
 import { mayOperate, mayPlan } from "../state/session";
 import { panel, tool } from "../state/view";
@@ -136,12 +136,12 @@ export class PageKeys extends PageElement {
 function canTakeOver(): boolean {
   const now = run.value;
   if (now === null || now.status !== "running" || now.plan !== planId.value || !mayOperate()) return false;
-  return now.mode !== "supervised" && !asking.value.includes("take_over") && !isUnderWay(now, "take_over");
+  return now.mode !== "supervised" && !pendingRequests.value.includes("take_over") && !isUnderWay(now, "take_over");
 }
 
 async function takeOver(): Promise<void> {
   openRun();
-  await ask({ kind: "take_over" });
+  await sendRequest({ kind: "take_over" });
 }
 
 /** Show the robot's present run, not a past one, and move the focus to the next likely button. */

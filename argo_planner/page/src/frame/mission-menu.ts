@@ -1,14 +1,14 @@
 /** The menu of the mission: export, save a version, copy. */
 
-import { answered, client } from "../api/client";
+import { responseData, client } from "../api/client";
 import { commandId, withPlan } from "../state/commands";
-import { tell } from "../state/notices";
-import { planId, planName, revision, take, versions } from "../state/plan";
+import { showNotice } from "../state/notices";
+import { planId, planName, revision, takePlanState, versions } from "../state/plan";
 import { t } from "../texts";
 import { iconButton } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { icon } from "../ui/icons";
-import { closed, closeLeft } from "../ui/popover";
+import { returnFocus, closeOnFocusLoss } from "../ui/popover";
 
 const FORMATS = ["script", "json", "scxml", "btcpp", "flexbe", "mermaid", "dot", "isar"] as const;
 
@@ -38,7 +38,7 @@ export class MissionMenu extends PageElement {
     const texts = t().frame;
     const id = planId.value ?? "";
     return html`${iconButton("more", texts.missionMenu, null, { opens: "menu" })}
-      <div id="menu" popover @focusout=${closeLeft} @toggle=${closed}>
+      <div id="menu" popover @focusout=${closeOnFocusLoss} @toggle=${returnFocus}>
         <button @click=${this.duplicate}>${icon("copy")} ${texts.duplicate}</button>
         <h2>${texts.exportAs}</h2>
         <p class="formats">
@@ -75,7 +75,7 @@ export class MissionMenu extends PageElement {
   private async duplicate(): Promise<void> {
     await withPlan(async (id) => {
       const name = t().frame.copyOf(planName.value).slice(0, 200);
-      const made = await answered(
+      const made = await responseData(
         client.POST("/api/missions/{id}/duplicate", { params: { path: { id } }, body: { name } }),
       );
       location.hash = `#/missions/${made.id}`;
@@ -88,26 +88,26 @@ export class MissionMenu extends PageElement {
     const name = (new FormData(form).get("name") as string).trim();
     if (name === "") return;
     await withPlan(async (id) => {
-      await answered(
+      await responseData(
         client.POST("/api/missions/{id}/versions", {
           params: { path: { id }, header: { "If-Match": `"${revision.value}"` } },
           body: { name },
         }),
       );
       form.reset();
-      tell("info", t().frame.versionKept(name));
+      showNotice("info", t().frame.versionKept(name));
     });
   }
 
   private async restore(number: number): Promise<void> {
     await withPlan(async (id) => {
-      const done = await answered(
+      const done = await responseData(
         client.POST("/api/missions/{id}/versions/{number}/restore", {
           params: { path: { id, number }, header: { "If-Match": `"${revision.value}"` } },
           body: { id: commandId() },
         }),
       );
-      if (planId.value === id) take(done);
+      if (planId.value === id) takePlanState(done);
     });
   }
 }

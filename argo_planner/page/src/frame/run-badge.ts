@@ -2,7 +2,7 @@
 
 import { isUnderWay, shownMode } from "../model/run-mode";
 import { modeWords } from "../run/mode-words";
-import { ask, asking } from "../state/asking";
+import { sendRequest, pendingRequests } from "../state/requests";
 import { planId } from "../state/plan";
 import { run, runIsOn } from "../state/run";
 import { mayOperate } from "../state/session";
@@ -39,8 +39,8 @@ export class RunBadge extends PageElement {
     return html`<span class="row run ${mode}">
       <button class="bare" title=${state.name} @click=${show}>${modeWords(state)}</button>
       ${drives && mayOperate()
-        ? iconButton("pause", texts.pauseRobot, () => ask({ kind: "pause" }), {
-            disabled: asking.value.includes("pause") || isUnderWay(state, "pause"),
+        ? iconButton("pause", texts.pauseRobot, () => sendRequest({ kind: "pause" }), {
+            disabled: pendingRequests.value.includes("pause") || isUnderWay(state, "pause"),
           })
         : nothing}
     </span>`;

@@ -4,7 +4,7 @@ import { author, service } from "../state/session";
 import { language, t } from "../texts";
 import { iconButton, options, valueOf } from "../ui/controls";
 import { css, customElement, html, PageElement } from "../ui/element";
-import { closed, closeLeft } from "../ui/popover";
+import { returnFocus, closeOnFocusLoss } from "../ui/popover";
 
 @customElement("argo-settings")
 export class PageSettings extends PageElement {
@@ -21,7 +21,7 @@ export class PageSettings extends PageElement {
   override render() {
     const texts = t().frame;
     return html`${iconButton("settings", texts.settings, null, { opens: "settings" })}
-      <div id="settings" popover @focusout=${closeLeft} @toggle=${closed}>
+      <div id="settings" popover @focusout=${closeOnFocusLoss} @toggle=${returnFocus}>
         <label>
           ${texts.yourName}
           <input

@@ -1,6 +1,6 @@
 /** Functions for end-to-end tests of the scene, which has no DOM elements to look for. */
 
-import type { Ground } from "../model/standing";
+import type { Ground } from "../model/standing-map";
 
 export interface ArgoTestInterface {
   /** Position of a point of the site (m) on the page (px), and whether it is inside the view on a shown floor. */
@@ -23,10 +23,10 @@ declare global {
   }
 }
 
-export function offer(made: ArgoTestInterface): void {
+export function publishTestInterface(made: ArgoTestInterface): void {
   window.argo = made;
 }
 
-export function withdraw(made: ArgoTestInterface): void {
+export function removeTestInterface(made: ArgoTestInterface): void {
   if (window.argo === made) delete window.argo;
 }

@@ -1,7 +1,7 @@
 /** The top bar: name of the mission, undo and redo, other people, the robot's state, settings. */
 
-import { answered, client } from "../api/client";
-import { telling } from "../state/notices";
+import { responseData, client } from "../api/client";
+import { withErrorNotice } from "../state/notices";
 import { redo, undo, waiting } from "../state/commands";
 import { connected, others, planId, planName, redoable, undoable } from "../state/plan";
 import { mayPlan, service, theme } from "../state/session";
@@ -111,8 +111,8 @@ export class PageTopbar extends PageElement {
   private saved() {
     const texts = t().frame;
     const away = !connected.value;
-    const said = away ? texts.away(waiting.value) : waiting.value > 0 ? texts.saving : texts.saved;
-    return html`<span class=${away ? "state away" : "state dim"} role="status">${said}</span>`;
+    const text = away ? texts.away(waiting.value) : waiting.value > 0 ? texts.saving : texts.saved;
+    return html`<span class=${away ? "state away" : "state dim"} role="status">${text}</span>`;
   }
 
   private name() {
@@ -156,8 +156,8 @@ export class PageTopbar extends PageElement {
     const name = valueOf(event).trim();
     const id = planId.value;
     if (id === null || name === "" || name === planName.value) return;
-    await telling(async () => {
-      await answered(
+    await withErrorNotice(async () => {
+      await responseData(
         client.PUT("/api/missions/{id}/name", { params: { path: { id } }, body: { name } }),
       );
       if (planId.value === id) planName.value = name;

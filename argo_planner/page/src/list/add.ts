@@ -1,7 +1,7 @@
 /** The menu of what can be added, and a field in which a checkpoint or a location is typed. */
 
 import type { Pose } from "../api/types";
-import { tell } from "../state/notices";
+import { showNotice } from "../state/notices";
 import { mission } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { panel, shownFloor, tool } from "../state/view";
@@ -11,7 +11,7 @@ import { valueOf } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, query, state } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
 import { addMeasure, addPlace, addReaction, addStart, addTask, addWait, isEmpty, lacksStart } from "./adding";
-import { type Choice, checkpointChoices, matching, placeChoices, typedPlace } from "./choices";
+import { type Choice, checkpointChoices, matchingChoices, poseChoices, typedPose } from "./choices";
 
 /** The number of choices that are shown; typing finds the others. */
 const MOST = 60;
@@ -121,10 +121,10 @@ export class AddTasks extends PageElement {
   private allChoices(): readonly Choice[] {
     const site = world.value;
     if (site === null) return [];
-    if (this.open === "measure") return matching(checkpointChoices(site), this.text);
-    const typed = typedPlace(site, this.text, shownFloor.value);
+    if (this.open === "measure") return matchingChoices(checkpointChoices(site), this.text);
+    const typed = typedPose(site, this.text, shownFloor.value);
     const planned = (mission.value?.tasks ?? []).flatMap((task) => task.pose ?? []);
-    return [...(typed ? [typed] : []), ...matching(placeChoices(site, [...planned, ...this.placed]), this.text)];
+    return [...(typed ? [typed] : []), ...matchingChoices(poseChoices(site, [...planned, ...this.placed]), this.text)];
   }
 
   override render() {
@@ -228,7 +228,7 @@ export class AddTasks extends PageElement {
     else if (event.key === "Enter") {
       const choice = found[this.at];
       if (choice) this.choose(choice);
-      else tell("warn", t().list.nothingFits);
+      else showNotice("warn", t().list.nothingFits);
     } else return;
     event.preventDefault();
     event.stopPropagation();

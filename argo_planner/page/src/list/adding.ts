@@ -3,8 +3,8 @@
 import type { Action, Mission, Pose, Reaction, Task } from "../api/types";
 import { freeName, numberedName, taskNames } from "../model/naming";
 import { outline, reactionKey, taskKey } from "../model/outline";
-import { placeForNew } from "../model/places";
-import { edit, inTurn, type LooseEdit } from "../state/commands";
+import { positionForNew } from "../model/task-positions";
+import { edit, editInTurn, type LooseEdit } from "../state/commands";
 import { mission, select, selection } from "../state/plan";
 import { t } from "../texts";
 
@@ -17,12 +17,12 @@ interface NewTask {
 
 /** Add a task after the selection and select it. Returns whether it was added. */
 export function addTask(action: Action, wanted: string, fields: Partial<Task>): Promise<boolean> {
-  return added(() => ({ action, wanted, fields }));
+  return addNewTask(() => ({ action, wanted, fields }));
 }
 
 /** Add a waypoint, or the start if `starts` returns true for the mission. */
 export function addPlace(pose: Pose, starts: (open: Mission) => boolean, name?: string): Promise<boolean> {
-  return added((open) => {
+  return addNewTask((open) => {
     const action = starts(open) ? "START" : "WAYPOINT";
     const wanted = action === "WAYPOINT" && name !== undefined ? name : action;
     return { action, wanted, fields: { pose } };
@@ -37,12 +37,12 @@ export function isEmpty(open: Mission): boolean {
 /** Add a start as the first task. If it is the dock of an area, that becomes the start area. */
 export function addStart(pose: Pose, area?: number): Promise<boolean> {
   const header = area === undefined ? [] : [{ kind: "set_header", start_area: area, dock: pose } as const];
-  return added(() => ({ action: "START", wanted: "START", fields: { pose } }), header);
+  return addNewTask(() => ({ action: "START", wanted: "START", fields: { pose } }), header);
 }
 
 /** Add a task to the mission in its state when the edit's turn comes, together with further edits. */
-function added(find: (open: Mission) => NewTask, further: readonly LooseEdit[] = []): Promise<boolean> {
-  return inTurn(async (make) => {
+function addNewTask(find: (open: Mission) => NewTask, further: readonly LooseEdit[] = []): Promise<boolean> {
+  return editInTurn(async (make) => {
     const open = mission.value;
     if (open === null) return false;
     const { action, wanted, fields } = find(open);
@@ -50,7 +50,7 @@ function added(find: (open: Mission) => NewTask, further: readonly LooseEdit[] =
     const start = action === "START";
     const numbered = wanted === action && !start;
     const name = numbered ? numberedName(wanted, names) : freeName(wanted, names);
-    const where = start ? { first: true } : placeForNew(outline(open), selection.value);
+    const where = start ? { first: true } : positionForNew(outline(open), selection.value);
     const done = await make({ kind: "add_task", task: { name, action, ...fields }, ...where }, ...further);
     if (done) select([taskKey(name)]);
     return done;

@@ -26,7 +26,7 @@ export function checkpointChoices(site: World): Choice[] {
 }
 
 /** Return docks, locations and corners of the floors by name; poses that are already planned come last. */
-export function placeChoices(site: World, planned: readonly Pose[] = []): Choice[] {
+export function poseChoices(site: World, planned: readonly Pose[] = []): Choice[] {
   const isPlanned = ({ pose }: Choice) => planned.some((one) => pose !== undefined && isAt(one, pose));
   const all = namedPlaces(site);
   return [...all.filter((one) => !isPlanned(one)), ...all.filter(isPlanned)];
@@ -61,7 +61,7 @@ function namedPlaces(site: World): Choice[] {
 }
 
 /** Parse a pose typed as `x y` or `x y floor` (m, on the floor's deck); null: the text is no pose. */
-export function typedPlace(site: World, typed: string, floor: number | null): Choice | null {
+export function typedPose(site: World, typed: string, floor: number | null): Choice | null {
   const found = /^(-?\d+(?:\.\d+)?)[\s;]+(-?\d+(?:\.\d+)?)(?:[\s;]+(\d+))?$/.exec(typed.trim());
   if (!found) return null;
   const wanted = found[3] === undefined ? (floor ?? site.floors[0]?.number) : Number(found[3]);
@@ -72,7 +72,7 @@ export function typedPlace(site: World, typed: string, floor: number | null): Ch
 }
 
 /** Return the choices that match the text, the best ones first: a number means that checkpoint. */
-export function matching(choices: readonly Choice[], typed: string): Choice[] {
+export function matchingChoices(choices: readonly Choice[], typed: string): Choice[] {
   const text = typed.trim().toLowerCase().replace(/^#\s*/, "");
   if (text === "") return [...choices];
   const rank = (choice: Choice) => {

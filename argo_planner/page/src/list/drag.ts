@@ -3,7 +3,7 @@
 import type { ReactiveController } from "lit";
 
 import type { Row } from "../model/outline";
-import type { Side } from "../model/places";
+import type { Side } from "../model/task-positions";
 import { select, selection } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { html, nothing, type PageElement } from "../ui/element";

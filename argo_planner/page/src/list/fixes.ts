@@ -30,7 +30,7 @@ export function fixOf(found: Diagnostic): Fix | null {
     case "il.unknown-target":
     case "il.start-condition":
       if (name === null || way === null) return null;
-      return { label: texts.removeWay, edits: removeWay(name, Number(way[1])) };
+      return { label: texts.removeWay, edits: removeTransition(name, Number(way[1])) };
     case "il.unknown-current":
       return { label: texts.forget, edits: () => [{ kind: "set_header", current: null }] };
     case "il.left-out":
@@ -64,15 +64,15 @@ function driveHome(task: string | null): Fix | null {
 }
 
 /** Remove the transition wherever it is when the edit is made. */
-function removeWay(task: string, at: number): () => LooseEdit[] {
-  const meant = wayOf(task)?.[at];
+function removeTransition(task: string, at: number): () => LooseEdit[] {
+  const meant = transitionsOf(task)?.[at];
   return () => {
-    const now = wayOf(task)?.findIndex((one) => JSON.stringify(one) === JSON.stringify(meant)) ?? -1;
+    const now = transitionsOf(task)?.findIndex((one) => JSON.stringify(one) === JSON.stringify(meant)) ?? -1;
     return now < 0 ? [] : [{ kind: "remove_transition", task, at: now }];
   };
 }
 
-function wayOf(task: string): readonly Transition[] | undefined {
+function transitionsOf(task: string): readonly Transition[] | undefined {
   return tasksByName.value.get(task)?.transitions;
 }
 

@@ -3,9 +3,9 @@
 import { groupKey } from "../model/outline";
 import { select, selection } from "../state/plan";
 import { mayPlan } from "../state/session";
-import { deleteChosen, openDetails } from "./acting";
+import { deleteSelection, openDetails } from "./actions";
 import { enterGroup, leaveGroup, moveByStep } from "./moving";
-import { choose, fold, folded, shownRows } from "./rows";
+import { chooseRow, setFolded, folded, shownRows } from "./rows";
 
 /** Handle a key of the list; `page` is the number of visible rows. Returns whether the key was handled. */
 export function onListKey(event: KeyboardEvent, page: number): boolean {
@@ -43,7 +43,7 @@ function onGoingKey(event: KeyboardEvent, page: number): boolean {
   }[event.key];
   if (to === undefined) return false;
   const row = shown[Math.max(0, Math.min(shown.length - 1, to))];
-  if (row) choose(row, event.shiftKey, false);
+  if (row) chooseRow(row, event.shiftKey, false);
   return true;
 }
 
@@ -57,9 +57,9 @@ function onFoldingKey(key: string): boolean {
   const open = row?.kind === "group" && !folded.value.has(row.key);
   if (key === "ArrowRight") {
     const next = shown[at + 1];
-    if (row?.kind === "group" && !open) fold(row, false);
+    if (row?.kind === "group" && !open) setFolded(row, false);
     else if (open && next) select([next.key]);
-  } else if (row && open) fold(row, true);
+  } else if (row && open) setFolded(row, true);
   else if (row?.inside) select([groupKey(row.inside)]);
   return true;
 }
@@ -67,6 +67,6 @@ function onFoldingKey(key: string): boolean {
 function onActingKey(key: string): boolean {
   if (key === "Enter") openDetails();
   else if (key !== "Delete" && key !== "Backspace") return false;
-  else if (mayPlan()) void deleteChosen();
+  else if (mayPlan()) void deleteSelection();
   return true;
 }

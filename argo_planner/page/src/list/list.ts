@@ -13,7 +13,7 @@ import { t } from "../texts";
 import { iconButton } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, query, state } from "../ui/element";
 import { styled } from "../ui/styled";
-import { copyChosen, deleteChosen, groupChosen, paste, renameRow } from "./acting";
+import { copySelection, deleteSelection, groupSelection, pasteTasks, renameRow } from "./actions";
 import "./add";
 import type { AddTasks } from "./add";
 import { RowDrag, rowAt } from "./drag";
@@ -22,7 +22,7 @@ import { marksOf } from "./marks";
 import "./problems";
 import "./reactions";
 import { nameOf, rowView, ROW_HEIGHT, rowStyles } from "./row";
-import { choose, fold, folded, rowOf, shownRows, unfoldAround } from "./rows";
+import { chooseRow, setFolded, folded, rowOf, shownRows, unfoldAround } from "./rows";
 
 const BEYOND = 12;
 
@@ -121,11 +121,11 @@ export class MissionList extends PageElement {
       <div class="tools" role="toolbar" aria-label=${texts.tasks}>
         <argo-add @focus-list=${this.focusTree}></argo-add>
         <span class="grow"></span>
-        ${iconButton("group", texts.group, groupChosen, {
+        ${iconButton("group", texts.group, groupSelection, {
           title: `${texts.group} (g)`,
           disabled: !may || chosen.size === 0,
         })}
-        ${iconButton("bin", texts.delete, deleteChosen, {
+        ${iconButton("bin", texts.delete, deleteSelection, {
           title: `${texts.delete} (Del)`,
           disabled: !may || chosen.size === 0,
         })}
@@ -195,8 +195,8 @@ export class MissionList extends PageElement {
       if (event.target === this.tree) select([]); // a click beside the rows selects the mission itself
       return;
     }
-    if ((event.target as HTMLElement).closest(".fold")) fold(row, !folded.value.has(row.key));
-    else choose(row, event.shiftKey, event.ctrlKey || event.metaKey);
+    if ((event.target as HTMLElement).closest(".fold")) setFolded(row, !folded.value.has(row.key));
+    else chooseRow(row, event.shiftKey, event.ctrlKey || event.metaKey);
   }
 
   private onDoubleClick(event: MouseEvent): void {
@@ -211,7 +211,7 @@ export class MissionList extends PageElement {
     if (!mayPlan() && event.key !== "v") return;
     const act = {
       m: () => this.adding.openMeasure(),
-      g: () => void groupChosen(),
+      g: () => void groupSelection(),
       v: () => {
         const task = tasksByName.value.get(nameOfKey(selection.value.at(-1) ?? ""));
         if (task) lookAt(task);
@@ -253,7 +253,7 @@ export class MissionList extends PageElement {
 
   private readonly onCopy = (event: ClipboardEvent): void => {
     if (planId.value === null || typing() || getSelection()?.toString()) return;
-    const text = copyChosen();
+    const text = copySelection();
     if (text === null) return;
     event.clipboardData?.setData("text/plain", text);
     event.preventDefault();
@@ -262,7 +262,7 @@ export class MissionList extends PageElement {
   private readonly onPaste = (event: ClipboardEvent): void => {
     if (planId.value === null || typing() || !mayPlan()) return;
     event.preventDefault();
-    void paste(event.clipboardData?.getData("text/plain") ?? "");
+    void pasteTasks(event.clipboardData?.getData("text/plain") ?? "");
   };
 }
 

@@ -3,10 +3,10 @@
 import { computed, effect, signal } from "@preact/signals-core";
 
 import type { Diagnostic, Group, Task, World } from "../api/types";
-import { touched } from "../model/change";
+import { changedNames } from "../model/change";
 import { groupKey, taskKey, type Row } from "../model/outline";
-import { analysis, broken, findings, lastRevision, others, planId, tasksByName } from "../state/plan";
-import { reading } from "../state/reading";
+import { analysis, missionHasErrors, findings, lastRevision, others, planId, tasksByName } from "../state/plan";
+import { missionSentences } from "../state/sentences";
 import { run, shownRun } from "../state/run";
 import { isOwn } from "../state/commands";
 import { isMe } from "../state/session";
@@ -60,7 +60,7 @@ const flashing = signal<ReadonlySet<string>>(new Set());
 effect(() => {
   const made = lastRevision.value;
   if (made === null || isOwn(made) || isMe(made.author)) return;
-  flashing.value = touched(made.change);
+  flashing.value = changedNames(made.change);
   clearTimeout(ending);
   ending = setTimeout(() => (flashing.value = new Set()), FLASH_MS);
 });
@@ -117,12 +117,12 @@ export function marksOf(row: Row): Marks {
  * the list doesn't flicker with each edit. */
 const sentences = computed(() => {
   const found = new Map<string, string>();
-  if (broken.value) return found;
-  for (const entry of reading.value?.reading.entries ?? []) {
+  if (missionHasErrors.value) return found;
+  for (const entry of missionSentences.value?.reading.entries ?? []) {
     if (entry.part !== "task" && entry.part !== "round") continue;
     const key = entry.part === "task" ? taskKey(entry.name) : groupKey(entry.name);
-    const said = entry.sentences.join("; ");
-    found.set(key, found.has(key) ? `${found.get(key) ?? ""}; ${said}` : said);
+    const text = entry.sentences.join("; ");
+    found.set(key, found.has(key) ? `${found.get(key) ?? ""}; ${text}` : text);
   }
   return found;
 });

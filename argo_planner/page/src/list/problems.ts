@@ -1,7 +1,7 @@
 /** All diagnostics at the top of the list. Each selects its task, and has a button if there is a simple fix. */
 
 import type { Diagnostic } from "../api/types";
-import { inTurn } from "../state/commands";
+import { editInTurn } from "../state/commands";
 import { select } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { panel } from "../state/view";
@@ -90,7 +90,7 @@ export class MissionProblems extends PageElement {
       <div>
         <button class="to" @click=${show}>${one.message}</button>
         ${one.hint ? html`<p class="dim">${one.hint}</p>` : nothing}
-        ${fix ? html`<button @click=${() => inTurn((make) => make(...fix.edits()))}>${fix.label}</button>` : nothing}
+        ${fix ? html`<button @click=${() => editInTurn((make) => make(...fix.edits()))}>${fix.label}</button>` : nothing}
       </div>
     </li>`;
   }

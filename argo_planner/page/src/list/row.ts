@@ -204,6 +204,6 @@ function runMark(state: NonNullable<Marks["run"]>) {
     skipped: ["skip", "dim"],
   };
   const [sign, tone] = signs[state];
-  const said = t().list.states[state];
-  return html`<span class=${tone} role="img" title=${said} aria-label=${said}>${icon(sign, 18)}</span>`;
+  const wording = t().list.states[state];
+  return html`<span class=${tone} role="img" title=${wording} aria-label=${wording}>${icon(sign, 18)}</span>`;
 }

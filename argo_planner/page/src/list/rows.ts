@@ -2,7 +2,7 @@
 
 import { computed, signal } from "@preact/signals-core";
 
-import { outline, unfolded, type Row } from "../model/outline";
+import { outline, visibleRows, type Row } from "../model/outline";
 import { mission, select, selection } from "../state/plan";
 
 /** Keys of the folded groups. */
@@ -11,10 +11,10 @@ export const folded = signal<ReadonlySet<string>>(new Set());
 export const allRows = computed<readonly Row[]>(() =>
   mission.value === null ? [] : outline(mission.value),
 );
-export const shownRows = computed<readonly Row[]>(() => unfolded(allRows.value, folded.value));
+export const shownRows = computed<readonly Row[]>(() => visibleRows(allRows.value, folded.value));
 
 /** Fold a group, or unfold it. */
-export function fold(row: Row, closed: boolean): void {
+export function setFolded(row: Row, closed: boolean): void {
   const keys = new Set(folded.value);
   if (closed) keys.add(row.key);
   else keys.delete(row.key);
@@ -41,7 +41,7 @@ export function rowOf(key: string | undefined): Row | undefined {
 let anchor: string | null = null;
 
 /** Select a row; with `extend` all rows from the anchor to it, with `toggle` in addition to the selection. */
-export function choose(row: Row, extend: boolean, toggle: boolean): void {
+export function chooseRow(row: Row, extend: boolean, toggle: boolean): void {
   const shown = shownRows.value;
   const chosen = selection.value;
   if (anchor === null || !chosen.includes(anchor)) anchor = chosen.at(-1) ?? null;

@@ -11,14 +11,14 @@ interface ListChange<T extends Item> {
 }
 
 /** Return the mission after a change. */
-export function changed(mission: Mission, change: MissionChange): Mission {
+export function applyChange(mission: Mission, change: MissionChange): Mission {
   const header = { ...change.header };
   delete (header as { kind?: string }).kind;
   return {
     ...mission,
     ...(header as Partial<Mission>),
-    tasks: listAfter(mission.tasks, change.tasks as ListChange<Task> | null, named),
-    groups: listAfter(mission.groups, change.groups as ListChange<Group> | null, named),
+    tasks: listAfter(mission.tasks, change.tasks as ListChange<Task> | null, nameOfItem),
+    groups: listAfter(mission.groups, change.groups as ListChange<Group> | null, nameOfItem),
     reactions: listAfter(
       mission.reactions,
       change.reactions as ListChange<Reaction> | null,
@@ -28,7 +28,7 @@ export function changed(mission: Mission, change: MissionChange): Mission {
 }
 
 /** Return the names of tasks and groups, and the events of reactions, that a change affects. */
-export function touched(change: MissionChange): ReadonlySet<string> {
+export function changedNames(change: MissionChange): ReadonlySet<string> {
   const found = new Set<string>();
   for (const list of [change.tasks, change.groups, change.reactions]) {
     if (!list) continue;
@@ -40,11 +40,11 @@ export function touched(change: MissionChange): ReadonlySet<string> {
 }
 
 /** Return the header fields that a change sets. */
-export function touchedHeader(change: MissionChange): ReadonlySet<string> {
+export function changedHeaderFields(change: MissionChange): ReadonlySet<string> {
   return new Set(Object.keys(change.header ?? {}).filter((field) => field !== "kind"));
 }
 
-function named(item: Task | Group): string {
+function nameOfItem(item: Task | Group): string {
   return item.name;
 }
 
@@ -59,7 +59,7 @@ function listAfter<T extends Item>(
   if (change.placed.length === 0 && change.gone.length === 0)
     return before.map((item) => items.get(name(item)) as T);
   const away = new Set([...change.gone, ...change.placed.map(([one]) => one)]);
-  const behind = linked(before.map(name).filter((one) => !away.has(one)));
+  const behind = successors(before.map(name).filter((one) => !away.has(one)));
   for (const [one, other] of change.placed) {
     behind.set(one, behind.get(other));
     behind.set(other, one);
@@ -71,7 +71,7 @@ function listAfter<T extends Item>(
 }
 
 /** Return the successor of each name; null stands for the beginning of the list. */
-function linked(names: readonly string[]): Map<string | null, string | undefined> {
+function successors(names: readonly string[]): Map<string | null, string | undefined> {
   const behind = new Map<string | null, string | undefined>();
   let last: string | null = null;
   for (const one of names) {

@@ -2,12 +2,12 @@
 
 import type { WorldCheckpoint } from "../api/types";
 
-export function choiceOf(checkpoint: WorldCheckpoint): string {
+export function checkpointSuggestion(checkpoint: WorldCheckpoint): string {
   return `#${checkpoint.id} ${checkpoint.name}`;
 }
 
 /** Return the checkpoint that the text names by suggestion, number or name; null: none, or several. */
-export function chosenCheckpoint(
+export function parseCheckpoint(
   typed: string,
   checkpoints: readonly WorldCheckpoint[],
 ): WorldCheckpoint | null {

@@ -4,23 +4,23 @@ import type { Group, Mission, Task } from "../api/types";
 import type { LooseEdit } from "../state/commands";
 import { freeName, taskNames } from "./naming";
 import { ownName } from "./outline";
-import type { Place } from "./places";
+import type { TaskPosition } from "./task-positions";
 
 const KIND = "argo-tasks";
 
 /** Copied tasks in their order, and their groups, the outer ones first. */
-export interface Copied {
+export interface CopiedTasks {
   readonly tasks: readonly Task[];
   readonly groups: readonly Group[];
 }
 
 /** Return the copied tasks and groups as text for the clipboard. */
-export function copied({ tasks, groups }: Copied): string {
+export function copiedText({ tasks, groups }: CopiedTasks): string {
   return JSON.stringify({ kind: KIND, tasks, groups });
 }
 
 /** Parse a text from the clipboard; null: it contains no tasks. */
-export function readCopied(text: string): Copied | null {
+export function parseCopied(text: string): CopiedTasks | null {
   try {
     const found = JSON.parse(text) as { kind?: unknown; tasks?: unknown; groups?: unknown };
     if (found.kind !== KIND || !Array.isArray(found.tasks) || !Array.isArray(found.groups)) return null;
@@ -32,10 +32,10 @@ export function readCopied(text: string): Copied | null {
 
 /** Return the edits that paste copies under free names at a position. Transitions between copied tasks are
  * kept; conditional ones also if they lead to a task that the mission has. */
-export function pasting(
+export function pasteEdits(
   mission: Mission,
-  { tasks, groups }: Copied,
-  place: Place,
+  { tasks, groups }: CopiedTasks,
+  place: TaskPosition,
 ): { readonly edits: LooseEdit[]; readonly names: readonly string[] } {
   const taken = taskNames(mission);
   const had = new Set(taken);
@@ -58,7 +58,7 @@ export function pasting(
     names.push(name);
     const { window, failure_target } = task;
     const failure = failure_target ? target(failure_target) : null;
-    edits.push({ kind: "add_task", task: alone(task, name), ...where });
+    edits.push({ kind: "add_task", task: detachedTask(task, name), ...where });
     const missed = window?.missed_target ? target(window.missed_target) : null;
     const later = {
       ...(window ? { window: { ...window, missed_target: missed } } : {}),
@@ -83,12 +83,12 @@ export function pasting(
       });
     where = where.into === undefined ? { after: name } : { after: name, into: where.into };
   }
-  return { edits: [...edits, ...ways, ...wrapping(mission, { tasks, groups }, renamed)], names };
+  return { edits: [...edits, ...ways, ...groupEdits(mission, { tasks, groups }, renamed)], names };
 }
 
 /** Return the edits that group the copies, the inner groups first: a group's full name depends on the group
  * around it. */
-function wrapping(mission: Mission, { tasks, groups }: Copied, renamed: ReadonlyMap<string, string>): LooseEdit[] {
+function groupEdits(mission: Mission, { tasks, groups }: CopiedTasks, renamed: ReadonlyMap<string, string>): LooseEdit[] {
   const taken = new Set(mission.groups.map((group) => ownName(group.name)));
   const at = (name: string) => tasks.findIndex((task) => task.name === name);
   const edits: LooseEdit[] = [];
@@ -104,7 +104,7 @@ function wrapping(mission: Mission, { tasks, groups }: Copied, renamed: Readonly
 }
 
 /** Return the task under another name, without references to other tasks. */
-function alone(task: Task, name: string): Task {
+function detachedTask(task: Task, name: string): Task {
   const on_failure = task.on_failure === "branch" ? "continue" : task.on_failure;
   const others = { transitions: [], group: "", source: null, window: null, failure_target: null };
   return { ...task, ...others, name, on_failure };

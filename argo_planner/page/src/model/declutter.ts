@@ -1,6 +1,6 @@
 /** Placement of labels beside their points, so that none covers another one. */
 
-export interface LabelWish {
+export interface LabelRequest {
   readonly key: string;
   /** px, the labelled point */
   readonly x: number;
@@ -35,7 +35,7 @@ const CELL = 120;
 /** Place labels in a view of the given size (px). A label keeps its side of `before` if possible, so that it
  * doesn't jump while the camera moves. */
 export function declutter(
-  wishes: readonly LabelWish[],
+  wishes: readonly LabelRequest[],
   width: number,
   height: number,
   before: ReadonlyMap<string, Side> = new Map(),
@@ -43,7 +43,7 @@ export function declutter(
 ): PlacedLabel[] {
   const grid = new Map<string, PlacedLabel[]>();
   const placed: PlacedLabel[] = [];
-  const had = (wish: LabelWish) => (before.has(wish.key) ? 0.5 : 0);
+  const had = (wish: LabelRequest) => (before.has(wish.key) ? 0.5 : 0);
   const order = [...wishes].sort(
     (a, b) => b.weight + had(b) - a.weight - had(a) || (a.key < b.key ? -1 : 1),
   );
@@ -64,7 +64,7 @@ export function declutter(
   return placed;
 }
 
-function boxAt({ key, x, y, width, height }: LabelWish, side: Side): PlacedLabel {
+function boxAt({ key, x, y, width, height }: LabelRequest, side: Side): PlacedLabel {
   const left = side === "right" ? x + AWAY : side === "left" ? x - AWAY - width : x - width / 2;
   const top = side === "above" ? y - ABOVE - height : side === "below" ? y + ABOVE : y - height / 2;
   return { key, side, left: Math.round(left), top: Math.round(top), width, height };

@@ -12,11 +12,11 @@ export interface Press {
   readonly drag: boolean;
 }
 
-export function pressed(pointer: number, button: number, x: number, y: number): Press {
+export function beginPress(pointer: number, button: number, x: number, y: number): Press {
   return { pointer, button, x, y, drag: false };
 }
 
-export function moved(press: Press, x: number, y: number): Press {
+export function movePress(press: Press, x: number, y: number): Press {
   if (press.drag || Math.hypot(x - press.x, y - press.y) < CLICK_PX) return press;
   return { ...press, drag: true };
 }

@@ -37,7 +37,7 @@ export function legsOf(preview: PreviewedMission, mission: Mission): Leg[] {
 }
 
 /** Merge neighbouring legs until at most `most` remain; each has the name of its first leg. */
-export function gathered(legs: readonly Leg[], most: number): Leg[] {
+export function mergedLegs(legs: readonly Leg[], most: number): Leg[] {
   const each = Math.ceil(legs.length / most);
   if (each <= 1) return [...legs];
   const found: Leg[] = [];
@@ -56,13 +56,13 @@ export function gathered(legs: readonly Leg[], most: number): Leg[] {
   return found;
 }
 
-export interface Limited {
+export interface LimitedValue {
   readonly value: number;
   readonly limit: number | null;
   readonly broken: boolean;
 }
 
-export function limited(value: number, limit: number | null | undefined): Limited {
+export function withLimit(value: number, limit: number | null | undefined): LimitedValue {
   return { value, limit: limit ?? null, broken: typeof limit === "number" && value > limit };
 }
 

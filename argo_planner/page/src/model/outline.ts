@@ -76,7 +76,7 @@ export function outline(mission: Mission): Row[] {
 }
 
 /** Return the rows that are visible if these groups are folded. */
-export function unfolded(rows: readonly Row[], folded: ReadonlySet<string>): Row[] {
+export function visibleRows(rows: readonly Row[], folded: ReadonlySet<string>): Row[] {
   const shown: Row[] = [];
   let below = Infinity;
   for (const row of rows) {

@@ -44,20 +44,20 @@ const SMOOTH = 4;
 export function ribbonPaths(legs: readonly RibbonLeg[]): RibbonPath[] {
   const driven = new Map<string, Set<number>>();
   return legs.map((leg) => {
-    const plain = sampled(leg);
-    const lanes = plain.map((one) => Math.min(MOST_LANES - 1, before(driven, one)));
+    const plain = sampleLeg(leg);
+    const lanes = plain.map((one) => Math.min(MOST_LANES - 1, earlierLegs(driven, one)));
     for (const one of plain) {
       const key = cell(one, 0, 0);
       const there = driven.get(key);
       if (there) there.add(leg.way);
       else driven.set(key, new Set([leg.way]));
     }
-    return { ...leg, samples: movedAside(plain, lanes) };
+    return { ...leg, samples: shiftedAside(plain, lanes) };
   });
 }
 
 /** Return points at even distances; where the robot turns in place there is only one. */
-function sampled({ points, start }: RibbonLeg): Sample[] {
+function sampleLeg({ points, start }: RibbonLeg): Sample[] {
   const samples: Sample[] = [];
   let along = 0;
   let last: Sample | null = null;
@@ -90,7 +90,7 @@ function sampled({ points, start }: RibbonLeg): Sample[] {
 }
 
 /** Return the number of earlier legs here, in either direction. */
-function before(driven: ReadonlyMap<string, ReadonlySet<number>>, sample: Sample): number {
+function earlierLegs(driven: ReadonlyMap<string, ReadonlySet<number>>, sample: Sample): number {
   const found = new Set<number>();
   for (let i = -1; i <= 1; i++)
     for (let j = -1; j <= 1; j++) for (const way of driven.get(cell(sample, i, j)) ?? []) found.add(way);
@@ -105,7 +105,7 @@ function cell({ x, y, z, dx, dy }: Sample, i: number, j: number): string {
 }
 
 /** Keep the first ribbon in the middle, and shift the others alternately to its right and left. */
-function movedAside(samples: readonly Sample[], lanes: readonly number[]): Sample[] {
+function shiftedAside(samples: readonly Sample[], lanes: readonly number[]): Sample[] {
   const asides = samples.map(({ dx, dy }, i) => {
     const lane = Math.max(...lanes.slice(Math.max(0, i - 2), i + 3));
     const side = (lane % 2 === 0 ? -1 : 1) * Math.ceil(lane / 2) * SPACING;

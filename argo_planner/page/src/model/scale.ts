@@ -14,6 +14,6 @@ export function drawnScale(range: Scale | null, nominal: Scale, value: number): 
 }
 
 /** Return the position of a value on a scale, limited to 0 to 1. */
-export function placeOn(scale: Scale, value: number): number {
+export function shareOfScale(scale: Scale, value: number): number {
   return Math.min(1, Math.max(0, (value - scale.low) / (scale.high - scale.low)));
 }

@@ -53,13 +53,13 @@ export function lineOf(text: string, at: number): number {
   return text.slice(0, at).split("\n").length;
 }
 /** Return the offset of a line and column in the text. */
-export function placeOf(text: string, line: number, column: number): number {
+export function offsetOf(text: string, line: number, column: number): number {
   const before = text.split("\n").slice(0, line - 1);
   return Math.min(text.length, before.reduce((sum, one) => sum + one.length + 1, 0) + column - 1);
 }
 
 /** Return the worst severity of each line. */
-export function severities(diagnostics: readonly Diagnostic[]): Map<number, Diagnostic["severity"]> {
+export function worstSeverities(diagnostics: readonly Diagnostic[]): Map<number, Diagnostic["severity"]> {
   const rank = { error: 2, warning: 1, note: 0 };
   const found = new Map<number, Diagnostic["severity"]>();
   for (const { span, severity } of diagnostics) {

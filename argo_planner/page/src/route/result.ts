@@ -4,7 +4,7 @@ import { svg } from "lit";
 
 import type { OrderJob } from "../api/types";
 import { convergence } from "../model/curves";
-import { compared, type Placed } from "../model/reordered";
+import { compareOrders, type ComparedTask } from "../model/order-comparison";
 import { taskKey } from "../model/outline";
 import { select, tasksByName } from "../state/plan";
 import { mayPlan } from "../state/session";
@@ -12,7 +12,7 @@ import { t } from "../texts";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { percent, seconds } from "../ui/figures";
 import { icon } from "../ui/icons";
-import { accept, cancel, job, jobIsStale, leave } from "./search";
+import { acceptOrder, cancelSearch, job, jobIsStale, closeSearch } from "./search";
 
 const [WIDTH, HEIGHT] = [300, 90];
 
@@ -136,7 +136,7 @@ export class RouteResult extends PageElement {
     return html`<section aria-label=${texts.found} data-state=${now.state}>
       ${this.chart(now)}
       ${now.state === "running"
-        ? html`<button id="cancel" ?disabled=${!mayPlan()} @click=${cancel}>${icon("stop")} ${texts.cancel}</button>`
+        ? html`<button id="cancel" ?disabled=${!mayPlan()} @click=${cancelSearch}>${icon("stop")} ${texts.cancel}</button>`
         : nothing}
       ${now.state === "cancelled" ? html`<p class="dim">${texts.cancelled}</p>` : nothing}
       ${now.state === "failed" ? html`<p class="warn">${texts.noneFound}: ${now.problem}</p>` : nothing}
@@ -174,7 +174,7 @@ export class RouteResult extends PageElement {
       return html`<p class="warn">${texts.noneFound}${found.why_none ? `: ${found.why_none}` : ""}</p>
         ${this.reasons(found.reasons)}`;
     const out = new Set(found.left_out);
-    const lists = compared(order.written, order.order);
+    const lists = compareOrders(order.written, order.order);
     const same = found.left_out.length === 0 && lists.after.every((one) => !one.moved);
     const saved = order.written_duration - order.duration;
     return html`<p class="saving">
@@ -202,14 +202,14 @@ export class RouteResult extends PageElement {
       ${found.warning ? html`<p class="warn">${found.warning}</p>` : nothing} ${this.reasons(found.reasons)}
       ${jobIsStale.value ? html`<p class="warn" role="alert">${texts.stale}</p>` : nothing}
       <div class="decide">
-        <button class="main" id="accept" ?disabled=${!mayPlan() || jobIsStale.value || same} @click=${accept}>
+        <button class="main" id="accept" ?disabled=${!mayPlan() || jobIsStale.value || same} @click=${acceptOrder}>
           ${icon("check")} ${texts.accept}
         </button>
-        <button id="leave" @click=${leave}>${texts.leave}</button>
+        <button id="leave" @click=${closeSearch}>${texts.leave}</button>
       </div>`;
   }
 
-  private order(places: readonly Placed[], out: ReadonlySet<string>) {
+  private order(places: readonly ComparedTask[], out: ReadonlySet<string>) {
     return html`<ol>
       ${places.map(
         ({ name, moved }) =>
@@ -226,12 +226,12 @@ export class RouteResult extends PageElement {
     </ol>`;
   }
 
-  private reasons(said: readonly string[]) {
-    if (said.length === 0) return nothing;
+  private reasons(lines: readonly string[]) {
+    if (lines.length === 0) return nothing;
     return html`<details>
       <summary>${t().route.reasons}</summary>
       <ul>
-        ${said.map((one) => html`<li>${one}</li>`)}
+        ${lines.map((one) => html`<li>${one}</li>`)}
       </ul>
     </details>`;
   }

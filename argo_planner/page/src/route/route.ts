@@ -3,7 +3,7 @@
 import { readTime, writeTime } from "../forms/times";
 import { parts } from "../run/parts";
 import { edit } from "../state/commands";
-import { broken, laterTasks, mission } from "../state/plan";
+import { missionHasErrors, tasksAfterStart, mission } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { t } from "../texts";
 import { choice, iconButton, options } from "../ui/controls";
@@ -81,7 +81,7 @@ export class RoutePanel extends PageElement {
 
   /** Render a button that allows other orders, if the mission fixes its order. */
   private fixed() {
-    if (mission.value === null || mission.value.order === "any" || laterTasks.value.length < 2) return nothing;
+    if (mission.value === null || mission.value.order === "any" || tasksAfterStart.value.length < 2) return nothing;
     return html`<div class="row">
       <p class="grow reason">${t().route.fixed}</p>
       <button
@@ -136,16 +136,16 @@ export class RoutePanel extends PageElement {
     </section>`;
   }
 
-  private item(said: string, drop: () => void) {
+  private item(text: string, drop: () => void) {
     return html`<li class="row">
-      <span class="grow">${said}</span>
-      ${iconButton("close", t().route.remove(said), drop, { size: 16 })}
+      <span class="grow">${text}</span>
+      ${iconButton("close", t().route.remove(text), drop, { size: 16 })}
     </li>`;
   }
 
   private choice(id: string, label: string) {
     return html`<select id=${id} aria-label=${label}>
-      ${options(laterTasks.value.map((name) => [name, name]))}
+      ${options(tasksAfterStart.value.map((name) => [name, name]))}
     </select>`;
   }
 
@@ -182,14 +182,14 @@ export class RoutePanel extends PageElement {
   private whyNot(): string | null {
     const texts = t().route;
     if (!mayPlan()) return texts.mayNotPlan;
-    if (laterTasks.value.length < 2) return texts.nothing;
-    return broken.value ? texts.hasErrors : null;
+    if (tasksAfterStart.value.length < 2) return texts.nothing;
+    return missionHasErrors.value ? texts.hasErrors : null;
   }
 
   private search(event: SubmitEvent): void {
     event.preventDefault();
     const form = new FormData(event.target as HTMLFormElement);
-    const known = new Set(laterTasks.value);
+    const known = new Set(tasksAfterStart.value);
     const asked: Asked = {
       budget: readTime(form.get("budget") as string),
       before: this.pairsAsked.filter((pair) => pair.every((name) => known.has(name))),

@@ -2,12 +2,12 @@
 
 import { batch, computed, effect, signal } from "@preact/signals-core";
 
-import { answered, client, Refusal, Unreached } from "../api/client";
+import { responseData, client, Refusal, Unreached } from "../api/client";
 import type { operations } from "../api/schema";
 import type { OrderJob } from "../api/types";
-import { commandId, settled, withPlan } from "../state/commands";
-import { tell, tellError, telling } from "../state/notices";
-import { connected, jobs, planId, revision, take, takeJob } from "../state/plan";
+import { commandId, allAnswered, withPlan } from "../state/commands";
+import { showNotice, showError, withErrorNotice } from "../state/notices";
+import { connected, jobs, planId, revision, takePlanState, takeJob } from "../state/plan";
 import { comparedPreview } from "../state/preview";
 import { t } from "../texts";
 
@@ -22,13 +22,13 @@ type SearchAsked =
   operations["suggest_order"]["requestBody"]["content"]["application/json"];
 
 /** The shown search; null: none. */
-const shown = signal<OrderJob | null>(null);
+const shownSearch = signal<OrderJob | null>(null);
 let plan: string | null = null;
 let previewed = "";
 
 /** The newest state of the shown search. */
 export const job = computed<OrderJob | null>(() => {
-  const known = shown.value;
+  const known = shownSearch.value;
   const newest = known === null ? undefined : jobs.value.get(known.id);
   return newest?.kind === "order" ? newest : known;
 });
@@ -37,7 +37,7 @@ export const jobIsStale = computed(() => job.value !== null && job.value.revisio
 
 effect(() => {
   const id = planId.value;
-  if (id !== plan) leave();
+  if (id !== plan) closeSearch();
   plan = id;
 });
 
@@ -45,7 +45,7 @@ effect(() => {
   const found = job.value;
   if (found?.state === "done" && found.found?.reordering && previewed !== found.id) {
     previewed = found.id;
-    void preview(found.id);
+    void previewOrder(found.id);
   }
 });
 
@@ -53,12 +53,12 @@ effect(() => {
 effect(() => {
   const known = job.peek();
   if (!connected.value || known === null || isOver(known)) return;
-  answered(client.GET("/api/jobs/{id}", { params: { path: { id: known.id } } }))
+  responseData(client.GET("/api/jobs/{id}", { params: { path: { id: known.id } } }))
     .then((found) => {
-      if (shown.peek()?.id === found.id) takeJob(found);
+      if (shownSearch.peek()?.id === found.id) takeJob(found);
     })
     .catch((error: unknown) => {
-      if (error instanceof Refusal) leave();
+      if (error instanceof Refusal) closeSearch();
       else if (!(error instanceof Unreached)) throw error;
     });
 });
@@ -68,10 +68,10 @@ function isOver(one: OrderJob): boolean {
 }
 
 /** Show the paths of the suggested order on the site, to compare them with the present ones. */
-async function preview(id: string): Promise<void> {
+async function previewOrder(id: string): Promise<void> {
   try {
-    const ways = await answered(client.GET("/api/jobs/{id}/preview", { params: { path: { id } } }));
-    if (shown.value?.id === id) comparedPreview.value = ways;
+    const ways = await responseData(client.GET("/api/jobs/{id}/preview", { params: { path: { id } } }));
+    if (shownSearch.value?.id === id) comparedPreview.value = ways;
   } catch (error) {
     if (!(error instanceof Refusal || error instanceof Unreached)) throw error;
   }
@@ -80,46 +80,46 @@ async function preview(id: string): Promise<void> {
 export async function search(seconds: number, asked: Asked): Promise<void> {
   await withPlan(async (id) => {
     const body = { time_limit: seconds, requirements: asked } as unknown as SearchAsked;
-    const begun = await answered(client.POST("/api/missions/{id}/orders", { params: { path: { id } }, body }));
+    const begun = await responseData(client.POST("/api/missions/{id}/orders", { params: { path: { id } }, body }));
     if (planId.value !== id) return;
-    leave();
-    shown.value = begun;
+    closeSearch();
+    shownSearch.value = begun;
   });
 }
 
-export async function cancel(): Promise<void> {
+export async function cancelSearch(): Promise<void> {
   const id = job.value?.id;
   if (id === undefined) return;
-  await telling(async () => {
-    takeJob(await answered(client.DELETE("/api/jobs/{id}", { params: { path: { id } } })));
+  await withErrorNotice(async () => {
+    takeJob(await responseData(client.DELETE("/api/jobs/{id}", { params: { path: { id } } })));
   });
 }
 
-export async function accept(): Promise<void> {
+export async function acceptOrder(): Promise<void> {
   const now = job.value;
   const id = planId.value;
   if (now === null || id === null) return;
-  await settled();
+  await allAnswered();
   try {
-    const done = await answered(
+    const done = await responseData(
       client.POST("/api/jobs/{id}/accept", {
         params: { path: { id: now.id }, header: { "If-Match": `"${now.revision}"` } },
         body: { id: commandId() },
       }),
     );
     if (planId.value !== id) return;
-    take(done);
-    leave();
-    tell("info", t().route.accepted);
+    takePlanState(done);
+    closeSearch();
+    showNotice("info", t().route.accepted);
   } catch (error) {
-    if (error instanceof Refusal && error.problem.code === "stale-revision") tell("warn", t().route.stale);
-    else tellError(error);
+    if (error instanceof Refusal && error.problem.code === "stale-revision") showNotice("warn", t().route.stale);
+    else showError(error);
   }
 }
 
-export function leave(): void {
+export function closeSearch(): void {
   batch(() => {
-    shown.value = null;
+    shownSearch.value = null;
     comparedPreview.value = null;
   });
 }

@@ -159,14 +159,14 @@ export class RunBand extends PageElement {
     if (run === null) return "";
     if (run.status === "ended" && shownTime.value === null)
       return run.headline ? `${run.headline.word}: ${run.headline.text}` : "";
-    const said: string[] = [];
-    if (run.reaction && now?.live) said.push(texts.reactsTo(t().words.event[run.reaction]));
+    const text: string[] = [];
+    if (run.reaction && now?.live) text.push(texts.reactsTo(t().words.event[run.reaction]));
     const task = now?.task ?? null;
-    if (task === null) said.push(run.status === "running" ? texts.standing : "");
-    else said.push(run.by_hand && now?.live ? texts.byHandAt(task) : texts.at(task));
+    if (task === null) text.push(run.status === "running" ? texts.standing : "");
+    else text.push(run.by_hand && now?.live ? texts.byHandAt(task) : texts.at(task));
     if (now?.live)
-      for (const [group, round] of Object.entries(run.rounds ?? {})) said.push(texts.round(group, round));
-    return said.filter(Boolean).join(" · ");
+      for (const [group, round] of Object.entries(run.rounds ?? {})) text.push(texts.round(group, round));
+    return text.filter(Boolean).join(" · ");
   }
 
   private time(value: number, limit: number | null) {
@@ -197,7 +197,7 @@ export class RunBand extends PageElement {
   }
 
   /** Render a value with its name, and as a `part` of its limit if that is known. */
-  private row(id: string, name: string, said: string, part: number | null = null, broken = false) {
+  private row(id: string, name: string, text: string, part: number | null = null, broken = false) {
     const width = `${Math.min(100, Math.max(0, 100 * (part ?? 0)))}%`;
     return html`<dt>${name}</dt>
       ${part === null
@@ -205,7 +205,7 @@ export class RunBand extends PageElement {
         : html`<dd class="gauge ${broken ? "broken" : ""}" aria-hidden="true">
             <div ${styled({ width })}></div>
           </dd>`}
-      <dd id=${id}>${said}</dd>`;
+      <dd id=${id}>${text}</dd>`;
   }
 }
 

@@ -3,9 +3,9 @@
 import type { RequestState } from "../api/types";
 import { isOver, isUnderWay, shownRequests } from "../model/run-mode";
 import { planId, revision } from "../state/plan";
-import { ask, asking, giveBackEdited } from "../state/asking";
+import { sendRequest, pendingRequests, giveBackEdited } from "../state/requests";
 import { run, shownTime } from "../state/run";
-import { chooseFollowing, waysToFollow } from "../scene/following";
+import { chooseFollowing, followChoices } from "../scene/following";
 import { mayOperate } from "../state/session";
 import { following } from "../state/view";
 import { t } from "../texts";
@@ -104,14 +104,14 @@ export class RunControls extends PageElement {
 
   private simple(kind: Simple, look = "", label = t().run.requests[kind]) {
     const state = run.value;
-    const busy = state !== null && (isUnderWay(state, kind) || asking.value.includes(kind));
+    const busy = state !== null && (isUnderWay(state, kind) || pendingRequests.value.includes(kind));
     return html`<button
       id=${kind}
       class=${look}
       aria-busy=${busy}
       title=${{ cancel: t().run.cancelMeans, stop: t().run.stopMeans }[kind as string] ?? nothing}
       ?disabled=${!mayOperate() || busy}
-      @click=${() => ask({ kind })}
+      @click=${() => sendRequest({ kind })}
     >
       ${icon(SIGNS[kind])} ${label}
     </button>`;
@@ -143,7 +143,7 @@ export class RunControls extends PageElement {
       <select
         id="speed"
         ?disabled=${!mayOperate()}
-        @change=${(event: Event) => ask({ kind: "speed", speed: readSpeed(valueOf(event)) })}
+        @change=${(event: Event) => sendRequest({ kind: "speed", speed: readSpeed(valueOf(event)) })}
       >
         ${options(known.map((speed) => [speed, `${t().run.speed}: ${speedName(speed)}`]), now)}
       </select>
@@ -156,7 +156,7 @@ export class RunControls extends PageElement {
     return html`<label class="wide">
       <span class="unseen">${texts.follow}</span>
       <select id="follow" @change=${chooseFollowing}>
-        ${options(waysToFollow(`${texts.follow}: `), following.value)}
+        ${options(followChoices(`${texts.follow}: `), following.value)}
       </select>
     </label>`;
   }

@@ -2,7 +2,7 @@
 
 import { computed } from "@preact/signals-core";
 
-import { happenings, type Happening, type Told } from "../model/happenings";
+import { runEvents, type RunEvent, type TimedEvent } from "../model/run-events";
 import { shownEntries, shownRun, shownTime } from "../state/run";
 import { t } from "../texts";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
@@ -11,46 +11,46 @@ import { figure } from "../ui/figures";
 import { parts } from "./parts";
 
 const MOST = 100;
-const SIGNS: Record<Told["tone"], Icon> = { plain: "right", good: "check", warn: "hand", bad: "warning" };
+const SIGNS: Record<TimedEvent["tone"], Icon> = { plain: "right", good: "check", warn: "hand", bad: "warning" };
 
 /** Describe an event of a run. */
-export function inWords(what: Happening): string {
-  const told = t().run.told;
+export function eventText(what: RunEvent): string {
+  const texts = t().run.happened;
   switch (what.kind) {
     case "done":
-      return told.done(what.task);
+      return texts.done(what.task);
     case "by hand":
-      return told.byHand(what.task);
+      return texts.byHand(what.task);
     case "failed":
-      return told.failed(what.task, what.why);
+      return texts.failed(what.task, what.why);
     case "stopped":
-      return told.stopped(what.task, what.why);
+      return texts.stopped(what.task, what.why);
     case "read":
-      return told.read(what.checkpoint, `${figure(what.value)} ${what.unit}`);
+      return texts.read(what.checkpoint, `${figure(what.value)} ${what.unit}`);
     case "given":
-      return told.given(what.checkpoint, figure(what.value));
+      return texts.given(what.checkpoint, figure(what.value));
     case "found": {
       const name = t().words.event[what.event as keyof ReturnType<typeof t>["words"]["event"]];
       return what.detail === "" ? name : `${name}: ${what.detail}`;
     }
     case "steered":
-      return told[what.how];
+      return texts[what.how];
     case "fault":
-      return told.fault(t().run.fault[what.fault as keyof ReturnType<typeof t>["run"]["fault"]]);
+      return texts.fault(t().run.fault[what.fault as keyof ReturnType<typeof t>["run"]["fault"]]);
     case "mishap":
       return what.detail === "" ? what.trouble : `${what.trouble}: ${what.detail}`;
     case "contact":
-      return told.contact(what.link, what.element);
+      return texts.contact(what.link, what.element);
     case "resumed":
     case "edited":
-      return told[what.kind];
+      return texts[what.kind];
     case "ended":
-      return what.stopped === null ? told.ended : told.stoppedRun(what.stopped);
+      return what.stopped === null ? texts.ended : texts.stoppedRun(what.stopped);
   }
 }
 
 const count = computed(() => shownRun.value?.entries ?? 0);
-const toldNow = computed(() => happenings(shownEntries.value, 0, count.value));
+const eventsNow = computed(() => runEvents(shownEntries.value, 0, count.value));
 
 @customElement("argo-run-events")
 export class RunEvents extends PageElement {
@@ -91,13 +91,13 @@ export class RunEvents extends PageElement {
   override render() {
     if (count.value === 0) return nothing;
     const texts = t().run;
-    const told = toldNow.value;
+    const shown = eventsNow.value;
     return html`<section aria-label=${texts.events}>
       <h2>${texts.events}</h2>
-      ${told.length === 0
+      ${shown.length === 0
         ? html`<p class="reason">${texts.noEvents}</p>`
         : html`<ol reversed>
-            ${told
+            ${shown
               .slice(-MOST)
               .reverse()
               .map(
@@ -105,7 +105,7 @@ export class RunEvents extends PageElement {
                   html`<li class=${one.tone}>
                     <button class="bare" title=${texts.backInTime} @click=${() => (shownTime.value = one.t)}>
                       ${icon(SIGNS[one.tone], 14)} <time>${t().words.seconds(one.t)}</time>
-                      <span>${inWords(one.what)}</span>
+                      <span>${eventText(one.what)}</span>
                     </button>
                   </li>`,
               )}

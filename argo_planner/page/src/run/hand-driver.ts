@@ -2,15 +2,15 @@
 
 import { effect, signal } from "@preact/signals-core";
 
-import { answered, client, Refusal, Unreached } from "../api/client";
+import { responseData, client, Refusal, Unreached } from "../api/client";
 import type { Pose } from "../api/types";
 import { goalOf, isStraight, reachesOf, type Direction } from "../model/hand-driving";
 import { isOver } from "../model/run-mode";
-import { ask } from "../state/asking";
+import { sendRequest } from "../state/requests";
 import { robotPose, run } from "../state/run";
 
 /** The wanted direction; null: none. */
-export const wanted = signal<Direction | null>(null);
+export const wantedDirection = signal<Direction | null>(null);
 /** Whether there is no drivable path in the wanted direction. */
 export const blocked = signal(false);
 
@@ -18,8 +18,8 @@ let driving = false;
 
 /** Drive in a direction from now on; null: stop. */
 export function drive(direction: Direction | null): void {
-  if (wanted.value === direction) return;
-  wanted.value = direction;
+  if (wantedDirection.value === direction) return;
+  wantedDirection.value = direction;
   blocked.value = false;
   if (direction !== null && !driving) {
     driving = true;
@@ -29,28 +29,28 @@ export function drive(direction: Direction | null): void {
 
 async function driveOn(): Promise<void> {
   for (;;) {
-    const direction = wanted.value;
+    const direction = wantedDirection.value;
     if (direction === null || run.value?.mode !== "supervised") break;
-    blocked.value = !(await step(direction));
-    if (blocked.value) await changed(direction);
+    blocked.value = !(await driveStep(direction));
+    if (blocked.value) await directionChange(direction);
   }
-  wanted.value = null;
+  wantedDirection.value = null;
 }
 
 /** Drive in a direction until it is no longer wanted or the goal is reached. Returns whether there was a path. */
-async function step(direction: Direction): Promise<boolean> {
+async function driveStep(direction: Direction): Promise<boolean> {
   for (const reach of reachesOf(direction)) {
     const from = robotPose.value;
     if (from === null) return false;
     const goal = goalOf(from.pose, direction, reach);
     if (!(await isFree(from.pose, goal, direction, reach))) continue;
-    if (wanted.value !== direction) return true;
-    const asked = await ask({ kind: "drive_to", pose: goal }, true, () => wanted.value === direction);
+    if (wantedDirection.value !== direction) return true;
+    const asked = await sendRequest({ kind: "drive_to", pose: goal }, true, () => wantedDirection.value === direction);
     if (asked === null) return false;
-    const how = await over(asked.id, direction);
-    if (wanted.value !== direction) {
-      const stop = await ask({ kind: "stop_by_hand" }, true);
-      if (stop !== null) await over(stop.id, null);
+    const how = await requestEnd(asked.id, direction);
+    if (wantedDirection.value !== direction) {
+      const stop = await sendRequest({ kind: "stop_by_hand" }, true);
+      if (stop !== null) await requestEnd(stop.id, null);
       return true;
     }
     if (how === null) return false;
@@ -70,7 +70,7 @@ async function isFree(
   const [x, y, z, yaw] = from;
   try {
     const body = { start: { x, y, z, yaw }, goal };
-    const way = await answered(client.POST("/api/world/way", { body }));
+    const way = await responseData(client.POST("/api/world/way", { body }));
     return isStraight(way, direction, reach);
   } catch (error) {
     if (error instanceof Refusal || error instanceof Unreached) return false;
@@ -79,21 +79,21 @@ async function isFree(
 }
 
 /** Wait for the end of a request; null: another direction is wanted, or the run has ended. */
-function over(id: string, direction: Direction | null): Promise<string | null> {
-  return until(() => {
+function requestEnd(id: string, direction: Direction | null): Promise<string | null> {
+  return untilFound(() => {
     const found = run.value?.requests.find((one) => one.id === id);
     if (found && isOver(found)) return { value: found.progress };
-    if (direction !== null && wanted.value !== direction) return { value: null };
+    if (direction !== null && wantedDirection.value !== direction) return { value: null };
     return run.value === null || run.value.status !== "running" ? { value: null } : null;
   });
 }
 
-function changed(direction: Direction): Promise<null> {
-  return until(() => (wanted.value === direction ? null : { value: null }));
+function directionChange(direction: Direction): Promise<null> {
+  return untilFound(() => (wantedDirection.value === direction ? null : { value: null }));
 }
 
 /** Wait until `found` returns a value. */
-function until<T>(found: () => { readonly value: T } | null): Promise<T> {
+function untilFound<T>(found: () => { readonly value: T } | null): Promise<T> {
   return new Promise((resolve) => {
     let done = false;
     const stop = effect(() => {

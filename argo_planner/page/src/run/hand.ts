@@ -1,10 +1,10 @@
 /** The panel of driving by hand, while a person controls the robot. */
 
 import { isTyping } from "../frame/keys";
-import { chosenCheckpoint } from "../model/checkpoint-choice";
+import { parseCheckpoint } from "../model/checkpoint-choice";
 import { directionOf, type Direction } from "../model/hand-driving";
-import { chosenTask, laterTasks, planId } from "../state/plan";
-import { ask } from "../state/asking";
+import { selectedTask, tasksAfterStart, planId } from "../state/plan";
+import { sendRequest } from "../state/requests";
 import { run } from "../state/run";
 import { mayOperate } from "../state/session";
 import { world } from "../state/world";
@@ -12,7 +12,7 @@ import { t } from "../texts";
 import { options, valueOf } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
-import { blocked, drive, wanted } from "./hand-driver";
+import { blocked, drive, wantedDirection } from "./hand-driver";
 import { checkpointList, parts } from "./parts";
 
 const PAD: readonly (readonly [Direction, Icon, string])[] = [
@@ -82,7 +82,7 @@ export class RunHand extends PageElement {
     this.listen("blur", this.halt);
     this.listen("visibilitychange", this.halt);
     this.watch(() => {
-      if (chosenTask.value !== null) this.task = chosenTask.value.name;
+      if (selectedTask.value !== null) this.task = selectedTask.value.name;
     });
   }
 
@@ -136,16 +136,16 @@ export class RunHand extends PageElement {
   /** Render the choice of a task to do or to skip. */
   private ofTasks(off: boolean, busy: boolean) {
     const texts = t().run;
-    const tasks = laterTasks.value;
+    const tasks = tasksAfterStart.value;
     const chosen = tasks.includes(this.task) ? this.task : (tasks[0] ?? "");
     return html`<div class="line">
       <select id="task" aria-label=${texts.whichTask} @change=${(event: Event) => (this.task = valueOf(event))}>
         ${options(tasks.map((name) => [name, name]), chosen)}
       </select>
-      <button id="do" ?disabled=${busy || chosen === ""} @click=${() => ask({ kind: "do_task", task: chosen })}>
+      <button id="do" ?disabled=${busy || chosen === ""} @click=${() => sendRequest({ kind: "do_task", task: chosen })}>
         ${texts.doTask}
       </button>
-      <button id="skip" ?disabled=${off || chosen === ""} @click=${() => ask({ kind: "skip", task: chosen })}>
+      <button id="skip" ?disabled=${off || chosen === ""} @click=${() => sendRequest({ kind: "skip", task: chosen })}>
         ${icon("skip", 16)} ${texts.skip}
       </button>
     </div>`;
@@ -157,7 +157,7 @@ export class RunHand extends PageElement {
       class=${direction}
       aria-label=${label}
       title=${label}
-      aria-pressed=${wanted.value === direction}
+      aria-pressed=${wantedDirection.value === direction}
       ?disabled=${!mayOperate()}
       @pointerdown=${(event: PointerEvent) => {
         (event.target as Element).setPointerCapture(event.pointerId);
@@ -186,9 +186,9 @@ export class RunHand extends PageElement {
     const now = run.value?.speed ?? null;
     if (on && (now === null || now > 1)) {
       this.speedBefore = now;
-      void ask({ kind: "speed", speed: 1 }, true);
+      void sendRequest({ kind: "speed", speed: 1 }, true);
     } else if (!on && this.speedBefore !== undefined) {
-      void ask({ kind: "speed", speed: this.speedBefore }, true);
+      void sendRequest({ kind: "speed", speed: this.speedBefore }, true);
       this.speedBefore = undefined;
     }
   }
@@ -197,7 +197,7 @@ export class RunHand extends PageElement {
 
   private readonly stand = (): void => {
     drive(null);
-    if (run.value?.moving) void ask({ kind: "stop_by_hand" }, true);
+    if (run.value?.moving) void sendRequest({ kind: "stop_by_hand" }, true);
   };
 
   private readonly onKey = (event: KeyboardEvent): void => {
@@ -214,15 +214,15 @@ export class RunHand extends PageElement {
   };
 
   private readonly onKeyUp = (event: KeyboardEvent): void => {
-    if (this.withKeys && directionOf(event.code) !== null && directionOf(event.code) === wanted.value)
+    if (this.withKeys && directionOf(event.code) !== null && directionOf(event.code) === wantedDirection.value)
       this.halt();
   };
 
   private async measure(event: SubmitEvent): Promise<void> {
     event.preventDefault();
     const field = this.renderRoot.querySelector<HTMLInputElement>("#measure-at");
-    const checkpoint = chosenCheckpoint(field?.value ?? "", world.value?.checkpoints ?? []);
+    const checkpoint = parseCheckpoint(field?.value ?? "", world.value?.checkpoints ?? []);
     if (checkpoint === null) return field?.focus();
-    await ask({ kind: "measure", checkpoint: String(checkpoint.id) });
+    await sendRequest({ kind: "measure", checkpoint: String(checkpoint.id) });
   }
 }

@@ -1,6 +1,6 @@
 /** Shared parts of the panels for runs, evaluations and orders: styles, speeds, list of checkpoints. */
 
-import { choiceOf } from "../model/checkpoint-choice";
+import { checkpointSuggestion } from "../model/checkpoint-choice";
 import { world } from "../state/world";
 import { t } from "../texts";
 import { css, html } from "../ui/element";
@@ -20,7 +20,7 @@ export function readSpeed(value: string): number | null {
 /** Render the checkpoints as suggestions of a field. */
 export function checkpointList(id: string) {
   return html`<datalist id=${id}>
-    ${(world.value?.checkpoints ?? []).map((one) => html`<option value=${choiceOf(one)}></option>`)}
+    ${(world.value?.checkpoints ?? []).map((one) => html`<option value=${checkpointSuggestion(one)}></option>`)}
   </datalist>`;
 }
 

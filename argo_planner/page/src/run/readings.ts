@@ -4,7 +4,7 @@ import { computed } from "@preact/signals-core";
 import { svg } from "lit";
 
 import type { Reading } from "../model/replay";
-import { drawnScale, placeOn } from "../model/scale";
+import { drawnScale, shareOfScale } from "../model/scale";
 import { pastRun, shownRun, shownRunState } from "../state/run";
 import { look as lookAt } from "../state/view";
 import { world } from "../state/world";
@@ -108,10 +108,10 @@ export class RunReadings extends PageElement {
     const { checkpoint, name, value, unit, normal, nominal } = reading;
     const known = world.value?.checkpoints.find((one) => one.id === checkpoint);
     const scale = drawnScale(known?.range ?? null, nominal, value);
-    const [from, to] = [placeOn(scale, nominal.low), placeOn(scale, nominal.high)];
-    const at = placeOn(scale, value);
+    const [from, to] = [shareOfScale(scale, nominal.low), shareOfScale(scale, nominal.high)];
+    const at = shareOfScale(scale, value);
     const sure = reading.confidence < 1 ? texts.confidence(percent(reading.confidence)) : "";
-    const said = texts.nominal(figure(nominal.low), figure(nominal.high), unit);
+    const wording = texts.nominal(figure(nominal.low), figure(nominal.high), unit);
     return html`<li data-checkpoint=${checkpoint}>
       <button
         class="bare name"
@@ -127,7 +127,7 @@ export class RunReadings extends PageElement {
         viewBox="0 0 ${WIDTH} ${HEIGHT}"
         preserveAspectRatio="none"
         role="img"
-        aria-label=${`${figure(value)} ${unit}, ${normal ? texts.normal : texts.abnormal}: ${said}`}
+        aria-label=${`${figure(value)} ${unit}, ${normal ? texts.normal : texts.abnormal}: ${wording}`}
       >
         ${svg`<rect class="range" x="0" y="3" width=${WIDTH} height="4" rx="1" />
           <rect class="band" x=${WIDTH * from} y="3" width=${WIDTH * Math.max(0.005, to - from)} height="4" />
@@ -146,11 +146,11 @@ export class RunReadings extends PageElement {
   private picture(reading: Reading) {
     const run = shownRunState.value;
     if (run?.sensor !== "camera" || pastRun.value?.evaluated) return nothing;
-    const said = t().run.picture(reading.name);
+    const wording = t().run.picture(reading.name);
     const at = `/api/runs/${run.id}/pictures/${reading.checkpoint}/${Math.round(1000 * reading.t)}`;
     return html`<details class="picture">
-      <summary>${icon("camera", 14)} ${said}</summary>
-      <img src=${at} alt=${said} loading="lazy" width="320" height="320" />
+      <summary>${icon("camera", 14)} ${wording}</summary>
+      <img src=${at} alt=${wording} loading="lazy" width="320" height="320" />
     </details>`;
   }
 }

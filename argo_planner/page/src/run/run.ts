@@ -1,8 +1,8 @@
 /** The panel of the run: start it, watch it, control it, go back in time. */
 
-import { client, answered } from "../api/client";
+import { client, responseData } from "../api/client";
 import type { FailedRun, RunState } from "../api/types";
-import { telling } from "../state/notices";
+import { withErrorNotice } from "../state/notices";
 import { planId } from "../state/plan";
 import { pastRun, run, runIsOn, showRun, shownRunState } from "../state/run";
 import { panel } from "../state/view";
@@ -159,7 +159,7 @@ export class RunPanel extends PageElement {
 
   private async choose(event: Event): Promise<void> {
     const id = valueOf(event);
-    await telling(() => showRun(id === "" ? null : id));
+    await withErrorNotice(() => showRun(id === "" ? null : id));
   }
 
   /** Read the runs of this mission again if a run has begun or ended. */
@@ -168,8 +168,8 @@ export class RunPanel extends PageElement {
     if (about === this.listed) return;
     this.listed = about;
     const plan = planId.value;
-    await telling(async () => {
-      const { runs } = await answered(client.GET("/api/runs"));
+    await withErrorNotice(async () => {
+      const { runs } = await responseData(client.GET("/api/runs"));
       this.past = runs.filter((one) => one.plan === plan);
     });
   }

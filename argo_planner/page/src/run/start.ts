@@ -1,10 +1,10 @@
 /** The form of a run: its settings. */
 
 import type { FaultKind, RunAsked } from "../api/types";
-import { choiceOf, chosenCheckpoint } from "../model/checkpoint-choice";
-import { keep, kept, mayOperate } from "../state/session";
-import { broken, mission } from "../state/plan";
-import { startRun } from "../state/asking";
+import { checkpointSuggestion, parseCheckpoint } from "../model/checkpoint-choice";
+import { storeSetting, storedSetting, mayOperate } from "../state/session";
+import { missionHasErrors, mission } from "../state/plan";
+import { startRun } from "../state/requests";
 import { world } from "../state/world";
 import { t } from "../texts";
 import { choice, iconButton } from "../ui/controls";
@@ -54,7 +54,7 @@ export class RunStart extends PageElement {
         >
           ${icon("play", 20)} ${this.starting ? texts.starting : texts.start}
         </button>
-        ${choice(texts.speed, "speed", SPEEDS.map((speed) => [speed, speedName(speed)]), readSpeed(kept("speed") ?? "1"))}
+        ${choice(texts.speed, "speed", SPEEDS.map((speed) => [speed, speedName(speed)]), readSpeed(storedSetting("speed") ?? "1"))}
       </div>
       ${reason === null ? nothing : html`<p class="reason" id="reason">${reason}</p>`}
       <details>
@@ -83,7 +83,7 @@ export class RunStart extends PageElement {
       <ul>
         ${[...this.values].map(([id, value]) => {
           const checkpoint = checkpoints.find((one) => one.id === id);
-          const name = checkpoint === undefined ? `#${id}` : choiceOf(checkpoint);
+          const name = checkpoint === undefined ? `#${id}` : checkpointSuggestion(checkpoint);
           return html`<li class="row">
             <span class="grow">${name}: ${figure(value)} ${checkpoint?.unit ?? ""}</span>
             ${iconButton("close", texts.remove(name), () => this.dropValue(id), { size: 16 })}
@@ -122,7 +122,7 @@ export class RunStart extends PageElement {
     const texts = t().run;
     if (!mayOperate()) return texts.mayNotOperate;
     if ((mission.value?.tasks.length ?? 0) === 0) return texts.noTasks;
-    return broken.value ? texts.hasErrors : null;
+    return missionHasErrors.value ? texts.hasErrors : null;
   }
 
   private onValueKey(event: KeyboardEvent): void {
@@ -134,7 +134,7 @@ export class RunStart extends PageElement {
   private addValue(): void {
     const of = this.renderRoot.querySelector<HTMLInputElement>("#value-of");
     const field = this.renderRoot.querySelector<HTMLInputElement>("#value");
-    const checkpoint = chosenCheckpoint(of?.value ?? "", world.value?.checkpoints ?? []);
+    const checkpoint = parseCheckpoint(of?.value ?? "", world.value?.checkpoints ?? []);
     if (!of || !field) return;
     if (checkpoint === null) return of.focus();
     if (field.value === "" || !Number.isFinite(field.valueAsNumber)) return field.focus();
@@ -152,7 +152,7 @@ export class RunStart extends PageElement {
     if (this.starting || this.whyNot() !== null) return;
     const form = new FormData(event.target as HTMLFormElement);
     const speed = form.get("speed") as string;
-    keep("speed", speed);
+    storeSetting("speed", speed);
     const asked: Partial<RunAsked> = {
       speed: readSpeed(speed),
       drive: form.get("drive") as string,

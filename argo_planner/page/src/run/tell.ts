@@ -1,8 +1,8 @@
 /** Reports of a person to the run: an event, a reading, or a fault in the simulation. */
 
 import type { EventKind, FaultKind } from "../api/types";
-import { chosenCheckpoint } from "../model/checkpoint-choice";
-import { ask, type Question } from "../state/asking";
+import { parseCheckpoint } from "../model/checkpoint-choice";
+import { sendRequest, type RunRequest } from "../state/requests";
 import { run } from "../state/run";
 import { mayOperate } from "../state/session";
 import { world } from "../state/world";
@@ -67,20 +67,20 @@ export class RunTell extends PageElement {
 
   private tellEvent(event: SubmitEvent): void {
     const kind = this.field(event, "event").value as EventKind;
-    void ask({ kind: "event", event: kind });
+    void sendRequest({ kind: "event", event: kind });
   }
 
   private tellReading(event: SubmitEvent): void {
     const of = this.field(event, "of");
-    const checkpoint = chosenCheckpoint(of.value, world.value?.checkpoints ?? []);
+    const checkpoint = parseCheckpoint(of.value, world.value?.checkpoints ?? []);
     if (checkpoint === null) return of.focus();
     const value = Number(this.field(event, "value").value);
-    void ask({ kind: "reading", checkpoint: String(checkpoint.id), value });
+    void sendRequest({ kind: "reading", checkpoint: String(checkpoint.id), value });
   }
 
   private beginFault(event: SubmitEvent): void {
     const kind = this.field(event, "fault").value as FaultKind;
-    void ask({ kind: "fault", fault: { kind } } as unknown as Question);
+    void sendRequest({ kind: "fault", fault: { kind } } as unknown as RunRequest);
   }
 
   private field(event: SubmitEvent, name: string): HTMLInputElement {

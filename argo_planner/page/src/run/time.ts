@@ -3,7 +3,7 @@
 import { computed } from "@preact/signals-core";
 import { svg } from "lit";
 
-import { happenings } from "../model/happenings";
+import { runEvents } from "../model/run-events";
 import { pastRun, shownEntries, shownRunState, shownTime } from "../state/run";
 import { t } from "../texts";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
@@ -12,7 +12,7 @@ import { parts } from "./parts";
 const STEP = 0.5; // s, the interval at which a run stores the robot's pose
 const MOST_MARKS = 300;
 
-const all = computed(() => happenings(shownEntries.value));
+const all = computed(() => runEvents(shownEntries.value));
 
 @customElement("argo-run-time")
 export class RunTime extends PageElement {

@@ -7,7 +7,7 @@ import { t } from "../texts";
 import { iconButton, options } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, property, state } from "../ui/element";
 import type { Icon } from "../ui/icons";
-import { chooseFollowing, waysToFollow } from "./following";
+import { chooseFollowing, followChoices } from "./following";
 import { floating } from "./style";
 import { edgesMove, hidden, hide, labelsShown, pathsShown } from "./settings";
 import { HIDEABLE } from "./site";
@@ -127,7 +127,7 @@ export class SceneBar extends PageElement {
       <label>
         ${texts.follow}
         <select ?disabled=${!canFollow} @change=${chooseFollowing}>
-          ${options(waysToFollow(), following.value)}
+          ${options(followChoices(), following.value)}
         </select>
       </label>
     </div>`;

@@ -10,8 +10,8 @@ import { iconButton } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, property } from "../ui/element";
 import { figure } from "../ui/figures";
 import { icon } from "../ui/icons";
-import { heed } from "./heed";
-import { type Mark, opened } from "./marks";
+import { dependOn } from "./depend-on";
+import { type Mark, openMark } from "./marks";
 import { setsStart } from "./navigate";
 import { floating } from "./style";
 import type { SceneView } from "./view";
@@ -68,14 +68,14 @@ export class SceneCard extends PageElement {
   override render() {
     const { view } = this;
     if (view === null) return nothing;
-    heed(view.frames);
-    const mark = view.markOf(opened.value);
+    dependOn(view.frames);
+    const mark = view.markOf(openMark.value);
     if (mark === null) return nothing;
     this.stand(view, mark);
     return html`<div class="panel" role="group" aria-label=${mark.text} @keydown=${this.onKey}>
       <div class="head">
         <h2 class="grow">${mark.text}</h2>
-        ${iconButton("close", t().scene.close, () => (opened.value = null), { title: nothing, size: 14 })}
+        ${iconButton("close", t().scene.close, () => (openMark.value = null), { title: nothing, size: 14 })}
       </div>
       ${this.content(mark)}
     </div>`;
@@ -149,7 +149,7 @@ export class SceneCard extends PageElement {
 
   private onKey(event: KeyboardEvent): void {
     if (event.key !== "Escape") return;
-    opened.value = null;
+    openMark.value = null;
     event.stopPropagation();
     event.preventDefault();
   }
@@ -158,7 +158,7 @@ export class SceneCard extends PageElement {
 /** Close the card once a task is added: it would cover the list and the site where the task appears. */
 function added(adding: Promise<boolean>): void {
   void adding.then((done) => {
-    if (done) opened.value = null;
+    if (done) openMark.value = null;
   });
 }
 

@@ -2,7 +2,7 @@
 
 import { Color, Group, InstancedMesh, Matrix4, MeshLambertMaterial, DoubleSide } from "three";
 
-import { fetched } from "../api/client";
+import { fetchFile } from "../api/client";
 import type { World, WorldCheckpoint } from "../api/types";
 import { merged, wholeModel } from "./geometry";
 import { type GlbNode, type GlbPart, readGlb } from "./glb";
@@ -38,7 +38,7 @@ export class Gauges {
   async load(site: World, cancelled: () => boolean): Promise<void> {
     const kinds = [...new Set(site.checkpoints.map((one) => one.kind))];
     const found = await Promise.all(
-      kinds.map((kind) => fetched(`/api/world/checkpoints/${encodeURIComponent(kind)}`)),
+      kinds.map((kind) => fetchFile(`/api/world/checkpoints/${encodeURIComponent(kind)}`)),
     );
     if (cancelled()) return;
     this.clear();

@@ -6,7 +6,7 @@ import { t } from "../texts";
 import { css, customElement, html, nothing, PageElement, property } from "../ui/element";
 import { world } from "../state/world";
 import { styled } from "../ui/styled";
-import { heed } from "./heed";
+import { dependOn } from "./depend-on";
 import { floating } from "./style";
 import type { SceneView } from "./view";
 
@@ -64,7 +64,7 @@ export class SceneCompass extends PageElement {
   override render() {
     const { view } = this;
     if (view === null) return nothing;
-    heed(view.frames);
+    dependOn(view.frames);
     const turn = (view.camera.controls.azimuthAngle * 180) / Math.PI;
     const north = ((world.value?.north ?? Math.PI / 2) * 180) / Math.PI - 90;
     const tilt = Math.max(0.35, Math.cos(view.camera.controls.polarAngle));

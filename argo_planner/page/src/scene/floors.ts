@@ -3,7 +3,7 @@
 import { svg } from "lit";
 
 import type { WorldFloor } from "../api/types";
-import { floorOf } from "../model/standing";
+import { floorOf } from "../model/standing-map";
 import { shownRun } from "../state/run";
 import { shownFloor } from "../state/view";
 import { checkpointsById, world } from "../state/world";

@@ -5,7 +5,7 @@ import { t } from "../texts";
 import { valueOf } from "../ui/controls";
 
 /** Return the choices with their names, each behind a prefix. */
-export function waysToFollow(word = ""): (readonly [typeof following.value, string])[] {
+export function followChoices(word = ""): (readonly [typeof following.value, string])[] {
   const { followOff, followBehind, followAbove } = t().scene;
   return [
     ["off", word + followOff],

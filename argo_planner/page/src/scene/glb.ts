@@ -17,7 +17,7 @@ export interface GlbNode {
   readonly parts: readonly GlbPart[];
 }
 
-interface Told {
+interface Gltf {
   readonly nodes: readonly {
     readonly name?: string;
     readonly children?: readonly number[];
@@ -52,34 +52,34 @@ export function readGlb(content: ArrayBuffer): GlbNode[] {
   const view = new DataView(content);
   if (view.getUint32(0, true) !== MAGIC) throw new Error("this is no GLB file");
   const length = view.getUint32(12, true);
-  const told = JSON.parse(new TextDecoder().decode(new Uint8Array(content, 20, length))) as Told;
+  const gltf = JSON.parse(new TextDecoder().decode(new Uint8Array(content, 20, length))) as Gltf;
   const binary = 20 + length + 8;
   const carriers = new Map<number, number>();
-  told.nodes.forEach((node, index) => node.children?.forEach((child) => carriers.set(child, index)));
-  return told.nodes.slice(1).map((node, index) => {
+  gltf.nodes.forEach((node, index) => node.children?.forEach((child) => carriers.set(child, index)));
+  return gltf.nodes.slice(1).map((node, index) => {
     const carrier = carriers.get(index + 1) ?? 0;
-    const primitives = node.mesh === undefined ? [] : (told.meshes?.[node.mesh]?.primitives ?? []);
+    const primitives = node.mesh === undefined ? [] : (gltf.meshes?.[node.mesh]?.primitives ?? []);
     return {
       name: node.name ?? "",
       parent: carrier === 0 ? null : carrier - 1,
       position: node.translation ?? [0, 0, 0],
       rotation: node.rotation ?? [0, 0, 0, 1],
-      parts: primitives.map((one) => partOf(content, told, binary, one)),
+      parts: primitives.map((one) => partOf(content, gltf, binary, one)),
     };
   });
 }
 
-function partOf(content: ArrayBuffer, told: Told, binary: number, primitive: Primitive): GlbPart {
+function partOf(content: ArrayBuffer, gltf: Gltf, binary: number, primitive: Primitive): GlbPart {
   const place = (number: number) => {
-    const accessor = told.accessors[number];
-    const buffer = told.bufferViews[accessor?.bufferView ?? -1];
+    const accessor = gltf.accessors[number];
+    const buffer = gltf.bufferViews[accessor?.bufferView ?? -1];
     if (!accessor || !buffer) throw new Error("this GLB file is not whole");
     const at = binary + (buffer.byteOffset ?? 0) + (accessor.byteOffset ?? 0);
     return { ...accessor, at };
   };
   const corners = place(primitive.attributes.POSITION);
   const triangles = place(primitive.indices);
-  const material = told.materials?.[primitive.material ?? -1];
+  const material = gltf.materials?.[primitive.material ?? -1];
   const [red = 1, green = 1, blue = 1] = material?.pbrMetallicRoughness?.baseColorFactor ?? [];
   const Index = triangles.componentType === SHORT ? Uint16Array : Uint32Array;
   return {

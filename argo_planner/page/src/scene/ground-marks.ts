@@ -14,7 +14,7 @@ import {
 } from "three";
 
 import type { Obstacle, World } from "../api/types";
-import { floorOf } from "../model/standing";
+import { floorOf } from "../model/standing-map";
 import type { Colours } from "./colours";
 import type { Mark } from "./marks";
 import { arrowShape } from "./robot";

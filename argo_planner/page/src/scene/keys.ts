@@ -1,7 +1,7 @@
 /** Keys while the scene has the focus. */
 
-import { liftGhost, beginAt, FAST_CELLS, ghost, hideGhost, moveGhost, turnGhost } from "./navigate";
-import { beginCorner, corners, liftCorner, moveCorner, takePointed } from "./obstacle-tool";
+import { liftGhost, beginGhostAt, FAST_CELLS, ghost, hideGhost, moveGhost, turnGhost } from "./navigate";
+import { beginCorner, corners, liftCorner, moveCorner, setPointedCorner } from "./obstacle-tool";
 import { shownFloor, tool } from "../state/view";
 import { world } from "../state/world";
 import { Vector3 } from "three";
@@ -39,7 +39,7 @@ export function onSceneKey(event: KeyboardEvent, { view, place }: Keyed): boolea
   else if (navigates && event.key === ",") turn(view, 1);
   else if (navigates && event.key === ".") turn(view, -1);
   else if (navigates && event.key === "Enter" && ghost.value !== null) place();
-  else if (spans && event.key === "Enter") takePointed();
+  else if (spans && event.key === "Enter") setPointedCorner();
   else if (event.key === "+" || event.key === "=") view.camera.zoom(1);
   else if (event.key === "-") view.camera.zoom(-1);
   else if (event.key === "Home") void view.camera.showAll(shownFloor.value);
@@ -55,7 +55,7 @@ function turn(view: SceneView, steps: number): void {
 /** Place the ghost in the middle of the view. */
 function begin(view: SceneView): void {
   const middle = ghost.value === null ? middleOf(view) : undefined;
-  if (middle) beginAt(middle.x, middle.y, middle.z);
+  if (middle) beginGhostAt(middle.x, middle.y, middle.z);
 }
 
 /** Return the point of the ground in the middle of the view (m), or else the first dock. */

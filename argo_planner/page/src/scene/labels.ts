@@ -2,7 +2,7 @@
 
 import type { Vector3 } from "three";
 
-import { declutter, type LabelWish, type PlacedLabel, type Side } from "../model/declutter";
+import { declutter, type LabelRequest, type PlacedLabel, type Side } from "../model/declutter";
 import type { Mark } from "./marks";
 import type { Stage } from "./stage";
 
@@ -16,7 +16,7 @@ const MOST = 60;
 
 interface Shown {
   readonly element: HTMLElement;
-  said: string;
+  content: string;
 }
 
 export class Labels {
@@ -34,7 +34,7 @@ export class Labels {
   /** Place labels; those of marks `behind` other objects come last, and are faint. */
   update(marks: readonly Mark[], behind: ReadonlySet<string>): void {
     const { width, height } = this.stage.size;
-    const wishes: LabelWish[] = [];
+    const wishes: LabelRequest[] = [];
     const byKey = new Map<string, Mark>();
     for (const mark of marks) {
       const seen = this.project(mark.at, width, height);
@@ -75,14 +75,14 @@ export class Labels {
   private draw(box: PlacedLabel, mark: Mark, behind: boolean): void {
     let shown = this.shown.get(box.key);
     if (shown === undefined) {
-      shown = { element: document.createElement("div"), said: "" };
+      shown = { element: document.createElement("div"), content: "" };
       this.shown.set(box.key, shown);
       this.host.append(shown.element);
     }
     const { element } = shown;
-    const said = [mark.numbers, mark.text, mark.value, mark.tone, behind].join("\n");
-    if (said !== shown.said) {
-      shown.said = said;
+    const content = [mark.numbers, mark.text, mark.value, mark.tone, behind].join("\n");
+    if (content !== shown.content) {
+      shown.content = content;
       element.className = `label ${mark.tone}${behind ? " behind" : ""}`;
       element.dataset["key"] = mark.key;
       element.replaceChildren(

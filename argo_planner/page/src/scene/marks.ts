@@ -5,7 +5,7 @@ import { Vector3 } from "three";
 
 import type { Obstacle, Pose, Task, World, WorldCheckpoint } from "../api/types";
 import { taskKey } from "../model/outline";
-import { floorOf } from "../model/standing";
+import { floorOf } from "../model/standing-map";
 import { mission, planId, select, selection } from "../state/plan";
 import { preview } from "../state/preview";
 import { type ShownRun, shownRun } from "../state/run";
@@ -36,7 +36,7 @@ export interface Mark {
 }
 
 /** Key of the mark whose card is open. */
-export const opened = signal<string | null>(null);
+export const openMark = signal<string | null>(null);
 
 const RAISED = 0.12;
 
@@ -54,18 +54,18 @@ export const measuring = computed(() => {
 });
 
 /** The shown run, if it belongs to this mission. */
-const told = computed(() => {
+const runOfMission = computed(() => {
   const now = shownRun.value;
   return now !== null && now.plan === planId.value ? now : null;
 });
 /** Readings as text, so that marks are made again when a reading changes, and not with each pose. */
-const toldReadings = computed(() => told.value?.readings);
-const readingsText = computed(() => JSON.stringify(toldReadings.value ?? []));
+const runReadings = computed(() => runOfMission.value?.readings);
+const readingsText = computed(() => JSON.stringify(runReadings.value ?? []));
 const readings = computed(() => {
   const all = JSON.parse(readingsText.value) as ShownRun["readings"];
   return new Map(all.map((one) => [one.checkpoint, one]));
 });
-const active = computed(() => told.value?.task ?? null);
+const active = computed(() => runOfMission.value?.task ?? null);
 
 export const marks = computed<readonly Mark[]>(() => {
   const site = world.value;
@@ -83,7 +83,7 @@ function checkpointMark(checkpoint: WorldCheckpoint): Mark {
   const keys = there?.tasks.map((task) => taskKey(task.name)) ?? [];
   const key = `checkpoint:${checkpoint.id}`;
   const reading = readings.value.get(checkpoint.id);
-  const chosen = opened.value === key || keys.some((one) => selection.value.includes(one));
+  const chosen = openMark.value === key || keys.some((one) => selection.value.includes(one));
   const isActive = there?.tasks.some((task) => task.name === active.value) ?? false;
   const planned = keys.length > 0;
   return {
@@ -111,7 +111,7 @@ function checkpointMark(checkpoint: WorldCheckpoint): Mark {
 }
 
 /** Return the default fields of a mark at a pose, raised by `raised` m. */
-function standing(site: World, { x, y, z }: Pose, raised = RAISED) {
+function fieldsAtPose(site: World, { x, y, z }: Pose, raised = RAISED) {
   const floor = floorOf(site.floors, z)?.number ?? 1;
   return { at: new Vector3(x, y, z + raised), floor, numbers: "", value: "", tasks: [] };
 }
@@ -125,7 +125,7 @@ function taskMarks(site: World): Mark[] {
     const chosen = selection.value.includes(key);
     const isActive = active.value === task.name;
     found.push({
-      ...standing(site, pose),
+      ...fieldsAtPose(site, pose),
       key,
       subject: { kind: "task", task, pose },
       text: task.name,
@@ -148,11 +148,11 @@ export function poseOf(task: Task, site: World): Pose | null {
 
 function placeMarks(site: World): Mark[] {
   const mark = (name: string, pose: Pose, dock: number | null): Mark => ({
-    ...standing(site, pose),
+    ...fieldsAtPose(site, pose),
     key: dock === null ? `place:${name}` : `dock:${dock}`,
     subject: { kind: "place", name, pose, dock },
     text: name,
-    tone: opened.value === (dock === null ? `place:${name}` : `dock:${dock}`) ? "chosen" : "dim",
+    tone: openMark.value === (dock === null ? `place:${name}` : `dock:${dock}`) ? "chosen" : "dim",
     weight: 2,
   });
   return [
@@ -165,22 +165,22 @@ function obstacleMark(site: World, obstacle: Obstacle): Mark {
   const { pose, size } = obstacle;
   const key = `obstacle:${obstacle.id}`;
   return {
-    ...standing(site, pose, size[2]),
+    ...fieldsAtPose(site, pose, size[2]),
     key,
     subject: { kind: "obstacle", obstacle },
     text: obstacle.name === "" ? t().scene.obstacle : obstacle.name,
-    tone: opened.value === key ? "chosen" : "bad",
+    tone: openMark.value === key ? "chosen" : "bad",
     weight: 3,
   };
 }
 
 /** Select the task that a path leads to. */
-export function chooseWay(way: number, add: boolean): void {
+export function selectTaskOfPath(way: number, add: boolean): void {
   const target = preview.value?.ways[way]?.target;
   if (target === undefined) return;
   const key = taskKey(target);
   const others = selection.value.filter((one) => one !== key);
-  opened.value = null;
+  openMark.value = null;
   select(add ? (others.length < selection.value.length ? others : [...others, key]) : [key]);
 }
 

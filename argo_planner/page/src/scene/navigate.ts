@@ -4,14 +4,14 @@ import { computed, effect, signal } from "@preact/signals-core";
 import type { Ray, Vector3 } from "three";
 
 import { addPlace, lacksStart } from "../list/adding";
-import { floorOf, type Standing } from "../model/standing";
+import { floorOf, type GroundVerdict } from "../model/standing-map";
 import { mission } from "../state/plan";
 import { shownFloor, tool } from "../state/view";
 import { world } from "../state/world";
 import { t } from "../texts";
-import { heed } from "./heed";
+import { dependOn } from "./depend-on";
 import type { Site } from "./site";
-import { mapsRead, readMaps, standing } from "./standing-maps";
+import { mapsRead, readMaps, standingVerdict } from "./standing-maps";
 
 export interface GhostPose {
   readonly x: number;
@@ -20,7 +20,7 @@ export interface GhostPose {
   readonly yaw: number;
   readonly floor: number;
   /** null: not known yet */
-  readonly verdict: Standing | null;
+  readonly verdict: GroundVerdict | null;
 }
 
 /** Cells per step with Shift. */
@@ -32,43 +32,43 @@ const STEP_UP = 0.3;
 const MOST_STEPS = 12;
 const THROUGH = 0.02;
 
-const placed = signal<Omit<GhostPose, "verdict" | "floor"> | null>(null);
+const ghostPose = signal<Omit<GhostPose, "verdict" | "floor"> | null>(null);
 let yaw = 0;
 
 /** Pose of the ghost and whether the robot can stand there; null: there is no ghost. */
 export const ghost = computed<GhostPose | null>(() => {
-  const at = placed.value;
+  const at = ghostPose.value;
   const site = world.value;
   if (at === null || site === null) return null;
-  heed(mapsRead);
-  return posed(at, standing(at.x, at.y, at.z, at.yaw));
+  dependOn(mapsRead);
+  return withVerdict(at, standingVerdict(at.x, at.y, at.z, at.yaw));
 });
 
-function posed(at: Omit<GhostPose, "verdict" | "floor">, verdict: Standing | null): GhostPose {
+function withVerdict(at: Omit<GhostPose, "verdict" | "floor">, verdict: GroundVerdict | null): GhostPose {
   const z = verdict !== null && Math.abs(verdict.z - at.z) < STEP_UP ? verdict.z : at.z;
   return { ...at, z, floor: floorOf(world.peek()?.floors ?? [], z)?.number ?? 1, verdict };
 }
 
 /** Select the tool: load the maps. */
-export function takeGhost(): void {
+export function activateNavigation(): void {
   const site = world.value;
   if (site !== null) readMaps(site, shownFloor.peek() ?? site.floors.at(-1)?.number ?? 1);
 }
 
 export function hideGhost(): void {
-  placed.value = null;
+  ghostPose.value = null;
 }
 
 /** Move the ghost to where a ray hits the ground. The ray passes through stairs on which the robot can't
  * stand if it can stand behind them. */
-export function hover(ray: Ray, site: Site): void {
+export function moveGhostToRay(ray: Ray, site: Site): void {
   const first = site.hitWays(ray);
   let hit = first;
   for (let tries = 0; hit !== null && tries < MOST_STEPS && isStep(hit.point); tries++)
     hit = site.hitWays(ray, hit.distance + THROUGH);
   const behind = hit !== null && hit !== first && groundAt(hit.point) === "reached";
   const meant = behind ? hit : first;
-  placed.value = meant && { x: meant.point.x, y: meant.point.y, z: meant.point.z, yaw };
+  ghostPose.value = meant && { x: meant.point.x, y: meant.point.y, z: meant.point.z, yaw };
 }
 
 /** Return whether a point is above its floor's deck and the robot can't stand there. */
@@ -78,23 +78,23 @@ function isStep(point: Vector3): boolean {
 }
 
 function groundAt({ x, y, z }: Vector3): string | undefined {
-  return standing(x, y, z, yaw)?.ground;
+  return standingVerdict(x, y, z, yaw)?.ground;
 }
 
 /** Place the ghost, if there is none. */
-export function beginAt(x: number, y: number, z: number): void {
-  placed.value ??= { x: middle(x), y: middle(y), z, yaw };
+export function beginGhostAt(x: number, y: number, z: number): void {
+  ghostPose.value ??= { x: cellMiddle(x), y: cellMiddle(y), z, yaw };
 }
 
 /** Turn the ghost counter-clockwise by steps of 45°. */
 export function turnGhost(steps: number): void {
   yaw = Math.atan2(Math.sin(yaw + steps * TURN), Math.cos(yaw + steps * TURN));
-  if (placed.value !== null) placed.value = { ...placed.value, yaw };
+  if (ghostPose.value !== null) ghostPose.value = { ...ghostPose.value, yaw };
 }
 
 /** Move the ghost by cells, along its ground. */
 export function moveGhost(columns: number, rows: number): void {
-  const at = placed.value;
+  const at = ghostPose.value;
   const cell = world.value?.cell ?? 0.1;
   if (at === null) return;
   const steps = Math.max(Math.abs(columns), Math.abs(rows));
@@ -102,19 +102,19 @@ export function moveGhost(columns: number, rows: number): void {
   for (let i = 0; i < steps; i++) {
     x += Math.sign(columns) * cell;
     y += Math.sign(rows) * cell;
-    const there = standing(x, y, z, at.yaw);
+    const there = standingVerdict(x, y, z, at.yaw);
     if (there !== null && there.ground !== "none" && Math.abs(there.z - z) < STEP_UP) z = there.z;
   }
-  placed.value = { x: middle(x), y: middle(y), z, yaw: at.yaw };
+  ghostPose.value = { x: cellMiddle(x), y: cellMiddle(y), z, yaw: at.yaw };
 }
 
 /** Move the ghost to another floor. */
 export function liftGhost(z: number): void {
-  if (placed.value !== null) placed.value = { ...placed.value, z };
+  if (ghostPose.value !== null) ghostPose.value = { ...ghostPose.value, z };
 }
 
 /** Return the middle of the cell, so that steps go from cell to cell. */
-function middle(value: number): number {
+function cellMiddle(value: number): number {
   const cell = world.value?.cell ?? 0.1;
   return Math.round((Math.floor(value / cell + 1e-6) + 0.5) * cell * 1e6) / 1e6;
 }
@@ -124,7 +124,7 @@ export const setsStart = computed(() => mission.value !== null && lacksStart(mis
 
 /** Add a task at the ghost, if the robot can stand there. Returns whether it was added. */
 export async function placeGhost(): Promise<boolean> {
-  const at = await judged();
+  const at = await ghostWithVerdict();
   if (at?.verdict?.ground !== "reached") return false;
   const rounded = (value: number) => Math.round(1000 * value) / 1000;
   const pose = { x: rounded(at.x), y: rounded(at.y), z: rounded(at.z), yaw: at.yaw };
@@ -132,15 +132,15 @@ export async function placeGhost(): Promise<boolean> {
 }
 
 /** Return the ghost with its verdict. Right after the tool was selected, the maps may still be loading. */
-function judged(): Promise<GhostPose | null> {
-  const at = placed.peek();
+function ghostWithVerdict(): Promise<GhostPose | null> {
+  const at = ghostPose.peek();
   return new Promise((resolve) => {
     const stop = effect(() => {
-      heed(mapsRead);
-      const verdict = at && standing(at.x, at.y, at.z, at.yaw);
+      dependOn(mapsRead);
+      const verdict = at && standingVerdict(at.x, at.y, at.z, at.yaw);
       const gone = tool.value !== "navigate";
       if (at !== null && verdict === null && !gone) return;
-      resolve(at === null || gone ? null : posed(at, verdict));
+      resolve(at === null || gone ? null : withVerdict(at, verdict));
       queueMicrotask(() => stop());
     });
   });
@@ -151,13 +151,13 @@ export function verdictWords(at: GhostPose | null): string {
   const texts = t().scene;
   if (at === null) return texts.offSite;
   if (at.verdict === null) return texts.checking;
-  const said = texts.grounds[at.verdict.ground];
-  return at.verdict.ground !== "reached" && standsTurned(at) ? `${said} – ${texts.turnIt}` : said;
+  const text = texts.grounds[at.verdict.ground];
+  return at.verdict.ground !== "reached" && standsTurned(at) ? `${text} – ${texts.turnIt}` : text;
 }
 
 /** Return whether the robot could stand there with another heading. */
 function standsTurned({ x, y, z }: GhostPose): boolean {
-  return world.peek()?.headings.some((other) => standing(x, y, z, other)?.ground === "reached") ?? false;
+  return world.peek()?.headings.some((other) => standingVerdict(x, y, z, other)?.ground === "reached") ?? false;
 }
 
 /** Describe the pose of the ghost. */

@@ -3,7 +3,7 @@
 import { tool } from "../state/view";
 import { t } from "../texts";
 import { css, customElement, html, nothing, PageElement, query, state } from "../ui/element";
-import { height, hideCorners, putUp, spanned, corners } from "./obstacle-tool";
+import { height, hideCorners, addSpannedBox, spannedBox, corners } from "./obstacle-tool";
 import { figure } from "../ui/figures";
 import { floating } from "./style";
 
@@ -37,7 +37,7 @@ export class ObstacleForm extends PageElement {
 
   override render() {
     const texts = t().scene;
-    const box = spanned.value;
+    const box = spannedBox.value;
     if (!corners.value?.second || box === null) return nothing;
     const [x, y, z] = box.size;
     return html`<form class="panel" @submit=${this.submit} @keydown=${this.onKey}>
@@ -72,7 +72,7 @@ export class ObstacleForm extends PageElement {
   private submit(event: Event): void {
     event.preventDefault();
     this.busy = true;
-    void putUp(this.field?.value.trim() ?? "").finally(() => (this.busy = false));
+    void addSpannedBox(this.field?.value.trim() ?? "").finally(() => (this.busy = false));
   }
 
   private onKey(event: KeyboardEvent): void {

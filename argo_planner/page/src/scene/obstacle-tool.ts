@@ -29,7 +29,7 @@ export const corners = signal<{
 export const height = signal(FIRST_HEIGHT);
 
 /** The box that would be added. */
-export const spanned = computed<Pick<Obstacle, "pose" | "size"> | null>(() => {
+export const spannedBox = computed<Pick<Obstacle, "pose" | "size"> | null>(() => {
   const { first = null, second = null, pointed = null } = corners.value ?? {};
   const other = second ?? pointed;
   if (other === null) return null;
@@ -52,7 +52,7 @@ export function clickCorner(hit: Hit | null): void {
 }
 
 /** Set the corner that the keys have moved. */
-export function takePointed(): void {
+export function setPointedCorner(): void {
   const at = corners.value?.pointed;
   if (at) takeCorner(at);
 }
@@ -92,8 +92,8 @@ export function hideCorners(): void {
 }
 
 /** Add the box as an obstacle. Returns whether it was added. */
-export async function putUp(name: string): Promise<boolean> {
-  const box = spanned.value;
+export async function addSpannedBox(name: string): Promise<boolean> {
+  const box = spannedBox.value;
   if (box === null) return false;
   const done = await addObstacle({ ...box, name });
   if (done) {

@@ -17,13 +17,13 @@ import type { PreviewedMission } from "../api/types";
 import { taskKey } from "../model/outline";
 import { markedColour, timeColour } from "../model/path-colours";
 import { arrows, ribbon, ribbonPaths, type RibbonPath, type Triangles } from "../model/ribbons";
-import { floorOf } from "../model/standing";
+import { floorOf } from "../model/standing-map";
 import { selection } from "../state/plan";
 import { comparedPreview, hoveredLeg, preview } from "../state/preview";
 import { panel, shownFloor } from "../state/view";
 import { world } from "../state/world";
 import { colours } from "./colours";
-import { heed } from "./heed";
+import { dependOn } from "./depend-on";
 import { pathsShown } from "./settings";
 import { dispose } from "./stage";
 import type { SceneView } from "./view";
@@ -80,7 +80,7 @@ export class PathsView {
       effect(() => {
         const highest = shownFloor.value;
         const on = pathsShown.value;
-        heed(this.paths, this.meant, comparedPreview, panel, colours);
+        dependOn(this.paths, this.meant, comparedPreview, panel, colours);
         for (const group of [this.group, this.marked, this.compared])
           for (const one of group.children)
             one.visible = on && (highest === null || (one.userData["floor"] as number) <= highest);

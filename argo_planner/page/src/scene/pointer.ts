@@ -1,8 +1,8 @@
 /** Pointer input of the scene: pointing, clicks, and drags, which move the camera. */
 
-import { moved, pressed, type Press } from "../model/gesture";
+import { movePress, beginPress, type Press } from "../model/gesture";
 
-export interface PointerTold {
+export interface PointerHandlers {
   pointed(x: number, y: number): void;
   left(): void;
   /** `add`: with Ctrl or the command key */
@@ -22,11 +22,11 @@ export class PointerWatch {
 
   constructor(
     private readonly element: HTMLElement,
-    private readonly told: PointerTold,
+    private readonly handlers: PointerHandlers,
   ) {
     const { signal } = this.over;
     element.addEventListener("pointerdown", this.down, { signal });
-    element.addEventListener("pointerleave", () => this.press === null && told.left(), { signal });
+    element.addEventListener("pointerleave", () => this.press === null && handlers.left(), { signal });
     element.addEventListener("contextmenu", (event) => event.preventDefault(), { signal });
     element.addEventListener("wheel", this.wheel, { signal, passive: false });
     // The camera gets the event later: a click must not turn it.
@@ -47,16 +47,16 @@ export class PointerWatch {
   private readonly down = (event: PointerEvent): void => {
     // A second finger makes it a camera gesture.
     const drag = this.press !== null;
-    this.press = { ...pressed(event.pointerId, event.button, event.clientX, event.clientY), drag };
+    this.press = { ...beginPress(event.pointerId, event.button, event.clientX, event.clientY), drag };
   };
 
   private readonly move = (event: PointerEvent): void => {
     if (this.press === null) {
-      if (event.composedPath()[0] === this.element) this.told.pointed(...this.place(event));
+      if (event.composedPath()[0] === this.element) this.handlers.pointed(...this.place(event));
       return;
     }
     if (event.pointerId !== this.press.pointer) return;
-    this.press = moved(this.press, event.clientX, event.clientY);
+    this.press = movePress(this.press, event.clientX, event.clientY);
     if (!this.press.drag) event.stopImmediatePropagation();
   };
 
@@ -64,10 +64,10 @@ export class PointerWatch {
     const press = this.press;
     if (press?.pointer !== event.pointerId) return;
     this.press = null;
-    if (moved(press, event.clientX, event.clientY).drag) return;
+    if (movePress(press, event.clientX, event.clientY).drag) return;
     const place = this.place(event);
-    if (press.button === 0) this.told.clicked(...place, event.ctrlKey || event.metaKey);
-    else if (press.button === 2) this.told.clickedRight(...place);
+    if (press.button === 0) this.handlers.clicked(...place, event.ctrlKey || event.metaKey);
+    else if (press.button === 2) this.handlers.clickedRight(...place);
   };
 
   /** Convert wheel events to notches; touchpads report small parts of them. */
@@ -77,6 +77,6 @@ export class PointerWatch {
     this.turned = notch ? Math.sign(deltaY) : this.turned + deltaY / NOTCH_PX;
     const steps = Math.trunc(this.turned);
     this.turned -= steps;
-    if (!event.ctrlKey && this.told.wheeled(steps)) event.preventDefault();
+    if (!event.ctrlKey && this.handlers.wheeled(steps)) event.preventDefault();
   };
 }

@@ -3,17 +3,17 @@
 import { computed, effect, signal } from "@preact/signals-core";
 import { BufferAttribute, BufferGeometry, Line, LineBasicMaterial, Vector3 } from "three";
 
-import { fetched, pause, Unreached } from "../api/client";
+import { fetchFile, delay, Unreached } from "../api/client";
 import type { World } from "../api/types";
 import { shownMode, type ShownMode } from "../model/run-mode";
-import { floorOf } from "../model/standing";
+import { floorOf } from "../model/standing-map";
 import { mission, planId } from "../state/plan";
 import { run, shownEntries, shownRun, shownRunState } from "../state/run";
 import { following, shownFloor } from "../state/view";
 import { world } from "../state/world";
 import { type Colours, colours } from "./colours";
 import { readGlb } from "./glb";
-import { heed } from "./heed";
+import { dependOn } from "./depend-on";
 import { poseOf } from "./marks";
 import { ghost } from "./navigate";
 import { Ghost, RobotBody } from "./robot";
@@ -48,7 +48,7 @@ export class RobotView {
   private readonly trail = new Line(new BufferGeometry(), new LineBasicMaterial());
   private readonly stops: (() => void)[] = [];
   /** Position of the drawn robot and mode of its run; null: there is none. */
-  readonly told = signal<{ readonly at: Vector3; readonly floor: number; readonly mode: ShownMode } | null>(null);
+  readonly shown = signal<{ readonly at: Vector3; readonly floor: number; readonly mode: ShownMode } | null>(null);
   private over = false;
   private loaded = "";
 
@@ -84,7 +84,7 @@ export class RobotView {
     this.loaded = site.name;
     for (let done = false; !done; )
       try {
-        const nodes = readGlb(await fetched("/api/world/robot"));
+        const nodes = readGlb(await fetchFile("/api/world/robot"));
         if (this.over || this.loaded !== site.name) return;
         this.body?.dispose();
         this.ghost?.dispose();
@@ -94,7 +94,7 @@ export class RobotView {
         done = true;
       } catch (error) {
         if (!(error instanceof Unreached)) throw error;
-        await pause(RETRY_MS);
+        await delay(RETRY_MS);
         if (this.over) return;
       }
     this.now = null;
@@ -115,7 +115,7 @@ export class RobotView {
     this.body?.mark(this.mode && ringColour(this.mode, colours.value));
     // Poses arrive several times a second, also if the robot stands: then it is not drawn again.
     const pose = this.target ?? [];
-    const aimed = [this.body, this.mode, now === null, ...heed(colours, shownFloor, following), ...pose];
+    const aimed = [this.body, this.mode, now === null, ...dependOn(colours, shownFloor, following), ...pose];
     if (same(aimed, this.aimed)) return;
     this.aimed = aimed;
     this.view.stage.need();
@@ -140,7 +140,7 @@ export class RobotView {
       if (moved) this.view.camera.follow(new Vector3(now[0], now[1], now[2]), now[3], how);
     }
     this.body.group.visible = this.view.site.isShown(floor);
-    this.told.value = this.mode && !OVER.has(this.mode) ? { at: new Vector3(now[0], now[1], now[2] + TOP), floor, mode: this.mode } : null;
+    this.shown.value = this.mode && !OVER.has(this.mode) ? { at: new Vector3(now[0], now[1], now[2] + TOP), floor, mode: this.mode } : null;
     return !there;
   };
 

@@ -4,7 +4,7 @@ import { effect, signal } from "@preact/signals-core";
 
 import { isTyping } from "../frame/keys";
 import { nameOfKey } from "../model/outline";
-import { tell } from "../state/notices";
+import { showNotice } from "../state/notices";
 import { selection } from "../state/plan";
 import { hoveredLeg } from "../state/preview";
 import { mayPlan } from "../state/session";
@@ -13,16 +13,16 @@ import { world } from "../state/world";
 import { t } from "../texts";
 import { customElement, html, nothing, PageElement, query } from "../ui/element";
 import "./bar";
-import { aboveRobot, besideGhost } from "./beside";
+import { placeRobotText, placeGhostText } from "./overlay-texts";
 import "./card";
 import { colours } from "./colours";
 import "./compass";
 import "./floors";
 import { box } from "./ground-marks";
-import { heed } from "./heed";
+import { dependOn } from "./depend-on";
 import { type Keyed, onSceneKey } from "./keys";
-import { ghost, ghostWords, hideGhost, hover, placeGhost, setsStart, takeGhost, turnGhost, verdictWords } from "./navigate";
-import { clickCorner, corners, hideCorners, pointCorner, spanned } from "./obstacle-tool";
+import { ghost, ghostWords, hideGhost, moveGhostToRay, placeGhost, setsStart, activateNavigation, turnGhost, verdictWords } from "./navigate";
+import { clickCorner, corners, hideCorners, pointCorner, spannedBox } from "./obstacle-tool";
 import "./obstacle-form";
 import { PointerWatch } from "./pointer";
 import { edgesMove } from "./settings";
@@ -30,7 +30,7 @@ import { dispose } from "./stage";
 import { sceneStyle } from "./style";
 import { RobotView } from "./robot-view";
 import { SceneView } from "./view";
-import { chooseWay, type Mark, opened } from "./marks";
+import { selectTaskOfPath, type Mark, openMark } from "./marks";
 import { PathsView } from "./paths-view";
 
 /** px from an edge of the view within which the pointer moves the camera */
@@ -50,7 +50,7 @@ export class ScenePanel extends PageElement {
 
   private readonly view = signal<SceneView | null>(null);
   private readonly broken = signal(false);
-  private readonly said = signal("");
+  private readonly announcement = signal("");
   private parts: { dispose(): void }[] = [];
   private stops: (() => void)[] = [];
   private saying: ReturnType<typeof setTimeout> | undefined;
@@ -85,7 +85,7 @@ export class ScenePanel extends PageElement {
     this.view.value = null;
     hideGhost();
     hideCorners();
-    opened.value = null;
+    openMark.value = null;
   }
 
   private begin(): void {
@@ -105,7 +105,7 @@ export class ScenePanel extends PageElement {
       view,
       robot,
       paths,
-      new PointerWatch(this.canvas, this.told(view, paths)),
+      new PointerWatch(this.canvas, this.pointerHandlers(view, paths)),
       { dispose: () => sizes.disconnect() },
     ];
     this.stops = [
@@ -115,8 +115,8 @@ export class ScenePanel extends PageElement {
       }),
       effect(() => this.drawSpanned(view)),
       effect(() => this.announce()),
-      effect(() => besideGhost(view, this.verdict)),
-      effect(() => aboveRobot(view, robot, this.robotSign)),
+      effect(() => placeGhostText(view, this.verdict)),
+      effect(() => placeRobotText(view, robot, this.robotSign)),
     ];
     this.view.value = view;
   }
@@ -125,15 +125,15 @@ export class ScenePanel extends PageElement {
   private take(view: SceneView): void {
     const now = tool.value;
     view.camera.wheel = now !== "navigate";
-    if (now === "navigate" && world.value !== null) takeGhost();
-    if (now !== "select") opened.value = null;
+    if (now === "navigate" && world.value !== null) activateNavigation();
+    if (now !== "select") openMark.value = null;
     if (now !== "navigate") hideGhost();
     if (now !== "obstacle") hideCorners();
   }
 
   /** Draw the box of the obstacle tool before it is added; return a function that removes it. */
   private drawSpanned(view: SceneView): () => void {
-    const shown = spanned.value;
+    const shown = spannedBox.value;
     const mesh = shown && box(shown.pose, shown.size, colours.value.warn, 0.55);
     if (mesh) view.stage.scene.add(mesh);
     view.stage.need();
@@ -142,12 +142,12 @@ export class ScenePanel extends PageElement {
     };
   }
 
-  private told(view: SceneView, paths: PathsView) {
+  private pointerHandlers(view: SceneView, paths: PathsView) {
     return {
       pointed: (x: number, y: number) => {
         this.keyed = false;
         this.pushAtEdge(view, x, y);
-        if (tool.value === "navigate") this.timed(view, () => hover(view.rayAt(x, y), view.site));
+        if (tool.value === "navigate") this.timed(view, () => moveGhostToRay(view.rayAt(x, y), view.site));
         else if (tool.value === "obstacle") pointCorner(view.site.hitWays(view.rayAt(x, y)));
         else this.pointAt(view.markAt(x, y), paths.wayAt(x, y));
       },
@@ -157,16 +157,16 @@ export class ScenePanel extends PageElement {
       },
       clicked: (x: number, y: number, add: boolean) => {
         this.picture.focus({ preventScroll: true });
-        if (tool.value !== "select" && !mayPlan()) tell("warn", t().scene.mayNot);
+        if (tool.value !== "select" && !mayPlan()) showNotice("warn", t().scene.mayNot);
         else if (tool.value === "navigate") {
-          hover(view.rayAt(x, y), view.site);
+          moveGhostToRay(view.rayAt(x, y), view.site);
           this.place();
         } else if (tool.value === "obstacle") clickCorner(view.site.hitWays(view.rayAt(x, y)));
         else {
           const mark = view.markAt(x, y);
           const way = mark === null ? paths.wayAt(x, y) : null;
           if (way === null) view.choose(mark, add);
-          else chooseWay(way, add);
+          else selectTaskOfPath(way, add);
         }
       },
       clickedRight: () => (tool.value = "select"),
@@ -189,7 +189,7 @@ export class ScenePanel extends PageElement {
   private timed(view: SceneView, work: () => void): void {
     const begun = performance.now();
     work();
-    heed(ghost);
+    dependOn(ghost);
     view.hoverTimes = [...view.hoverTimes.slice(-MOST_TIMES), performance.now() - begun];
   }
 
@@ -202,18 +202,18 @@ export class ScenePanel extends PageElement {
   private place(): void {
     void placeGhost().then((placed) => {
       const name = nameOfKey(selection.value.at(-1) ?? "");
-      this.said.value = placed ? t().scene.placed(name) : `${verdictWords(ghost.value)} `;
+      this.announcement.value = placed ? t().scene.placed(name) : `${verdictWords(ghost.value)} `;
     });
   }
 
   /** Close the card on a click elsewhere; `onEscape` closes it by key. */
   private readonly onElsewhere = (event: Event): void => {
-    if (!event.composedPath().includes(this)) opened.value = null;
+    if (!event.composedPath().includes(this)) openMark.value = null;
   };
 
   private readonly onEscape = (event: KeyboardEvent): void => {
-    if (event.key !== "Escape" || opened.value === null || isTyping(event)) return;
-    opened.value = null;
+    if (event.key !== "Escape" || openMark.value === null || isTyping(event)) return;
+    openMark.value = null;
     event.preventDefault();
     event.stopImmediatePropagation();
   };
@@ -241,7 +241,7 @@ export class ScenePanel extends PageElement {
     clearTimeout(this.saying);
     if (at === null) return;
     const words = `${verdictWords(at)}. ${ghostWords(at)}`;
-    this.saying = setTimeout(() => (this.said.value = words), SAID_AFTER_MS);
+    this.saying = setTimeout(() => (this.announcement.value = words), SAID_AFTER_MS);
   }
 
   override render() {
@@ -269,7 +269,7 @@ export class ScenePanel extends PageElement {
       <p id="help" class="unseen">
         ${navigates ? texts.helpNavigate : tool.value === "obstacle" ? texts.helpObstacle : texts.help}
       </p>
-      <p class="unseen" aria-live="polite" id="said">${this.said.value}</p>
+      <p class="unseen" aria-live="polite" id="said">${this.announcement.value}</p>
       ${loading === "there"
         ? nothing
         : html`<p class="loading" role="status">${loading === "failed" ? texts.notLoaded : texts.loading}</p>`}

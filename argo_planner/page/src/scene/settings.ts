@@ -2,21 +2,21 @@
 
 import { effect, signal } from "@preact/signals-core";
 
-import { keep, kept } from "../state/session";
+import { storeSetting, storedSetting } from "../state/session";
 import { HIDEABLE, type Hideable } from "./site";
 
 /** Whether the camera moves while the pointer is at an edge. */
-export const edgesMove = signal(kept("edges") === "on");
-export const labelsShown = signal(kept("labels") !== "off");
-export const pathsShown = signal(kept("paths") !== "off");
+export const edgesMove = signal(storedSetting("edges") === "on");
+export const labelsShown = signal(storedSetting("labels") !== "off");
+export const pathsShown = signal(storedSetting("paths") !== "off");
 export const hidden = signal<ReadonlySet<Hideable>>(
-  new Set(HIDEABLE.filter((one) => kept("hidden")?.split(" ").includes(one) === true)),
+  new Set(HIDEABLE.filter((one) => storedSetting("hidden")?.split(" ").includes(one) === true)),
 );
 
-effect(() => keep("edges", edgesMove.value ? "on" : "off"));
-effect(() => keep("labels", labelsShown.value ? "on" : "off"));
-effect(() => keep("paths", pathsShown.value ? "on" : "off"));
-effect(() => keep("hidden", [...hidden.value].join(" ")));
+effect(() => storeSetting("edges", edgesMove.value ? "on" : "off"));
+effect(() => storeSetting("labels", labelsShown.value ? "on" : "off"));
+effect(() => storeSetting("paths", pathsShown.value ? "on" : "off"));
+effect(() => storeSetting("hidden", [...hidden.value].join(" ")));
 
 export function hide(what: Hideable, on: boolean): void {
   const next = new Set(hidden.value);

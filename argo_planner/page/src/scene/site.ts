@@ -3,7 +3,7 @@
 import { DoubleSide, Group, Mesh, MeshLambertMaterial, Ray, Vector3 } from "three";
 import { MeshBVH } from "three-mesh-bvh";
 
-import { fetched } from "../api/client";
+import { fetchFile } from "../api/client";
 import type { World } from "../api/types";
 import { merged } from "./geometry";
 import { type GlbNode, readGlb } from "./glb";
@@ -55,7 +55,7 @@ export class Site {
     const found: Storey[] = [];
     const work = async () => {
       for (let number = waiting.shift(); number !== undefined; number = waiting.shift()) {
-        const content = await fetched(`/api/world/floors/${number}/mesh/${detail}`);
+        const content = await fetchFile(`/api/world/floors/${number}/mesh/${detail}`);
         if (cancelled()) return;
         found.push(this.storey(number, readGlb(content)));
       }

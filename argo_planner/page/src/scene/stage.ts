@@ -184,7 +184,7 @@ export class Stage {
     this.last = on ? time : 0;
     this.drawnAt = time;
     if (on) this.need();
-    for (const told of this.drawn) told();
+    for (const listener of this.drawn) listener();
   };
 
   /** Lower the resolution if frames take long, raise it if they don't. */
@@ -224,8 +224,8 @@ export function dispose(object: Object3D): void {
 function isSoftware(): boolean {
   const gl = document.createElement("canvas").getContext("webgl2");
   if (gl === null) return true;
-  const told = gl.getExtension("WEBGL_debug_renderer_info");
-  const name = told ? String(gl.getParameter(told.UNMASKED_RENDERER_WEBGL)) : "";
+  const info = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "";
   gl.getExtension("WEBGL_lose_context")?.loseContext();
   return /swiftshader|llvmpipe|software|basic render/i.test(name);
 }

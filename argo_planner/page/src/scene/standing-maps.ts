@@ -2,9 +2,9 @@
 
 import { signal } from "@preact/signals-core";
 
-import { fetched, pause, Unreached } from "../api/client";
+import { fetchFile, delay, Unreached } from "../api/client";
 import type { World } from "../api/types";
-import { floorOf, readStandingMap, type Standing, type StandingMap, verdictAt } from "../model/standing";
+import { floorOf, readStandingMap, type GroundVerdict, type StandingMap, verdictAt } from "../model/standing-map";
 import { world } from "../state/world";
 
 const AT_ONCE = 4;
@@ -31,21 +31,21 @@ async function read(of: string, waiting: string[]): Promise<void> {
   for (let key = waiting.shift(); key !== undefined; key = waiting.shift()) {
     const [floor = "", heading = ""] = key.split(" ");
     try {
-      const map = await readStandingMap(await fetched(`/api/world/floors/${floor}/standing/${heading}`));
+      const map = await readStandingMap(await fetchFile(`/api/world/floors/${floor}/standing/${heading}`));
       if (of !== digest) return;
       maps.set(key, map);
       mapsRead.value++;
     } catch (error) {
       if (!(error instanceof Unreached)) throw error;
       waiting.push(key);
-      await pause(RETRY_MS);
+      await delay(RETRY_MS);
       if (of !== digest) return;
     }
   }
 }
 
 /** Return whether the robot can stand at a pose (m, rad); null: unknown yet. */
-export function standing(x: number, y: number, z: number, yaw: number): Standing | null {
+export function standingVerdict(x: number, y: number, z: number, yaw: number): GroundVerdict | null {
   const site = world.peek();
   if (site === null || site.digest !== digest) return null;
   const floor = floorOf(site.floors, z);

@@ -3,11 +3,11 @@
 import { batch, effect, signal } from "@preact/signals-core";
 import { Ray, Vector2, Vector3 } from "three";
 
-import { pause, Unreached } from "../api/client";
+import { delay, Unreached } from "../api/client";
 import type { World } from "../api/types";
-import { offer, withdraw, type ArgoTestInterface } from "../frame/test-interface";
-import { floorOf } from "../model/standing";
-import { tellError } from "../state/notices";
+import { publishTestInterface, removeTestInterface, type ArgoTestInterface } from "../frame/test-interface";
+import { floorOf } from "../model/standing-map";
+import { showError } from "../state/notices";
 import { planId, select, selection } from "../state/plan";
 import { look, shownFloor } from "../state/view";
 import { world } from "../state/world";
@@ -16,13 +16,13 @@ import { Gauges } from "./checkpoints";
 import { colours } from "./colours";
 import { Dots } from "./dots";
 import { GroundMarks, toneColour } from "./ground-marks";
-import { heed } from "./heed";
+import { dependOn } from "./depend-on";
 import { Labels } from "./labels";
-import { type Mark, marks, opened } from "./marks";
+import { type Mark, marks, openMark } from "./marks";
 import { labelsShown, hidden } from "./settings";
 import { Site } from "./site";
 import { Stage } from "./stage";
-import { standing } from "./standing-maps";
+import { standingVerdict } from "./standing-maps";
 
 /** px within which a click hits a mark */
 const NEAR_PX = 13;
@@ -74,7 +74,7 @@ export class SceneView {
       effect(() => this.showMarks()),
       effect(() => this.fulfil()),
     );
-    offer(this.testing);
+    publishTestInterface(this.testing);
   }
 
   resize(width: number, height: number): void {
@@ -123,11 +123,11 @@ export class SceneView {
   choose(mark: Mark | null, add: boolean): void {
     batch(() => {
       if (mark === null) {
-        opened.value = null;
+        openMark.value = null;
         if (!add && selection.value.length > 0) select([]);
         return;
       }
-      opened.value = mark.subject.kind === "task" ? null : mark.key;
+      openMark.value = mark.subject.kind === "task" ? null : mark.key;
       const had = selection.value;
       const all = mark.tasks.length > 0 && mark.tasks.every((key) => had.includes(key));
       if (!add) select(mark.tasks);
@@ -138,7 +138,7 @@ export class SceneView {
 
   dispose(): void {
     this.over = true;
-    withdraw(this.testing);
+    removeTestInterface(this.testing);
     for (const stop of this.stops) stop();
     this.labels.dispose();
     for (const part of [this.gauges, this.dots, this.ground, this.site, this.camera, this.stage]) part.dispose();
@@ -165,8 +165,8 @@ export class SceneView {
       } catch (error) {
         if (!(error instanceof Unreached)) throw error;
         this.loading.value = "failed";
-        tellError(error);
-        await pause(RETRY_MS);
+        showError(error);
+        await delay(RETRY_MS);
       }
     }
   }
@@ -192,9 +192,9 @@ export class SceneView {
         tints.set(subject.checkpoint.id, toneColour(tone, now));
     this.gauges.tint(tints);
     this.ground.showArrows(this.shown, isShown, now);
-    const chosen = opened.value?.startsWith("obstacle:") ? opened.value.slice("obstacle:".length) : null;
+    const chosen = openMark.value?.startsWith("obstacle:") ? openMark.value.slice("obstacle:".length) : null;
     if (site !== null) this.ground.showObstacles(site, isShown, now, chosen);
-    heed(labelsShown);
+    dependOn(labelsShown);
     this.looked = 0;
   }
 
@@ -243,7 +243,7 @@ export class SceneView {
       return { ...place, visible: inside && this.site.isShown(floor) };
     },
     idle: () => this.loading.value === "there" && planId.value !== null && this.stage.idle,
-    standing: (x, y, z, yaw) => standing(x, y, z, yaw)?.ground ?? null,
+    standing: (x, y, z, yaw) => standingVerdict(x, y, z, yaw)?.ground ?? null,
     camera: () => ({
       position: this.stage.camera.position.toArray(),
       target: this.camera.controls.getTarget(new Vector3()).toArray(),

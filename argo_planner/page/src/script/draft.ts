@@ -2,12 +2,12 @@
 
 import { batch, computed, effect, signal } from "@preact/signals-core";
 
-import { answered, client, Refusal, Unreached } from "../api/client";
+import { responseData, client, Refusal, Unreached } from "../api/client";
 import type { Diagnostic } from "../api/types";
-import { commandId, settled } from "../state/commands";
-import { tellError } from "../state/notices";
-import { broken, planId, revision, take } from "../state/plan";
-import { keep, kept } from "../state/session";
+import { commandId, allAnswered } from "../state/commands";
+import { showError } from "../state/notices";
+import { missionHasErrors, planId, revision, takePlanState } from "../state/plan";
+import { storeSetting, storedSetting } from "../state/session";
 import { readNotes } from "./notes";
 
 interface Base {
@@ -18,19 +18,19 @@ interface Base {
 }
 
 /** The mission as a script, with its revision; null: not loaded. */
-export const base = signal<Base | null>(null);
+export const baseScript = signal<Base | null>(null);
 export const draft = signal("");
 /** The diagnostics of a rejected draft, with its text. */
-export const refused = signal<{ readonly text: string; readonly found: readonly Diagnostic[] } | null>(null);
+export const refusedDraft = signal<{ readonly text: string; readonly found: readonly Diagnostic[] } | null>(null);
 /** Why the mission can't be written as a script. */
-export const unsaid = signal<string | null>(null);
+export const noScriptReason = signal<string | null>(null);
 /** The last discarded draft, which can be restored. */
-export const aside = signal<string | null>(null);
+export const discardedDraft = signal<string | null>(null);
 export const applying = signal(false);
 
-export const dirty = computed(() => base.value !== null && draft.value !== base.value.text);
+export const draftIsChanged = computed(() => baseScript.value !== null && draft.value !== baseScript.value.text);
 /** Whether the mission was changed after the draft was begun. */
-export const overtaken = computed(() => dirty.value && base.value?.revision !== revision.value);
+export const draftIsOutdated = computed(() => draftIsChanged.value && baseScript.value?.revision !== revision.value);
 
 const PAUSE_MS = 300;
 const KEPT_MS = 500;
@@ -43,66 +43,66 @@ effect(() => {
   const at = revision.value;
   clearTimeout(waiting);
   if (id !== plan) begin(id);
-  if (id === null || at === 0 || broken.value || base.peek()?.revision === at) return;
-  waiting = setTimeout(() => void read(id, at), PAUSE_MS);
+  if (id === null || at === 0 || missionHasErrors.value || baseScript.peek()?.revision === at) return;
+  waiting = setTimeout(() => void readScript(id, at), PAUSE_MS);
 });
 
 function begin(id: string | null): void {
-  if (keeping !== undefined) keepDraft(); // of the previous mission
+  if (keeping !== undefined) storeDraft(); // of the previous mission
   plan = id;
   batch(() => {
-    base.value = refused.value = unsaid.value = aside.value = null;
+    baseScript.value = refusedDraft.value = noScriptReason.value = discardedDraft.value = null;
     draft.value = "";
   });
 }
 
-async function read(id: string, at: number): Promise<void> {
-  if (base.value?.revision === at) return;
+async function readScript(id: string, at: number): Promise<void> {
+  if (baseScript.value?.revision === at) return;
   try {
-    const text = await answered(
+    const text = await responseData(
       client.GET("/api/missions/{id}/export/{format}", {
         params: { path: { id, format: "script" } },
         parseAs: "text",
       }),
     );
     // An applied draft keeps its own wording.
-    if (base.value?.revision === at) return;
+    if (baseScript.value?.revision === at) return;
     if (planId.value === id && revision.value === at) takeBase({ revision: at, text, own: false });
   } catch (error) {
-    if (error instanceof Refusal) unsaid.value = error.problem.detail;
+    if (error instanceof Refusal) noScriptReason.value = error.problem.detail;
     else if (!(error instanceof Unreached)) throw error;
-    else waiting = setTimeout(() => void read(id, at), 4 * PAUSE_MS);
+    else waiting = setTimeout(() => void readScript(id, at), 4 * PAUSE_MS);
   }
 }
 
 /** Take a new script of the mission. A changed draft stays. */
 function takeBase(now: Base): void {
-  const first = base.value === null;
+  const first = baseScript.value === null;
   batch(() => {
-    unsaid.value = null;
-    const before = first ? kept(draftName()) : null;
+    noScriptReason.value = null;
+    const before = first ? storedSetting(draftName()) : null;
     if (before && before !== now.text) {
       // A stored draft of an earlier day was begun on another revision; 0 marks it as outdated.
-      base.value = { ...now, revision: 0 };
+      baseScript.value = { ...now, revision: 0 };
       draft.value = before;
-    } else if (!dirty.value) {
-      base.value = now;
+    } else if (!draftIsChanged.value) {
+      baseScript.value = now;
       draft.value = now.text;
-      refused.value = null;
+      refusedDraft.value = null;
     }
   });
 }
 
-export function write(text: string): void {
+export function editDraft(text: string): void {
   draft.value = text;
   clearTimeout(keeping);
-  keeping = setTimeout(keepDraft, KEPT_MS);
+  keeping = setTimeout(storeDraft, KEPT_MS);
 }
 
-function keepDraft(): void {
+function storeDraft(): void {
   clearTimeout(keeping);
   keeping = undefined;
-  if (plan !== null) keep(draftName(), dirty.value ? draft.value : "");
+  if (plan !== null) storeSetting(draftName(), draftIsChanged.value ? draft.value : "");
 }
 
 function draftName(): string {
@@ -110,55 +110,55 @@ function draftName(): string {
 }
 
 /** Discard the draft for the mission's script. */
-export async function takeTheirs(): Promise<void> {
+export async function discardDraft(): Promise<void> {
   const id = planId.value;
   if (id === null) return;
   batch(() => {
-    aside.value = draft.value;
-    refused.value = null;
-    if (base.value) draft.value = base.value.text;
+    discardedDraft.value = draft.value;
+    refusedDraft.value = null;
+    if (baseScript.value) draft.value = baseScript.value.text;
   });
-  keepDraft();
-  if (base.value?.revision !== revision.value) await read(id, revision.value);
+  storeDraft();
+  if (baseScript.value?.revision !== revision.value) await readScript(id, revision.value);
 }
 
-export function takeAside(): void {
-  const text = aside.value;
+export function restoreDraft(): void {
+  const text = discardedDraft.value;
   if (text === null) return;
-  aside.value = null;
-  write(text);
+  discardedDraft.value = null;
+  editDraft(text);
 }
 
 /** Replace the mission by the draft; `anyway`: even if the mission was changed meanwhile. */
-export async function apply(anyway = false): Promise<void> {
+export async function applyDraft(anyway = false): Promise<void> {
   const id = planId.value;
-  const from = base.value;
+  const from = baseScript.value;
   const script = draft.value;
   if (id === null || from === null || applying.value) return;
   const on = anyway ? revision.value : from.revision;
   applying.value = true;
-  await settled();
+  await allAnswered();
   try {
-    const done = await answered(
+    const done = await responseData(
       client.PUT("/api/missions/{id}/script", {
         params: { path: { id }, header: { "If-Match": `"${on}"` } },
         body: { id: commandId(), script },
       }),
     );
     if (planId.value !== id) return;
-    take(done);
+    takePlanState(done);
     void readNotes(id, false);
     batch(() => {
-      refused.value = null;
+      refusedDraft.value = null;
       // The text keeps its wording and comments until the mission is changed in another way.
-      base.value = { revision: done.revision.number, text: script, own: true };
+      baseScript.value = { revision: done.revision.number, text: script, own: true };
     });
-    keepDraft();
+    storeDraft();
   } catch (error) {
     if (error instanceof Refusal && error.problem.diagnostics.length > 0)
-      refused.value = { text: script, found: error.problem.diagnostics };
+      refusedDraft.value = { text: script, found: error.problem.diagnostics };
     // If the mission was changed meanwhile, the panel says so, and nothing is overwritten.
-    else if (!(error instanceof Refusal && error.problem.code === "stale-revision")) tellError(error);
+    else if (!(error instanceof Refusal && error.problem.code === "stale-revision")) showError(error);
   } finally {
     applying.value = false;
   }

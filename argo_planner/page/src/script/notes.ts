@@ -3,11 +3,11 @@
 
 import { effect, signal } from "@preact/signals-core";
 
-import { answered, client, Refusal, Unreached } from "../api/client";
+import { responseData, client, Refusal, Unreached } from "../api/client";
 import type { Diagnostic } from "../api/types";
-import { tell } from "../state/notices";
+import { showNotice } from "../state/notices";
 import { lastRevision, planId } from "../state/plan";
-import { keep, kept } from "../state/session";
+import { storeSetting, storedSetting } from "../state/session";
 import { panel } from "../state/view";
 import { t } from "../texts";
 
@@ -20,7 +20,7 @@ export interface Note {
 export const openNotes = signal<readonly Note[]>([]);
 
 let plan: string | null = null;
-let of = 0;
+let notesRevision = 0;
 
 effect(() => {
   const id = planId.value;
@@ -35,17 +35,17 @@ effect(() => {
 /** Read the open notes; `opened`: the mission was opened just now, so a notice points to them. */
 export async function readNotes(id: string, opened: boolean): Promise<void> {
   try {
-    const found = await answered(
+    const found = await responseData(
       client.GET("/api/missions/{id}/notes", { params: { path: { id } } }),
     );
     if (planId.value !== id) return;
-    of = found.revision;
-    const done = confirmed(id);
+    notesRevision = found.revision;
+    const done = confirmedNumbers(id);
     openNotes.value = found.notes
       .map((said, number) => ({ number, said }))
       .filter(({ number }) => !done.has(number));
     if (opened && openNotes.value.length > 0 && panel.value !== "script")
-      tell("warn", t().script.notesOpen(openNotes.value.length), {
+      showNotice("warn", t().script.notesOpen(openNotes.value.length), {
         actions: [{ label: t().script.look, act: () => (panel.value = "script") }],
       });
   } catch (error) {
@@ -53,23 +53,23 @@ export async function readNotes(id: string, opened: boolean): Promise<void> {
   }
 }
 
-export function confirm(notes: readonly Note[]): void {
+export function confirmNotes(notes: readonly Note[]): void {
   if (plan === null) return;
-  const done = confirmed(plan);
+  const done = confirmedNumbers(plan);
   for (const { number } of notes) done.add(number);
-  keep(name(plan), JSON.stringify([...done]));
+  storeSetting(storageName(plan), JSON.stringify([...done]));
   openNotes.value = openNotes.value.filter(({ number }) => !done.has(number));
 }
 
-function confirmed(id: string): Set<number> {
+function confirmedNumbers(id: string): Set<number> {
   try {
-    const known: unknown = JSON.parse(kept(name(id)) ?? "[]");
+    const known: unknown = JSON.parse(storedSetting(storageName(id)) ?? "[]");
     return new Set(Array.isArray(known) ? known.filter((one) => typeof one === "number") : []);
   } catch {
     return new Set();
   }
 }
 
-function name(id: string): string {
-  return `confirmed.${id}.${of}`;
+function storageName(id: string): string {
+  return `confirmed.${id}.${notesRevision}`;
 }

@@ -1,23 +1,23 @@
 /** The panel of the script. */
 
-import { broken } from "../state/plan";
+import { missionHasErrors } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { t } from "../texts";
 import { css, customElement, html, nothing, PageElement, query } from "../ui/element";
 import { icon } from "../ui/icons";
 import {
-  apply,
+  applyDraft,
   applying,
-  aside,
-  base,
-  dirty,
-  overtaken,
-  refused,
-  takeAside,
-  takeTheirs,
-  unsaid,
+  discardedDraft,
+  baseScript,
+  draftIsChanged,
+  draftIsOutdated,
+  refusedDraft,
+  restoreDraft,
+  discardDraft,
+  noScriptReason,
 } from "./draft";
-import { confirm, openNotes } from "./notes";
+import { confirmNotes, openNotes } from "./notes";
 import "./sheet";
 import type { ScriptSheet } from "./sheet";
 
@@ -68,29 +68,29 @@ export class ScriptPanel extends PageElement {
 
   override render() {
     const texts = t().script;
-    if (base.value === null) {
-      const said = unsaid.value ?? (broken.value ? texts.hasErrors : texts.loading);
+    if (baseScript.value === null) {
+      const said = noScriptReason.value ?? (missionHasErrors.value ? texts.hasErrors : texts.loading);
       return html`<p class="dim">${said}</p>`;
     }
-    return html`${this.notes()} ${overtaken.value ? this.meanwhile() : nothing}
+    return html`${this.notes()} ${draftIsOutdated.value ? this.meanwhile() : nothing}
       <argo-script-sheet></argo-script-sheet>
-      ${this.problems()} ${unsaid.value === null ? nothing : html`<p class="told warn">${unsaid.value}</p>`}
+      ${this.problems()} ${noScriptReason.value === null ? nothing : html`<p class="told warn">${noScriptReason.value}</p>`}
       <div class="row">
         <button
           class="main"
           id="apply"
           title="Ctrl+Enter"
-          ?disabled=${!mayPlan() || !dirty.value || applying.value || overtaken.value}
-          @click=${() => apply()}
+          ?disabled=${!mayPlan() || !draftIsChanged.value || applying.value || draftIsOutdated.value}
+          @click=${() => applyDraft()}
         >
           ${icon("check")} ${applying.value ? texts.applying : texts.apply}
         </button>
-        ${dirty.value ? html`<button @click=${takeTheirs}>${texts.revert}</button>` : nothing}
-        ${aside.value === null || dirty.value
+        ${draftIsChanged.value ? html`<button @click=${discardDraft}>${texts.revert}</button>` : nothing}
+        ${discardedDraft.value === null || draftIsChanged.value
           ? nothing
-          : html`<button @click=${takeAside}>${icon("undo", 16)} ${texts.back}</button>`}
+          : html`<button @click=${restoreDraft}>${icon("undo", 16)} ${texts.back}</button>`}
         <span class="dim state grow" role="status">
-          ${!mayPlan() ? texts.mayNotPlan : dirty.value ? texts.changed : texts.unchanged}
+          ${!mayPlan() ? texts.mayNotPlan : draftIsChanged.value ? texts.changed : texts.unchanged}
         </span>
       </div>`;
   }
@@ -100,20 +100,20 @@ export class ScriptPanel extends PageElement {
     return html`<section class="told warn" role="alert">
       <p>${icon("warning", 14)} ${texts.overtaken}</p>
       <div class="row">
-        <button @click=${takeTheirs}>${texts.theirs}</button>
-        <button ?disabled=${!mayPlan() || applying.value} @click=${() => apply(true)}>${texts.anyway}</button>
+        <button @click=${discardDraft}>${texts.theirs}</button>
+        <button ?disabled=${!mayPlan() || applying.value} @click=${() => applyDraft(true)}>${texts.anyway}</button>
       </div>
     </section>`;
   }
 
   private problems() {
-    const told = refused.value;
-    if (told === null || !dirty.value) return nothing;
+    const rejected = refusedDraft.value;
+    if (rejected === null || !draftIsChanged.value) return nothing;
     const texts = t().script;
     return html`<section class="told bad" aria-label=${texts.problems} role="alert">
       <p>${texts.refused}</p>
       <ul>
-        ${told.found.map(
+        ${rejected.found.map(
           (one) =>
             html`<li>
               ${one.span
@@ -135,7 +135,7 @@ export class ScriptPanel extends PageElement {
       <div class="row">
         <h3 class="grow">${texts.notes}</h3>
         ${open.length > 1
-          ? html`<button id="confirm-all" @click=${() => confirm(open)}>${icon("check", 14)} ${texts.confirmAll}</button>`
+          ? html`<button id="confirm-all" @click=${() => confirmNotes(open)}>${icon("check", 14)} ${texts.confirmAll}</button>`
           : nothing}
       </div>
       <ul>
@@ -147,7 +147,7 @@ export class ScriptPanel extends PageElement {
                 ${note.said.message}
                 ${note.said.excerpt ? html`<br /><span class="dim">${note.said.excerpt}</span>` : nothing}
               </span>
-              <button @click=${() => confirm([note])}>${icon("check", 14)} ${texts.confirm}</button>
+              <button @click=${() => confirmNotes([note])}>${icon("check", 14)} ${texts.confirm}</button>
             </li>`,
         )}
       </ul>

@@ -7,17 +7,17 @@ import {
   linesBySource,
   linesBySteps,
   nameInLine,
-  placeOf,
-  severities,
+  offsetOf,
+  worstSeverities,
   type Lines,
 } from "../model/script-lines";
 import { revision, select, selection, tasksByName } from "../state/plan";
-import { reading } from "../state/reading";
+import { missionSentences } from "../state/sentences";
 import { mayPlan } from "../state/session";
 import { t } from "../texts";
 import { valueOf } from "../ui/controls";
 import { css, customElement, html, PageElement, query } from "../ui/element";
-import { apply, base, dirty, draft, overtaken, refused, write } from "./draft";
+import { applyDraft, baseScript, draftIsChanged, draft, draftIsOutdated, refusedDraft, editDraft } from "./draft";
 
 @customElement("argo-script-sheet")
 export class ScriptSheet extends PageElement {
@@ -121,8 +121,8 @@ export class ScriptSheet extends PageElement {
 
   override render() {
     const text = draft.value;
-    const found = refused.value?.text === text ? refused.value.found : [];
-    const marks = severities(found);
+    const found = refusedDraft.value?.text === text ? refusedDraft.value.found : [];
+    const marks = worstSeverities(found);
     const places = this.places();
     const chosen = selection.value.map((key) => places.get(nameOfKey(key)));
     const isChosen = (line: number) =>
@@ -141,7 +141,7 @@ export class ScriptSheet extends PageElement {
         autocapitalize="off"
         ?readonly=${!mayPlan()}
         .value=${text}
-        @input=${(event: Event) => write(valueOf(event))}
+        @input=${(event: Event) => editDraft(valueOf(event))}
         @keydown=${this.onKey}
         @click=${this.onClick}
       ></textarea>
@@ -150,9 +150,9 @@ export class ScriptSheet extends PageElement {
 
   /** Return the lines of each task, while the text is that of the mission. */
   private places(): Map<string, Lines> {
-    const from = base.value;
-    const read = reading.value;
-    if (from === null || read === null || dirty.value || read.revision !== revision.value) return new Map();
+    const from = baseScript.value;
+    const read = missionSentences.value;
+    if (from === null || read === null || draftIsChanged.value || read.revision !== revision.value) return new Map();
     const { entries } = read.reading;
     return from.own ? linesBySource(from.text, entries) : linesBySteps(from.text, entries);
   }
@@ -167,13 +167,13 @@ export class ScriptSheet extends PageElement {
   private onKey(event: KeyboardEvent): void {
     if (event.key !== "Enter" || !(event.ctrlKey || event.metaKey)) return;
     event.preventDefault();
-    if (mayPlan() && dirty.value && !overtaken.value) void apply();
+    if (mayPlan() && draftIsChanged.value && !draftIsOutdated.value) void applyDraft();
   }
 
   /** Select the task at the cursor. */
   private onClick(): void {
     const field = this.field;
-    if (field === null || dirty.value || field.selectionStart !== field.selectionEnd) return;
+    if (field === null || draftIsChanged.value || field.selectionStart !== field.selectionEnd) return;
     const name = nameInLine(this.places(), lineOf(field.value, field.selectionStart));
     if (name !== null) select([tasksByName.value.has(name) ? taskKey(name) : groupKey(name)]);
   }
@@ -182,7 +182,7 @@ export class ScriptSheet extends PageElement {
   goTo({ span }: Diagnostic): void {
     const field = this.field;
     if (!span || field === null) return;
-    const at = placeOf(field.value, span.line, span.column);
+    const at = offsetOf(field.value, span.line, span.column);
     field.focus();
     field.setSelectionRange(at, at + span.length);
     this.renderRoot.querySelectorAll(".mirror div")[span.line - 1]?.scrollIntoView({ block: "nearest" });

@@ -2,12 +2,12 @@
 
 import { signal } from "@preact/signals-core";
 
-import { answered, client, newId, pause, Refusal, Unreached } from "../api/client";
+import { responseData, client, newId, delay, Refusal, Unreached } from "../api/client";
 import type { CommandDone, Edit, Revision } from "../api/types";
-import { touched, touchedHeader } from "../model/change";
+import { changedNames, changedHeaderFields } from "../model/change";
 import { t } from "../texts";
-import { messageOf, tell, tellError, telling } from "./notices";
-import { doneSince, planId, revision, take, takeRevision } from "./plan";
+import { messageOf, showNotice, showError, withErrorNotice } from "./notices";
+import { revisionsSince, planId, revision, takePlanState, takeRevision } from "./plan";
 
 /** An edit of which optional fields may be left out. */
 export type LooseEdit = Edit extends infer One
@@ -43,7 +43,7 @@ export function isOwn(made: Revision): boolean {
 }
 
 /** Wait until all commands so far are answered. */
-export async function settled(): Promise<void> {
+export async function allAnswered(): Promise<void> {
   await queue;
 }
 
@@ -52,51 +52,51 @@ export async function settled(): Promise<void> {
 export async function withPlan(work: (id: string) => Promise<unknown>): Promise<boolean> {
   const id = planId.value;
   if (id === null) return false;
-  await settled();
-  return telling(() => work(id));
+  await allAnswered();
+  return withErrorNotice(() => work(id));
 }
 
 /** Make edits, all of them or none. Returns whether they were made; otherwise a notice gives the reason. */
 export function edit(...edits: LooseEdit[]): Promise<boolean> {
-  return inTurn((make) => make(...edits));
+  return editInTurn((make) => make(...edits));
 }
 
 /** Make edits that depend on the mission's state when their turn comes: keys may be pressed faster than the
  * service answers. `work` is called when all earlier edits are done. */
-export function inTurn<T>(work: (make: typeof edit) => Promise<T>): Promise<T> {
-  return queued((seen) =>
-    work((...edits) => carriedOut({ kind: "edit", edits }, tellError, seen)),
+export function editInTurn<T>(work: (make: typeof edit) => Promise<T>): Promise<T> {
+  return enqueue((seen) =>
+    work((...edits) => carryOut({ kind: "edit", edits }, showError, seen)),
   );
 }
 
 /** Make the edits of a form, when all earlier edits are done. Returns the reason of a refusal, for the field;
  * null: they were made. */
-export async function editHere(edits: () => readonly LooseEdit[]): Promise<string | null> {
-  let said = "";
+export async function editFromForm(edits: () => readonly LooseEdit[]): Promise<string | null> {
+  let reason = "";
   const refused = (error: unknown) => {
-    if (error instanceof Refusal) said = messageOf(error);
-    else tellError(error);
+    if (error instanceof Refusal) reason = messageOf(error);
+    else showError(error);
   };
-  const done = await queued((seen) =>
-    carriedOut({ kind: "edit", edits: edits() }, refused, seen),
+  const done = await enqueue((seen) =>
+    carryOut({ kind: "edit", edits: edits() }, refused, seen),
   );
-  return done ? null : said;
+  return done ? null : reason;
 }
 export function undo(): Promise<boolean> {
-  return queued((seen) => carriedOut({ kind: "undo" }, tellError, seen));
+  return enqueue((seen) => carryOut({ kind: "undo" }, showError, seen));
 }
 export function redo(): Promise<boolean> {
-  return queued((seen) => carriedOut({ kind: "redo" }, tellError, seen));
+  return enqueue((seen) => carryOut({ kind: "redo" }, showError, seen));
 }
 
 /** The mission and revision that the person saw when giving a command. */
-interface Seen {
+interface SeenState {
   readonly plan: string | null;
   readonly revision: number;
 }
 
 /** Run commands one after the other. Each gets the state that the person saw when giving it. */
-function queued<T>(work: (seen: Seen) => Promise<T>): Promise<T> {
+function enqueue<T>(work: (seen: SeenState) => Promise<T>): Promise<T> {
   const seen = { plan: planId.value, revision: revision.value };
   waiting.value++;
   const done = queue.then(() => work(seen)).finally(() => waiting.value--);
@@ -104,30 +104,30 @@ function queued<T>(work: (seen: Seen) => Promise<T>): Promise<T> {
   return done;
 }
 
-async function carriedOut(
+async function carryOut(
   asked: Command,
   refused: (error: unknown) => void,
-  { plan, revision: seen }: Seen,
+  { plan, revision: seen }: SeenState,
 ): Promise<boolean> {
   if (plan === null || planId.value !== plan) return false;
   if (asked.kind === "edit" && asked.edits.length === 0) return true;
   const id = commandId();
   let known = seen;
   while (planId.value === plan) {
-    const meanwhile = doneSince(known)?.filter((one) => !isOwn(one)) ?? null;
-    if (!isApart(asked, meanwhile)) {
-      tellStale(asked, meanwhile ?? [], plan);
+    const meanwhile = revisionsSince(known)?.filter((one) => !isOwn(one)) ?? null;
+    if (!isIndependent(asked, meanwhile)) {
+      showConflict(asked, meanwhile ?? [], plan);
       return false;
     }
     known = revision.value;
     try {
-      await tried(plan, id, asked);
+      await sendOnce(plan, id, asked);
       return true;
     } catch (error) {
       // The command may have been carried out: with the same id it can safely be sent again.
       if (error instanceof Unreached) {
-        tell("warn", t().frame.offline);
-        await pause(RETRY_MS);
+        showNotice("warn", t().frame.offline);
+        await delay(RETRY_MS);
       } else if (!isStale(error)) {
         refused(error);
         return false;
@@ -138,12 +138,12 @@ async function carriedOut(
 }
 
 /** Send a command once. If it is stale, take the missed revisions before throwing that error. */
-async function tried(plan: string, id: string, asked: Command): Promise<void> {
+async function sendOnce(plan: string, id: string, asked: Command): Promise<void> {
   try {
-    const done = await sent(plan, id, asked, `"${revision.value}"`);
-    if (planId.value === plan) take(done);
+    const done = await postCommand(plan, id, asked, `"${revision.value}"`);
+    if (planId.value === plan) takePlanState(done);
   } catch (error) {
-    if (isStale(error)) await caughtUp(plan, error.problem.since ?? null);
+    if (isStale(error)) await catchUp(plan, error.problem.since ?? null);
     throw error;
   }
 }
@@ -152,8 +152,8 @@ function isStale(error: unknown): error is Refusal {
   return error instanceof Refusal && error.problem.code === "stale-revision";
 }
 
-function sent(plan: string, id: string, asked: Command, made: string): Promise<CommandDone> {
-  return answered(
+function postCommand(plan: string, id: string, asked: Command, made: string): Promise<CommandDone> {
+  return responseData(
     client.POST("/api/missions/{id}/commands", {
       params: { path: { id: plan }, header: { "If-Match": made } },
       body: { id, ...asked } as never,
@@ -162,18 +162,18 @@ function sent(plan: string, id: string, asked: Command, made: string): Promise<C
 }
 
 /** Take the missed revisions, or the whole mission if they are no longer known. */
-async function caughtUp(plan: string, since: readonly Revision[] | null): Promise<void> {
+async function catchUp(plan: string, since: readonly Revision[] | null): Promise<void> {
   const state =
     since === null
-      ? await answered(client.GET("/api/missions/{id}", { params: { path: { id: plan } } }))
+      ? await responseData(client.GET("/api/missions/{id}", { params: { path: { id: plan } } }))
       : null;
   if (planId.value !== plan) return;
-  if (state !== null) take(state);
+  if (state !== null) takePlanState(state);
   else for (const one of since ?? []) takeRevision(one);
 }
 
 /** Return whether the revisions of others touch nothing that the command is about. */
-function isApart(asked: Command, since: readonly Revision[] | null): boolean {
+function isIndependent(asked: Command, since: readonly Revision[] | null): boolean {
   if (since === null) return false;
   if (asked.kind !== "edit") return true;
   const names = new Set<unknown>();
@@ -188,22 +188,22 @@ function isApart(asked: Command, since: readonly Revision[] | null): boolean {
   }
   return since.every(
     ({ change }) =>
-      [...touched(change)].every((name) => !names.has(name)) &&
-      [...touchedHeader(change)].every((field) => !fields.has(field)),
+      [...changedNames(change)].every((name) => !names.has(name)) &&
+      [...changedHeaderFields(change)].every((field) => !fields.has(field)),
   );
 }
 
-function tellStale(asked: Command, since: readonly Revision[], plan: string): void {
+function showConflict(asked: Command, since: readonly Revision[], plan: string): void {
   const details = since.slice(-4).map(({ author, change }) => {
-    const what = [...touched(change)].slice(0, 5);
-    if (touchedHeader(change).size > 0) what.push(t().frame.missionItself);
+    const what = [...changedNames(change)].slice(0, 5);
+    if (changedHeaderFields(change).size > 0) what.push(t().frame.missionItself);
     return t().frame.changedBy(author, what);
   });
   const act = () =>
-    void queued((seen) => {
-      if (seen.plan === plan) return carriedOut(asked, tellError, seen);
-      tell("warn", t().frame.otherMission);
+    void enqueue((seen) => {
+      if (seen.plan === plan) return carryOut(asked, showError, seen);
+      showNotice("warn", t().frame.otherMission);
       return Promise.resolve(false);
     });
-  tell("warn", t().frame.stale, { details, actions: [{ label: t().frame.doItAnyway, act }] });
+  showNotice("warn", t().frame.stale, { details, actions: [{ label: t().frame.doItAnyway, act }] });
 }

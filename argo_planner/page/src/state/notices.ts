@@ -20,7 +20,7 @@ const MOST = 3;
 let count = 0;
 
 /** Show a notice. Returns its id, by which it can be dismissed. */
-export function tell(
+export function showNotice(
   tone: Notice["tone"],
   text: string,
   more: { details?: readonly string[]; actions?: Notice["actions"] } = {},
@@ -48,23 +48,23 @@ export function dismiss(id: number): void {
 }
 
 /** Show an error of a request as a notice; rethrow all other errors. */
-export function tellError(error: unknown): void {
+export function showError(error: unknown): void {
   if (error instanceof Refusal) {
     const { diagnostics } = error.problem;
     const details = diagnostics.flatMap((one) => (one.hint ? [one.hint] : []));
-    tell("bad", messageOf(error), { details: [...new Set(details)].slice(0, 5) });
+    showNotice("bad", messageOf(error), { details: [...new Set(details)].slice(0, 5) });
   } else if (error instanceof Unreached) {
-    tell("warn", t().frame.notReached);
+    showNotice("warn", t().frame.notReached);
   } else throw error;
 }
 
 /** Carry out requests to the service. Returns whether they succeeded; otherwise a notice gives the reason. */
-export async function telling(work: () => Promise<unknown>): Promise<boolean> {
+export async function withErrorNotice(work: () => Promise<unknown>): Promise<boolean> {
   try {
     await work();
     return true;
   } catch (error) {
-    tellError(error);
+    showError(error);
     return false;
   }
 }

@@ -2,7 +2,7 @@
 
 import { batch, computed, signal } from "@preact/signals-core";
 
-import { answered, authorQuery, client, Refusal, Unreached } from "../api/client";
+import { responseData, authorQuery, client, Refusal, Unreached } from "../api/client";
 import { LiveConnection } from "../api/live";
 import type {
   AnalysisFound,
@@ -17,10 +17,10 @@ import type {
   RoomMessage,
   VersionSummary,
 } from "../api/types";
-import { changed } from "../model/change";
+import { applyChange } from "../model/change";
 import { groupKey, isTaskKey, nameOfKey, reactionKey, taskKey } from "../model/outline";
 import { t } from "../texts";
-import { tell } from "./notices";
+import { showNotice } from "./notices";
 import { isMe } from "./session";
 import { resetView } from "./view";
 import { obstaclesChanged } from "./world";
@@ -33,7 +33,7 @@ export const mission = signal<Mission | null>(null);
 export const revision = signal(0);
 export const findings = signal<Findings>({ diagnostics: [], more: 0 });
 /** Whether the mission has errors, with which it can neither be previewed nor driven. */
-export const broken = computed(() => findings.value.diagnostics.some((one) => one.severity === "error"));
+export const missionHasErrors = computed(() => findings.value.diagnostics.some((one) => one.severity === "error"));
 /** The last analysis, possibly of an earlier revision. */
 export const analysis = signal<AnalysisFound | null>(null);
 export const versions = signal<readonly VersionSummary[]>([]);
@@ -45,7 +45,7 @@ export const others = signal<readonly Member[]>([]);
 export const jobs = signal<ReadonlyMap<string, OrderJob | EvaluationJob>>(new Map());
 export const connected = signal(false);
 /** Whether somebody else has deleted the mission that was open last. */
-export const wasGone = signal(false);
+export const wasDeleted = signal(false);
 /** Keys of the selection (`taskKey`, `groupKey`, `reactionKey`), in the order of selection. */
 export const selection = signal<readonly string[]>([]);
 /** The last revision by anybody, used to highlight changes of others. */
@@ -55,11 +55,11 @@ export const tasksByName = computed(
   () => new Map((mission.value?.tasks ?? []).map((task) => [task.name, task])),
 );
 /** Names of all tasks but START, in order. */
-export const laterTasks = computed(() =>
+export const tasksAfterStart = computed(() =>
   (mission.value?.tasks ?? []).filter((task) => task.action !== "START").map((task) => task.name),
 );
 /** The selected task, if exactly one is selected. */
-export const chosenTask = computed(() => {
+export const selectedTask = computed(() => {
   const [key, second] = selection.value;
   if (key === undefined || second !== undefined || !isTaskKey(key)) return null;
   return tasksByName.value.get(nameOfKey(key)) ?? null;
@@ -73,42 +73,42 @@ const recent: Revision[] = [];
 
 /** Open a mission, unless `isMeant` returns false once it is loaded. Throws `Refusal` or `Unreached`. */
 export async function openPlan(id: string, isMeant: () => boolean): Promise<void> {
-  const state = await answered(client.GET("/api/missions/{id}", { params: { path: { id } } }));
+  const state = await responseData(client.GET("/api/missions/{id}", { params: { path: { id } } }));
   if (!isMeant()) return;
   closePlan();
-  wasGone.value = false;
+  wasDeleted.value = false;
   batch(() => {
     planId.value = id;
-    take(state);
+    takePlanState(state);
   });
   live = new LiveConnection<RoomMessage>({
     address: () =>
       `/api/missions/${id}/live?since=${revision.value}${and(authorQuery())}`,
-    heard,
-    changed: (there) => {
+    onMessage,
+    onConnection: (there) => {
       connected.value = there;
       if (there) {
-        tellSelection();
+        sendSelection();
         obstaclesChanged(); // no message reports obstacles that were added meanwhile
-      } else void stillThere(id);
+      } else void checkStillExists(id);
     },
-    gone,
+    onDeleted,
   });
 }
 
 /** Check whether the mission still exists, as its connection has ended. */
-async function stillThere(id: string): Promise<void> {
+async function checkStillExists(id: string): Promise<void> {
   try {
-    await answered(client.GET("/api/missions/{id}/versions", { params: { path: { id } } }));
+    await responseData(client.GET("/api/missions/{id}/versions", { params: { path: { id } } }));
   } catch (error) {
-    if (error instanceof Refusal && error.problem.status === 404 && planId.value === id) gone();
+    if (error instanceof Refusal && error.problem.status === 404 && planId.value === id) onDeleted();
     else if (!(error instanceof Refusal || error instanceof Unreached)) throw error;
   }
 }
 
-function gone(): void {
-  wasGone.value = true;
-  tell("warn", t().frame.deletedBy(planName.value));
+function onDeleted(): void {
+  wasDeleted.value = true;
+  showNotice("warn", t().frame.deletedBy(planName.value));
   closePlan();
   history.replaceState(null, "", "#");
 }
@@ -137,32 +137,32 @@ export function takeJob(job: OrderJob | EvaluationJob): void {
 
 export function select(keys: readonly string[]): void {
   selection.value = keys;
-  tellSelection();
+  sendSelection();
 }
 
 /** Return the revisions after a known one; null: they are no longer known. */
-export function doneSince(known: number): readonly Revision[] | null {
+export function revisionsSince(known: number): readonly Revision[] | null {
   if (known === revision.value) return [];
   if ((recent[0]?.number ?? Infinity) > known + 1) return null;
   return recent.filter((one) => one.number > known);
 }
 
 /** Take the plan's state from an answer of the service. */
-export function take(told: PlanState | CommandDone): void {
+export function takePlanState(answer: PlanState | CommandDone): void {
   batch(() => {
-    if ("mission" in told) {
-      mission.value = told.mission;
-      revision.value = told.revision;
-      planName.value = told.name;
-      analysis.value = told.analysis ?? null;
-      versions.value = told.versions;
+    if ("mission" in answer) {
+      mission.value = answer.mission;
+      revision.value = answer.revision;
+      planName.value = answer.name;
+      analysis.value = answer.analysis ?? null;
+      versions.value = answer.versions;
       recent.length = 0;
-      if (told.recovered) tell("warn", told.recovered);
-      keepSelection(null);
-    } else takeRevision(told.revision);
-    if (!("newest" in told) || told.newest === revision.value) findings.value = told.findings;
-    undoable.value = told.undoable;
-    redoable.value = told.redoable;
+      if (answer.recovered) showNotice("warn", answer.recovered);
+      pruneSelection(null);
+    } else takeRevision(answer.revision);
+    if (!("newest" in answer) || answer.newest === revision.value) findings.value = answer.findings;
+    undoable.value = answer.undoable;
+    redoable.value = answer.redoable;
   });
 }
 
@@ -173,19 +173,19 @@ export function takeRevision(made: Revision): void {
   recent.push(made);
   if (recent.length > MOST_RECENT) recent.shift();
   batch(() => {
-    mission.value = changed(before, made.change);
+    mission.value = applyChange(before, made.change);
     revision.value = made.number;
     lastRevision.value = made;
-    keepSelection(isMe(made.author) ? null : made.author);
+    pruneSelection(isMe(made.author) ? null : made.author);
   });
 }
 
-function heard(message: RoomMessage): void {
+function onMessage(message: RoomMessage): void {
   batch(() => {
     switch (message.kind) {
       case "snapshot":
         self = message.client;
-        take(message.state);
+        takePlanState(message.state);
         takeMembers(message.members);
         break;
       case "resumed":
@@ -237,7 +237,7 @@ function takeMembers(members: readonly Member[]): void {
 }
 
 /** Remove deleted items from the selection, and report who deleted them. */
-function keepSelection(by: string | null): void {
+function pruneSelection(by: string | null): void {
   const open = mission.value;
   const keys = new Set([
     ...(open?.tasks ?? []).map((task) => taskKey(task.name)),
@@ -247,11 +247,11 @@ function keepSelection(by: string | null): void {
   const there = selection.value.filter((key) => keys.has(key));
   if (there.length === selection.value.length) return;
   const lost = selection.value.filter((key) => !keys.has(key)).map(nameOfKey);
-  if (by !== null) tell("warn", t().frame.wentAway(by, lost.slice(0, 5).join(", ")));
+  if (by !== null) showNotice("warn", t().frame.wentAway(by, lost.slice(0, 5).join(", ")));
   select(there);
 }
 
-function tellSelection(): void {
+function sendSelection(): void {
   live?.send({ kind: "select", names: selection.value.slice(0, 2_000).map(nameOfKey) });
 }
 

@@ -2,7 +2,7 @@
 
 import { batch, computed, effect, signal } from "@preact/signals-core";
 
-import { answered, authorQuery, client, Unreached } from "../api/client";
+import { responseData, authorQuery, client, Unreached } from "../api/client";
 import { LiveConnection } from "../api/live";
 import type {
   Entry,
@@ -13,7 +13,7 @@ import type {
   RunState,
 } from "../api/types";
 import { momentAt, type Moment } from "../model/replay";
-import { tell, tellError } from "./notices";
+import { showNotice, showError } from "./notices";
 import { planId } from "./plan";
 import { isMe } from "./session";
 
@@ -89,41 +89,41 @@ export const shownRun = computed<ShownRun | null>(() => {
 /** Interval at which entries are shown together; many arrive at once when the page opens. */
 const ENTRIES_MS = 40;
 /** Ids of requests whose failure is not shown as a notice. */
-export const quiet = new Set<string>();
+export const quietRequests = new Set<string>();
 let live: LiveConnection<RunMessage> | null = null;
-let shownLast = 0;
-let comeIn: Entry[] = [];
+let showTurn = 0;
+let arrivedEntries: Entry[] = [];
 let showing: ReturnType<typeof setTimeout> | undefined;
 let catchingUp = false;
 
 /** Follow the robot from now on. */
 export function followRobot(): void {
   live ??= new LiveConnection<RunMessage>({
-    address: () => `/api/robot/live?${[since(), authorQuery()].filter(Boolean).join("&")}`,
-    heard,
-    changed: (there) => (robotConnected.value = there),
+    address: () => `/api/robot/live?${[sinceQuery(), authorQuery()].filter(Boolean).join("&")}`,
+    onMessage,
+    onConnection: (there) => (robotConnected.value = there),
   });
 }
 
-function since(): string {
-  const known = entries.value.length + comeIn.length;
+function sinceQuery(): string {
+  const known = entries.value.length + arrivedEntries.length;
   return known > 0 ? `since=${known}` : "";
 }
 
 /** Show a past run; null: the robot's. Throws `Refusal` or `Unreached`. */
 export async function showRun(id: string | null): Promise<void> {
   if (id === null || id === run.value?.id) {
-    shownLast++;
+    showTurn++;
     batch(() => {
       pastRun.value = null;
       shownTime.value = null;
     });
     return;
   }
-  const turn = ++shownLast;
-  const state = await answered(client.GET("/api/runs/{run}", { params: { path: { run: id } } }));
+  const turn = ++showTurn;
+  const state = await responseData(client.GET("/api/runs/{run}", { params: { path: { run: id } } }));
   const found = await entriesOf(id, 0);
-  if (turn !== shownLast || planId.value !== state.plan) return;
+  if (turn !== showTurn || planId.value !== state.plan) return;
   batch(() => {
     pastRun.value = { state, entries: found };
     shownTime.value = null;
@@ -133,7 +133,7 @@ export async function showRun(id: string | null): Promise<void> {
 /** Show a repeated run of an evaluation, unless another mission is open by now. */
 export function showReplay({ state, entries }: ReplayedRun, evaluated: FailedRun): void {
   if (planId.value !== state.plan) return;
-  shownLast++;
+  showTurn++;
   batch(() => {
     pastRun.value = { state, entries, evaluated };
     shownTime.value = null;
@@ -145,7 +145,7 @@ async function entriesOf(id: string, since: number): Promise<Entry[]> {
   const found: Entry[] = [];
   for (;;) {
     const query = { since: since + found.length };
-    const part = await answered(
+    const part = await responseData(
       client.GET("/api/runs/{run}/entries", { params: { path: { run: id }, query } }),
     );
     found.push(...part.entries);
@@ -158,7 +158,7 @@ export function takeState(state: RunState | null): void {
   batch(() => {
     if (state?.id !== run.value?.id) {
       entries.value = [];
-      comeIn = [];
+      arrivedEntries = [];
       robotPose.value = null;
       shownTime.value = null;
       // A new run is shown in place of a past one.
@@ -168,12 +168,12 @@ export function takeState(state: RunState | null): void {
   });
 }
 
-function heard(message: RunMessage): void {
+function onMessage(message: RunMessage): void {
   switch (message.kind) {
     case "state":
       takeState(message.state);
       // No messages bring the entries of a run that began and ended during a lost connection.
-      if (message.state?.status === "ended" && message.state.entries > entries.value.length + comeIn.length)
+      if (message.state?.status === "ended" && message.state.entries > entries.value.length + arrivedEntries.length)
         void catchUp(message.state.id);
       break;
     case "pose":
@@ -196,23 +196,23 @@ function takeRequest(id: string, request: RequestState): void {
     const others = now.requests.filter((one) => one.id !== request.id);
     run.value = { ...now, requests: [...others, request] };
   }
-  if (request.reason && request.progress !== "confirmed" && isMe(request.by) && !quiet.has(request.id))
-    tell("warn", request.reason);
+  if (request.reason && request.progress !== "confirmed" && isMe(request.by) && !quietRequests.has(request.id))
+    showNotice("warn", request.reason);
 }
 
 function takeEntry(id: string, number: number, entry: Entry): void {
   if (id !== run.value?.id) return;
-  const next = entries.value.length + comeIn.length + 1;
+  const next = entries.value.length + arrivedEntries.length + 1;
   if (number > next) void catchUp(id);
   if (number !== next || catchingUp) return;
-  comeIn.push(entry);
-  showing ??= setTimeout(showComeIn, ENTRIES_MS);
+  arrivedEntries.push(entry);
+  showing ??= setTimeout(flushEntries, ENTRIES_MS);
 }
 
-function showComeIn(): void {
+function flushEntries(): void {
   showing = undefined;
-  if (comeIn.length > 0) entries.value = [...entries.value, ...comeIn];
-  comeIn = [];
+  if (arrivedEntries.length > 0) entries.value = [...entries.value, ...arrivedEntries];
+  arrivedEntries = [];
 }
 
 /** Read entries that arrived while another run was known here. */
@@ -220,11 +220,11 @@ async function catchUp(id: string): Promise<void> {
   if (catchingUp) return;
   catchingUp = true;
   try {
-    showComeIn();
+    flushEntries();
     const missed = await entriesOf(id, entries.value.length);
     if (run.value?.id === id) entries.value = [...entries.value, ...missed];
   } catch (error) {
-    if (!(error instanceof Unreached)) tellError(error);
+    if (!(error instanceof Unreached)) showError(error);
   } finally {
     catchingUp = false;
   }

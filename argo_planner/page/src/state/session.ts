@@ -2,7 +2,7 @@
 
 import { effect, signal } from "@preact/signals-core";
 
-import { answered, client, workAs } from "../api/client";
+import { responseData, client, setAuthor } from "../api/client";
 import type { ServiceSummary } from "../api/types";
 import { language, type Language } from "../texts";
 
@@ -10,7 +10,7 @@ export type Theme = "light" | "dark";
 
 /** The service and the person's role; null until the service has answered. */
 export const service = signal<ServiceSummary | null>(null);
-export const author = signal(kept("author") ?? "");
+export const author = signal(storedSetting("author") ?? "");
 export const theme = signal<Theme>(firstTheme());
 
 /** Return whether a name is that of the person at the page. */
@@ -32,38 +32,38 @@ export function mayOperate(): boolean {
 export function beginSession(): void {
   language.value = firstLanguage();
   effect(() => {
-    workAs(author.value);
-    keep("author", author.value);
+    setAuthor(author.value);
+    storeSetting("author", author.value);
   });
   effect(() => {
     document.documentElement.dataset["theme"] = theme.value;
-    keep("theme", theme.value);
+    storeSetting("theme", theme.value);
   });
   effect(() => {
     document.documentElement.lang = language.value;
-    keep("language", language.value);
+    storeSetting("language", language.value);
   });
 }
 
 /** Read the summary of the service. Throws `Refusal` or `Unreached`. */
 export async function readService(): Promise<void> {
-  service.value = await answered(client.GET("/api/service"));
+  service.value = await responseData(client.GET("/api/service"));
 }
 
 function firstTheme(): Theme {
-  const known = kept("theme");
+  const known = storedSetting("theme");
   if (known === "dark" || known === "light") return known;
   return matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
 }
 
 function firstLanguage(): Language {
-  const known = kept("language");
+  const known = storedSetting("language");
   if (known === "de" || known === "en") return known;
   return navigator.language.startsWith("de") ? "de" : "en";
 }
 
 /** Return a setting stored in the browser; null: there is none. */
-export function kept(name: string): string | null {
+export function storedSetting(name: string): string | null {
   try {
     return localStorage.getItem(`argo.${name}`);
   } catch {
@@ -71,7 +71,7 @@ export function kept(name: string): string | null {
   }
 }
 
-export function keep(name: string, value: string): void {
+export function storeSetting(name: string, value: string): void {
   try {
     localStorage.setItem(`argo.${name}`, value);
   } catch {

@@ -2,9 +2,9 @@
 
 import { batch, computed, signal } from "@preact/signals-core";
 
-import { answered, client, newId, Unreached } from "../api/client";
+import { responseData, client, newId, Unreached } from "../api/client";
 import type { Obstacle, World } from "../api/types";
-import { tellError, telling } from "./notices";
+import { showError, withErrorNotice } from "./notices";
 
 export const world = signal<World | null>(null);
 /** Revision of the obstacles; what depends on them is read again when it changes. */
@@ -17,8 +17,8 @@ export const checkpointsById = computed(
 /** Read the site. Throws `Refusal` or `Unreached`. */
 export async function readWorld(): Promise<void> {
   const [found, obstacles] = await Promise.all([
-    answered(client.GET("/api/world")),
-    answered(client.GET("/api/world/obstacles")),
+    responseData(client.GET("/api/world")),
+    responseData(client.GET("/api/world/obstacles")),
   ]);
   const older = world.value !== null && obstacles.revision < obstacleRevision.value;
   if (older) return; // a newer answer came first
@@ -32,12 +32,12 @@ export async function readWorld(): Promise<void> {
 /** Read the site again if its obstacles have changed. */
 export function obstaclesChanged(): void {
   readAgain().catch((error: unknown) => {
-    if (!(error instanceof Unreached)) tellError(error); // it is read again when the connection returns
+    if (!(error instanceof Unreached)) showError(error); // it is read again when the connection returns
   });
 }
 
 async function readAgain(): Promise<void> {
-  const { revision } = await answered(client.GET("/api/world/obstacles"));
+  const { revision } = await responseData(client.GET("/api/world/obstacles"));
   if (world.value === null || revision !== obstacleRevision.value) await readWorld();
 }
 
@@ -51,8 +51,8 @@ export function removeObstacle(id: string): Promise<boolean> {
 }
 
 async function putObstacles(obstacles: readonly Obstacle[]): Promise<boolean> {
-  const done = await telling(async () => {
-    await answered(
+  const done = await withErrorNotice(async () => {
+    await responseData(
       client.PUT("/api/world/obstacles", {
         params: { header: { "If-Match": `"${obstacleRevision.value}"` } },
         body: { obstacles },
@@ -60,6 +60,6 @@ async function putObstacles(obstacles: readonly Obstacle[]): Promise<boolean> {
     );
     await readWorld();
   });
-  if (!done) await telling(readWorld);
+  if (!done) await withErrorNotice(readWorld);
   return done;
 }

@@ -1,8 +1,8 @@
 /** The strip: time, distance, climb and battery for each leg and in total, with their limits. */
 
-import { gathered, isTooLate, legsOf, type Leg } from "../model/legs";
+import { mergedLegs, isTooLate, legsOf, type Leg } from "../model/legs";
 import { isTaskKey, nameOfKey, taskKey } from "../model/outline";
-import { broken, mission, select, selection } from "../state/plan";
+import { missionHasErrors, mission, select, selection } from "../state/plan";
 import { hoveredLeg, preview, previewRefused } from "../state/preview";
 import { world } from "../state/world";
 import { t } from "../texts";
@@ -130,7 +130,7 @@ export class StripPanel extends PageElement {
     const there = mission.value;
     if (there === null) return nothing;
     if (found === null || found.ways.length === 0) {
-      const reckoned = previewRefused.value ?? (broken.value ? texts.broken : texts.outdated);
+      const reckoned = previewRefused.value ?? (missionHasErrors.value ? texts.broken : texts.outdated);
       return html`<p class="dim said">${there.tasks.length === 0 ? texts.empty : reckoned}</p>`;
     }
     const legs = legsOf(found, there);
@@ -160,7 +160,7 @@ function barView(legs: readonly Leg[], limit: number | null) {
   const whole = Math.max(end, limit !== null && limit < 3 * end ? limit : 0, 1e-9);
   const chosen = new Set(selection.value.filter(isTaskKey).map(nameOfKey));
   return html`<div class="bar" @pointerleave=${() => (hoveredLeg.value = null)}>
-    ${gathered(legs, MOST_BARS).map((leg) => {
+    ${mergedLegs(legs, MOST_BARS).map((leg) => {
       const part = (100 * leg.time) / whole;
       const marks = [
         leg.problem !== null ? "broken" : isTooLate(leg, limit) ? "late" : "",

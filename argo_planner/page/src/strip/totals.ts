@@ -2,9 +2,9 @@
  * highest value. */
 
 import type { PreviewedMission } from "../api/types";
-import { boundsOf, limited, type BoundShown, type Limited } from "../model/legs";
+import { boundsOf, withLimit, type BoundShown, type LimitedValue } from "../model/legs";
 import { taskKey } from "../model/outline";
-import { analysis, broken, mission, revision, select } from "../state/plan";
+import { analysis, missionHasErrors, mission, revision, select } from "../state/plan";
 import { previewIsNew } from "../state/preview";
 import { world } from "../state/world";
 import { t } from "../texts";
@@ -70,15 +70,15 @@ export class StripTotals extends PageElement {
     const { found } = this;
     if (found === null) return nothing;
     const texts = t().strip;
-    const time = limited(found.time, mission.value?.max_duration ?? null);
-    const energy = limited(found.energy, battery());
+    const time = withLimit(found.time, mission.value?.max_duration ?? null);
+    const energy = withLimit(found.energy, battery());
     const bounds = boundsOf(analysis.value, { time: time.limit, energy: energy.limit });
     const old = !previewIsNew.value;
     return html`<div class="totals ${old ? "old" : ""}">
         ${this.total("time", time, seconds)} ${this.total("energy", energy, (wh) => share(wh, battery()))}
         <span class="total">${texts.distance} <b id="total-distance">${metres(found.distance)}</b></span>
         <span class="total">${texts.climb} <b id="total-climb">${metres(found.climb)}</b></span>
-        ${old ? html`<span role="status">${broken.value ? texts.before : texts.outdated}</span>` : nothing}
+        ${old ? html`<span role="status">${missionHasErrors.value ? texts.before : texts.outdated}</span>` : nothing}
       </div>
       <p class="bounds">
         ${isPart(found) ? html`<span class="dim">${texts.oneRound}</span>` : nothing}
@@ -90,7 +90,7 @@ export class StripTotals extends PageElement {
       ${this.witness(bounds)}`;
   }
 
-  private total(kind: BoundShown["kind"], of: Limited, write: (value: number) => string) {
+  private total(kind: BoundShown["kind"], of: LimitedValue, write: (value: number) => string) {
     const texts = t().strip;
     const isTime = kind === "time";
     const problem = isTime ? texts.tooLong : texts.tooMuch;

@@ -4,7 +4,7 @@ import { run } from "./run";
 type Kinds = typeof run.en.fault;
 
 /** Return a function that names a set of faults: by its kind, with a number if the kind occurs more than once. */
-function named(kinds: Kinds, none: string): (name: string) => string {
+function faultNamer(kinds: Kinds, none: string): (name: string) => string {
   return (name) => {
     if (name === "none" || name === "nothing") return none;
     const [kind, number] = name.split(" ");
@@ -16,7 +16,7 @@ function named(kinds: Kinds, none: string): (name: string) => string {
 type Words = Readonly<Record<string, string>>;
 
 /** Return a function that writes a requirement, such as `success >= 0.98`, as a sentence. */
-function required(words: Words, least: string, most: string) {
+function requirementWriter(words: Words, least: string, most: string) {
   return (requirement: string, percent: (part: number) => string): string => {
     const [, quantity = "", sign = "", number = ""] = /^([a-z ]+) (>=|<=) ([\d.e-]+)$/.exec(requirement) ?? [];
     const word = words[quantity];
@@ -73,7 +73,7 @@ export const evaluate = both(
     count: (runs: string) => `${runs} of them count`,
     serviceEnded: "The service ended before all runs were done.",
     enough: (done: string, planned: string) => `${done} of at most ${planned} runs: no more were needed`,
-    required: required(
+    required: requirementWriter(
       {
         success: "Success",
         detected: "All faults detected",
@@ -117,7 +117,7 @@ export const evaluate = both(
     back: "Back to the evaluation",
     report: "Report with all tables and pictures",
     noFailure: "No run failed.",
-    faultsNamed: named(run.en.fault, "no faults"),
+    faultsNamed: faultNamer(run.en.fault, "no faults"),
   },
   {
     begin: "Bewerten",
@@ -166,7 +166,7 @@ export const evaluate = both(
     count: (runs: string) => `${runs} davon zählen`,
     serviceEnded: "Der Dienst wurde beendet, bevor alle Fahrten fertig waren.",
     enough: (done: string, planned: string) => `${done} von höchstens ${planned} Fahrten: Mehr waren nicht nötig`,
-    required: required(
+    required: requirementWriter(
       {
         success: "Erfolg",
         detected: "Alle Störungen erkannt",
@@ -211,6 +211,6 @@ export const evaluate = both(
     back: "Zurück zur Bewertung",
     report: "Bericht mit allen Tabellen und Bildern",
     noFailure: "Keine Fahrt ist fehlgeschlagen.",
-    faultsNamed: named(run.de.fault, "keine Störungen"),
+    faultsNamed: faultNamer(run.de.fault, "keine Störungen"),
   },
 );

@@ -188,7 +188,7 @@ export const run = both(
     tellEvent: "Send",
     begin: "Start",
     beginFault: "Fault",
-    told: {
+    happened: {
       began: (task: string) => `“${task}” started`,
       done: (task: string) => `“${task}” done`,
       byHand: (task: string) => `“${task}” done by hand`,
@@ -324,7 +324,7 @@ export const run = both(
     tellEvent: "Senden",
     begin: "Starten",
     beginFault: "Störung",
-    told: {
+    happened: {
       began: (task: string) => `„${task}“ begonnen`,
       done: (task: string) => `„${task}“ erledigt`,
       byHand: (task: string) => `„${task}“ von Hand erledigt`,

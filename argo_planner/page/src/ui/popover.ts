@@ -1,7 +1,7 @@
 /** Menus that the browser opens and closes (popovers). */
 
 /** Close a menu when it loses the focus. */
-export function closeLeft(event: FocusEvent): void {
+export function closeOnFocusLoss(event: FocusEvent): void {
   const menu = event.currentTarget as HTMLElement;
   const to = event.relatedTarget;
   if (!(to instanceof Element) || menu.contains(to)) return;
@@ -9,7 +9,7 @@ export function closeLeft(event: FocusEvent): void {
 }
 
 /** Return the focus to the button of a menu that was closed with the focus in it. */
-export function closed(event: ToggleEvent): void {
+export function returnFocus(event: ToggleEvent): void {
   const menu = event.currentTarget as HTMLElement;
   const root = menu.getRootNode() as ShadowRoot;
   if (event.newState === "closed" && menu.contains(root.activeElement))

@@ -3,7 +3,7 @@ import { expect, test } from "vitest";
 import { rateCurve } from "../../src/model/curves";
 import { t } from "../../src/texts";
 
-test("the interval is a closed band about the rate, scaled to all runs", () => {
+test("the interval is a closed band around the rate, scaled to all runs", () => {
   const points = [
     { runs: 0, value: null, low: 0, high: 1 },
     { runs: 50, value: 1, low: 0.9, high: 1 },
@@ -20,7 +20,7 @@ test("nothing is drawn before a run counts", () => {
   expect(rateCurve([{ runs: 0, value: null, low: 0, high: 1 }], 10, 1, 1)).toBeNull();
 });
 
-test("sets of faults are named in words, and unknown ones as they are", () => {
+test("sets of faults have names in words, unknown ones keep theirs", () => {
   const { faultsNamed } = t().evaluate;
   expect(faultsNamed("none")).toBe("no faults");
   expect(faultsNamed("gas_leak")).toBe("gas leak");

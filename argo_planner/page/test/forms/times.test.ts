@@ -17,14 +17,14 @@ test.each([
   ["10 Minuten", 600],
   ["20'", 1200],
   ["1' 30\"", 90],
-])("%s is read", (text, seconds) => {
+])("%s is parsed", (text, seconds) => {
   expect(readTime(text)).toBe(seconds);
 });
 
-test.each(["", "soon", "-5", "10 parsecs", "1:2:3:4", "min", "5 min later"])("%s is none", (text) => {
+test.each(["", "soon", "-5", "10 parsecs", "1:2:3:4", "min", "5 min later"])("%s is not accepted", (text) => {
   expect(readTime(text)).toBeNull();
 });
 
-test.each([0, 1, 59, 60, 90, 119.5, 120, 600, 3600, 3910, 86399])("%s s is read back", (seconds) => {
+test.each([0, 1, 59, 60, 90, 119.5, 120, 600, 3600, 3910, 86399])("%s s is parsed again after formatting", (seconds) => {
   expect(readTime(writeTime(seconds))).toBe(seconds);
 });

@@ -1,7 +1,7 @@
 import { expect, test } from "vitest";
 
 import type { World } from "../../src/api/types";
-import { matching, typedPlace, type Choice } from "../../src/list/choices";
+import { matchingChoices, typedPose, type Choice } from "../../src/list/choices";
 
 const CHOICES: Choice[] = [
   { label: "4 valve R25", detail: "", checkpoint: "4" },
@@ -9,18 +9,18 @@ const CHOICES: Choice[] = [
   { label: "40 tank gauge", detail: "", checkpoint: "40" },
 ];
 
-test("a number means that checkpoint first", () => {
-  expect(matching(CHOICES, "4").map((one) => one.checkpoint)).toEqual(["4", "40", "14"]);
-  expect(matching(CHOICES, "#14")[0]?.checkpoint).toBe("14");
+test("a number finds the checkpoint with that number first", () => {
+  expect(matchingChoices(CHOICES, "4").map((one) => one.checkpoint)).toEqual(["4", "40", "14"]);
+  expect(matchingChoices(CHOICES, "#14")[0]?.checkpoint).toBe("14");
 });
 
-test("words are found wherever they begin", () => {
-  expect(matching(CHOICES, "tank").map((one) => one.checkpoint)).toEqual(["40"]);
-  expect(matching(CHOICES, "r18").map((one) => one.checkpoint)).toEqual(["14"]);
+test("words are found at any position", () => {
+  expect(matchingChoices(CHOICES, "tank").map((one) => one.checkpoint)).toEqual(["40"]);
+  expect(matchingChoices(CHOICES, "r18").map((one) => one.checkpoint)).toEqual(["14"]);
 });
 
-test("nothing fits what nothing is called", () => {
-  expect(matching(CHOICES, "pump")).toEqual([]);
+test("an unknown name finds nothing", () => {
+  expect(matchingChoices(CHOICES, "pump")).toEqual([]);
 });
 
 const SITE = {
@@ -34,10 +34,10 @@ test.each([
   ["1 1", null, [1, 1, 0]],
   ["1.5 -2", 2, [1.5, -2, 2.5]],
   ["1; 2; 2", null, [1, 2, 2.5]],
-])("%s is a place", (text, floor, [x, y, z]) => {
-  expect(typedPlace(SITE, text, floor)?.pose).toEqual({ x, y, z, yaw: 0 });
+])("%s is a pose", (text, floor, [x, y, z]) => {
+  expect(typedPose(SITE, text, floor)?.pose).toEqual({ x, y, z, yaw: 0 });
 });
 
-test.each(["1", "1 2 9", "dock", "1 2 3 4", ""])("%s is none", (text) => {
-  expect(typedPlace(SITE, text, null)).toBeNull();
+test.each(["1", "1 2 9", "dock", "1 2 3 4", ""])("%s is not accepted", (text) => {
+  expect(typedPose(SITE, text, null)).toBeNull();
 });

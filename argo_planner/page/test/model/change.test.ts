@@ -1,7 +1,7 @@
 import { expect, test } from "vitest";
 
 import type { Mission, MissionChange } from "../../src/api/types";
-import { changed } from "../../src/model/change";
+import { applyChange } from "../../src/model/change";
 import { mission, task } from "./missions";
 
 function names(found: Mission): string {
@@ -12,26 +12,26 @@ function tasksChange(put: string[], gone: string[], placed: [string, string | nu
   return { tasks: { put: put.map((name) => task(name)), gone, placed } };
 }
 
-test("what is gone goes, what is placed stands behind what is named", () => {
+test("removed tasks disappear, placed ones follow the named task", () => {
   const change = tasksChange(["x", "y"], ["b"], [["x", null], ["y", "c"]]);
-  expect(names(changed(mission("a b c d"), change))).toBe("x a c y d");
+  expect(names(applyChange(mission("a b c d"), change))).toBe("x a c y d");
 });
 
-test("placed ones are put one after the other", () => {
+test("placements are applied one after the other", () => {
   const change = tasksChange([], [], [["d", null], ["c", "d"]]);
-  expect(names(changed(mission("a b c d"), change))).toBe("d c a b");
+  expect(names(applyChange(mission("a b c d"), change))).toBe("d c a b");
 });
 
-test("what is only exchanged stays where it is", () => {
+test("a replaced task keeps its position", () => {
   const change: MissionChange = {
     tasks: { put: [task("b", { retries: 3 })], gone: [], placed: [] },
   };
-  const after = changed(mission("a b c"), change);
+  const after = applyChange(mission("a b c"), change);
   expect(names(after)).toBe("a b c");
   expect(after.tasks[1]?.retries).toBe(3);
 });
 
-test("fields of the header take their new values", () => {
+test("header fields take their new values", () => {
   const change = { header: { kind: "set_header", designation: "Night" } } as MissionChange;
-  expect(changed(mission("a"), change).designation).toBe("Night");
+  expect(applyChange(mission("a"), change).designation).toBe("Night");
 });

@@ -1,6 +1,6 @@
 import { expect, test } from "vitest";
 
-import { outline, unfolded } from "../../src/model/outline";
+import { outline, visibleRows } from "../../src/model/outline";
 import { group, mission } from "./missions";
 
 const NESTED = mission("a b c d e", group("G", "b", "d"), group("G/H", "c", "d"));
@@ -9,7 +9,7 @@ function drawn(rows: ReturnType<typeof outline>): string[] {
   return rows.map((row) => "-".repeat(row.depth) + row.key);
 }
 
-test("groups stand before their tasks, nested as they lie in each other", () => {
+test("groups precede their tasks and are nested", () => {
   expect(drawn(outline(NESTED))).toEqual([
     "task:a",
     "group:G",
@@ -21,8 +21,8 @@ test("groups stand before their tasks, nested as they lie in each other", () => 
   ]);
 });
 
-test("what is folded hides all that lies in it", () => {
-  const rows = unfolded(outline(NESTED), new Set(["group:G"]));
+test("a folded group hides its content", () => {
+  const rows = visibleRows(outline(NESTED), new Set(["group:G"]));
   expect(drawn(rows)).toEqual(["task:a", "group:G", "task:e"]);
 });
 
@@ -31,6 +31,6 @@ test("each row knows the innermost group around it", () => {
   expect(inside).toEqual([null, null, "G", "G", "G/H", "G/H", null]);
 });
 
-test("groups of tasks that are not there are left out", () => {
+test("groups of missing tasks are left out", () => {
   expect(drawn(outline(mission("a", group("G", "x", "y"))))).toEqual(["task:a"]);
 });

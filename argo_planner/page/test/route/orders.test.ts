@@ -1,28 +1,28 @@
 import { expect, test } from "vitest";
 
 import { convergence } from "../../src/model/curves";
-import { compared, longestRise } from "../../src/model/reordered";
+import { compareOrders, longestIncreasing } from "../../src/model/order-comparison";
 
-test("a longest rise of numbers", () => {
-  expect(longestRise([])).toEqual([]);
-  expect(longestRise([3, 1, 2])).toEqual([1, 2]);
-  expect(longestRise([5, 0, 1, 7, 2, 3])).toEqual([0, 1, 2, 3]);
+test("a longest increasing subsequence", () => {
+  expect(longestIncreasing([])).toEqual([]);
+  expect(longestIncreasing([3, 1, 2])).toEqual([1, 2]);
+  expect(longestIncreasing([5, 0, 1, 7, 2, 3])).toEqual([0, 1, 2, 3]);
 });
 
-test("only what others have gone past is marked as moved", () => {
-  const { before, after } = compared(["a", "b", "c", "d"], ["d", "a", "b", "c"]);
+test("only the fewest possible tasks are marked as moved", () => {
+  const { before, after } = compareOrders(["a", "b", "c", "d"], ["d", "a", "b", "c"]);
   expect(after.filter((one) => one.moved).map((one) => one.name)).toEqual(["d"]);
   expect(before.filter((one) => one.moved).map((one) => one.name)).toEqual(["d"]);
-  expect(compared(["a", "b"], ["a", "b"]).after.some((one) => one.moved)).toBe(false);
+  expect(compareOrders(["a", "b"], ["a", "b"]).after.some((one) => one.moved)).toBe(false);
 });
 
-test("what is left out is marked in the order as it was", () => {
-  const { before, after } = compared(["a", "b", "c"], ["a", "c"]);
+test("a task that is left out is marked in the first order", () => {
+  const { before, after } = compareOrders(["a", "b", "c"], ["a", "c"]);
   expect(before.map((one) => one.moved)).toEqual([false, true, false]);
   expect(after.map((one) => one.moved)).toEqual([false, false]);
 });
 
-test("the best order and the bound are lines of steps that come closer", () => {
+test("the best order and the bound are step functions that approach each other", () => {
   const steps = [
     { time: 0, best: null, bound: 50 },
     { time: 1, best: 110, bound: 90 },

@@ -12,7 +12,7 @@ test("arrows and WASD drive, wherever the letters are on the keyboard", () => {
   ]);
 });
 
-test("the place asked for is ahead, behind, or where the robot is but turned", () => {
+test("the goal is ahead, behind, or turned in place", () => {
   const north = [1, 2, 3, Math.PI / 2, 0] as const;
   expect(goalOf(north, "forward", 2).y).toBeCloseTo(4);
   expect(goalOf(north, "backward", 2).y).toBeCloseTo(1);
@@ -21,13 +21,13 @@ test("the place asked for is ahead, behind, or where the robot is but turned", (
   expect(goalOf(north, "right", 1).yaw).toBeCloseTo(0);
 });
 
-test("on stairs it goes up with the robot's front", () => {
+test("on stairs the goal follows the robot's pitch", () => {
   const up = [0, 0, 0, 0, -Math.PI / 6] as const;
   expect(goalOf(up, "forward", 2).z).toBeCloseTo(1);
   expect(goalOf(up, "backward", 2).z).toBeCloseTo(-0.5);
 });
 
-test("a detour, a way that is none and a stand still are not driven", () => {
+test("detours, missing paths and paths without motion are not driven", () => {
   expect(isStraight({ distance: 2.1, time: 8 }, "forward", 2)).toBe(true);
   expect(isStraight({ distance: 9, time: 30 }, "forward", 2)).toBe(false);
   expect(isStraight({ distance: 0, time: 0.1 }, "forward", 2)).toBe(false);

@@ -18,11 +18,11 @@ const ENTRIES = [
   entry(10, { events: [{ kind: "give_back", by_hand: [{ task: "c", skipped: true }] }] }),
 ];
 
-test("entries are counted to a time, those at it included", () => {
+test("entries are counted up to and including a time", () => {
   expect([-1, 0, 3, 4, 5, 99].map((t) => countUntil(ENTRIES, t))).toEqual([0, 1, 2, 4, 4, 7]);
 });
 
-test("between two entries the robot is between their poses", () => {
+test("poses between two entries are interpolated", () => {
   const moment = momentAt(ENTRIES, 3);
   expect(moment?.pose[0]).toBe(3);
   expect(moment?.task).toBe("a");
@@ -31,12 +31,12 @@ test("between two entries the robot is between their poses", () => {
   expect(momentAt([], 3)).toBeNull();
 });
 
-test("the shorter way round is turned", () => {
+test("headings are interpolated over the smaller angle", () => {
   const turned = [entry(0, { pose: [0, 0, 0, 3, 0] }), entry(1, { pose: [0, 0, 0, -3, 0] })];
   expect(momentAt(turned, 0.5)?.pose[3]).toBeCloseTo(Math.PI);
 });
 
-test("outcomes and readings are the last ones by then", () => {
+test("outcomes and readings are the last ones up to that time", () => {
   const half = momentAt(ENTRIES, 8);
   expect(half?.outcomes).toEqual(new Map([["a", "done"], ["b", "failed"]]));
   expect(half?.readings.map((one) => one.value)).toEqual([1]);

@@ -1,8 +1,8 @@
 import { describe, expect, it } from "vitest";
 
-import { declutter, type LabelWish, overlap } from "../../src/model/declutter";
+import { declutter, type LabelRequest, overlap } from "../../src/model/declutter";
 
-function wish(key: string, x: number, y: number, weight = 1): LabelWish {
+function wish(key: string, x: number, y: number, weight = 1): LabelRequest {
   return { key, x, y, width: 80, height: 20, weight };
 }
 
@@ -13,7 +13,7 @@ function numbers(): () => number {
 }
 
 describe("labels", () => {
-  it("never lie over each other", () => {
+  it("never cover each other", () => {
     const next = numbers();
     const wishes = Array.from({ length: 400 }, (_, i) => wish(String(i), next() * 900, next() * 700, next() * 9));
     const placed = declutter(wishes, 900, 700);
@@ -24,20 +24,20 @@ describe("labels", () => {
     });
   });
 
-  it("stand at the right, and elsewhere where there is no room", () => {
+  it("are at the right, or elsewhere if there is no room", () => {
     expect(declutter([wish("a", 100, 100)], 900, 700)[0]?.side).toBe("right");
     expect(declutter([wish("a", 880, 100)], 900, 700)[0]?.side).toBe("left");
     const [, second] = declutter([wish("a", 100, 100, 2), wish("b", 110, 100)], 900, 700);
     expect(second?.side).toBe("left");
   });
 
-  it("give way to those that matter more", () => {
+  it("make room for labels with a higher weight", () => {
     const crowd = Array.from({ length: 9 }, (_, i) => wish(String(i), 300, 300, i));
     const placed = declutter(crowd, 900, 700);
     expect(placed.map((one) => one.key)).toEqual(["8", "7", "6", "5"]);
   });
 
-  it("are not more than wanted", () => {
+  it("are at most as many as wanted", () => {
     const wishes = Array.from({ length: 20 }, (_, i) => wish(String(i), 300, 30 * i + 15, i));
     expect(declutter(wishes, 900, 700, new Map(), 5).map((one) => one.key)).toEqual(["19", "18", "17", "16", "15"]);
   });

@@ -1,13 +1,13 @@
 import { expect, test } from "vitest";
 
 import type { Diagnostic, MissionReading } from "../../src/api/types";
-import { lineOf, linesBySource, linesBySteps, nameInLine, placeOf, severities } from "../../src/model/script-lines";
+import { lineOf, linesBySource, linesBySteps, nameInLine, offsetOf, worstSeverities } from "../../src/model/script-lines";
 
 const TEXT = "Mission Protocol #3\n\n1. Set the start.\n2. Check #4,\n   retry twice.\n10. Return.\n";
 const entry = (name: string, step: number | null, line: number | null = null) =>
   ({ name, step, source: line === null ? null : { line, column: 1, length: 1 } }) as unknown as MissionReading["entries"][number];
 
-test("steps are found by their numbers, with the lines that go on", () => {
+test("steps are found by their numbers, with their continuation lines", () => {
   const lines = linesBySteps(TEXT, [entry("START", 1), entry("M", 2), entry("DOCK", 10), entry("x", 7), entry("", null)]);
   expect([...lines]).toEqual([
     ["START", { from: 3, to: 3 }],
@@ -18,22 +18,22 @@ test("steps are found by their numbers, with the lines that go on", () => {
   expect(nameInLine(lines, 2)).toBeNull();
 });
 
-test("in one's own text they are where the mission says that it has them from", () => {
+test("in a person's own text they are at the source lines of the mission", () => {
   const lines = linesBySource("a\nb\n  c\nd", [entry("x", 1, 2), entry("far", 2, 99), entry("none", 3)]);
   expect([...lines]).toEqual([["x", { from: 2, to: 3 }]]);
 });
 
-test("places in the text and lines are the same thing", () => {
+test("offsets and lines are converted into each other", () => {
   expect(lineOf(TEXT, 0)).toBe(1);
-  const at = placeOf(TEXT, 4, 4);
+  const at = offsetOf(TEXT, 4, 4);
   expect(TEXT.slice(at, at + 5)).toBe("Check");
   expect(lineOf(TEXT, at)).toBe(4);
-  expect(placeOf(TEXT, 99, 99)).toBe(TEXT.length);
+  expect(offsetOf(TEXT, 99, 99)).toBe(TEXT.length);
 });
 
-test("of each line the worst is shown", () => {
+test("each line has its worst severity", () => {
   const said = (severity: string, line: number | null) =>
     ({ severity, span: line === null ? null : { line, column: 1, length: 1 } }) as unknown as Diagnostic;
-  const found = severities([said("note", 1), said("error", 2), said("warning", 2), said("warning", 1), said("error", null)]);
+  const found = worstSeverities([said("note", 1), said("error", 2), said("warning", 2), said("warning", 1), said("error", null)]);
   expect([...found]).toEqual([[1, "warning"], [2, "error"]]);
 });

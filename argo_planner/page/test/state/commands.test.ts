@@ -2,9 +2,9 @@ import { beforeEach, expect, test, vi } from "vitest";
 
 import { type Answer, type Asked, fakeService, problem } from "./fake-service";
 
-import { edit, settled } from "../../src/state/commands";
+import { edit, allAnswered } from "../../src/state/commands";
 import { notices } from "../../src/state/notices";
-import { mission, planId, revision, take } from "../../src/state/plan";
+import { mission, planId, revision, takePlanState } from "../../src/state/plan";
 import { mission as missionOf } from "../model/missions";
 
 const NOTHING = { header: {}, tasks: null, groups: null, reactions: null };
@@ -25,7 +25,7 @@ beforeEach(() => {
   notices.value = [];
 });
 
-test("an edit that was not answered is sent again under the same id", async () => {
+test("an edit without an answer is sent again with the same id", async () => {
   let answers = 0;
   const asked = fakeService((one) => (++answers < 3 ? null : done(one, 4)));
   vi.useFakeTimers();
@@ -38,7 +38,7 @@ test("an edit that was not answered is sent again under the same id", async () =
   expect(revision.value).toBe(4);
 });
 
-test("what others did elsewhere does not hold an edit up", async () => {
+test("edits of others elsewhere don't prevent an edit", async () => {
   const change = { ...NOTHING, tasks: { put: [], gone: ["C"], placed: [] } };
   const asked = fakeService((one) =>
     one.ifMatch === '"3"' ? problem(412, "stale-revision", { since: [made(4, "x", change)] }) : done(one, 5),
@@ -56,7 +56,7 @@ test.each([
     { kind: "wrap_tasks", group: { name: "G", start: "A", end: "C" } } as const,
     { tasks: { put: [], gone: [], placed: [["C", null]] } },
   ],
-])("an edit of %s that somebody else has changed is not made, and can be made all the same", async (_, asked, change) => {
+])("an edit of %s that somebody else has changed is not made, but can be applied anyway", async (_, asked, change) => {
   fakeService((one) =>
     one.ifMatch === '"3"'
       ? problem(412, "stale-revision", { since: [made(4, "x", { ...NOTHING, ...change })] })
@@ -66,22 +66,22 @@ test.each([
   const [told] = notices.value;
   expect(told?.details[0]).toContain("Bob");
   told?.actions[0]?.act();
-  await settled();
+  await allAnswered();
   expect(revision.value).toBe(5);
 });
 
-test("what is to be done all the same is not done to another mission", async () => {
+test("applying anyway does not affect another mission", async () => {
   const change = { ...NOTHING, tasks: { put: [], gone: ["A"], placed: [] } };
   const asked = fakeService(() => problem(412, "stale-revision", { since: [made(4, "x", change)] }));
   await edit({ kind: "remove_task", name: "A" });
   const [told] = notices.value;
   planId.value = "b2";
   told?.actions[0]?.act();
-  await settled();
+  await allAnswered();
   expect(asked.every((one) => one.path.includes("a1"))).toBe(true);
 });
 
-test("an answer for a mission that was left is not taken into another one", async () => {
+test("an answer for a closed mission does not change another one", async () => {
   fakeService((one) => {
     planId.value = "b2"; // somebody opens another mission meanwhile
     return done(one, 4);
@@ -90,8 +90,8 @@ test("an answer for a mission that was left is not taken into another one", asyn
   expect(revision.value).toBe(3);
 });
 
-test("a snapshot replaces what was known", () => {
+test("a snapshot replaces the previous state", () => {
   const state = { id: "a1", name: "Round", mission: missionOf("X"), revision: 9, findings: { diagnostics: [], more: 0 } };
-  take({ ...state, versions: [], undoable: [], redoable: [], newest: 9 } as never);
+  takePlanState({ ...state, versions: [], undoable: [], redoable: [], newest: 9 } as never);
   expect(mission.value?.tasks.map((task) => task.name)).toEqual(["X"]);
 });

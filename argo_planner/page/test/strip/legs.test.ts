@@ -1,7 +1,7 @@
 import { expect, test } from "vitest";
 
 import type { AnalysisFound, Mission, PreviewedMission } from "../../src/api/types";
-import { boundsOf, gathered, isTooLate, legsOf, limited, type Leg } from "../../src/model/legs";
+import { boundsOf, mergedLegs, isTooLate, legsOf, withLimit, type Leg } from "../../src/model/legs";
 
 const way = (time: number | null, more = {}) => ({ time, distance: 2, climb: 1, energy: 3, problem: null, ...more });
 const PREVIEW = {
@@ -20,7 +20,7 @@ const MISSION = {
   ],
 } as unknown as Mission;
 
-test("the legs are those of the default way, waits included", () => {
+test("the legs are those of the default path, including waits", () => {
   const legs = legsOf(PREVIEW, MISSION);
   expect(legs.map((leg) => [leg.way, leg.task, leg.start, leg.time])).toEqual([
     [0, "a", 0, 10],
@@ -32,13 +32,13 @@ test("the legs are those of the default way, waits included", () => {
   expect(isTooLate(legs[2] as Leg, null)).toBe(false);
 });
 
-test("a limit is broken by what is more, and none by anything", () => {
-  expect(limited(5, 5).broken).toBe(false);
-  expect(limited(6, 5).broken).toBe(true);
-  expect(limited(6, null)).toEqual({ value: 6, limit: null, broken: false });
+test("a limit is exceeded by higher values; without one nothing is exceeded", () => {
+  expect(withLimit(5, 5).broken).toBe(false);
+  expect(withLimit(6, 5).broken).toBe(true);
+  expect(withLimit(6, null)).toEqual({ value: 6, limit: null, broken: false });
 });
 
-test("bounds of all paths, with the path on which it is most", () => {
+test("bounds over all executions, with the execution of the highest value", () => {
   const found = {
     revision: 1,
     analysis: {
@@ -55,10 +55,10 @@ test("bounds of all paths, with the path on which it is most", () => {
   expect(boundsOf({ revision: 1, problem: "x" }, { time: 1, energy: 1 })).toEqual([]);
 });
 
-test("many legs are put together, with nothing lost", () => {
+test("many legs are merged without loss", () => {
   const legs = Array.from({ length: 10 }, (_, at) => ({ way: at, task: `t${at}`, time: 1, start: at, distance: 1, climb: 0, energy: 2, problem: at === 3 ? "no way" : null }));
-  expect(gathered(legs, 10)).toEqual(legs);
-  const few = gathered(legs, 4);
+  expect(mergedLegs(legs, 10)).toEqual(legs);
+  const few = mergedLegs(legs, 4);
   expect(few.map((leg) => [leg.task, leg.time, leg.energy])).toEqual([["t0", 3, 6], ["t3", 3, 6], ["t6", 3, 6], ["t9", 1, 2]]);
   expect(few[1]?.problem).toBe("no way");
 });

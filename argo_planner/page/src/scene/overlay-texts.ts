@@ -3,15 +3,15 @@
 import { modeWords } from "../run/mode-words";
 import { shownRunState, shownTime } from "../state/run";
 import { t } from "../texts";
-import { heed } from "./heed";
+import { dependOn } from "./depend-on";
 import { ghost, verdictWords } from "./navigate";
 import type { RobotView } from "./robot-view";
 import type { SceneView } from "./view";
 
 /** Place the verdict beside the ghost. */
-export function besideGhost(view: SceneView, element: HTMLElement | null): void {
+export function placeGhostText(view: SceneView, element: HTMLElement | null): void {
   const at = ghost.value;
-  heed(view.frames);
+  dependOn(view.frames);
   if (element === null) return;
   const seen = at === null ? null : view.project(at);
   element.hidden = seen === null;
@@ -22,17 +22,17 @@ export function besideGhost(view: SceneView, element: HTMLElement | null): void 
 }
 
 /** Place the mode of the run above the robot. */
-export function aboveRobot(view: SceneView, robot: RobotView, element: HTMLElement | null): void {
-  const told = robot.told.value;
-  heed(view.frames);
+export function placeRobotText(view: SceneView, robot: RobotView, element: HTMLElement | null): void {
+  const shown = robot.shown.value;
+  dependOn(view.frames);
   if (element === null) return;
-  const seen = told !== null && view.site.isShown(told.floor) ? view.project(told.at) : null;
+  const seen = shown !== null && view.site.isShown(shown.floor) ? view.project(shown.at) : null;
   element.hidden = seen === null;
-  if (seen === null || told === null) return;
-  element.className = told.mode;
+  if (seen === null || shown === null) return;
+  element.className = shown.mode;
   const back = shownTime.value;
   const state = shownRunState.value;
-  const now = state === null ? t().run.modes[told.mode] : modeWords(state);
+  const now = state === null ? t().run.modes[shown.mode] : modeWords(state);
   element.textContent = back === null ? now : t().words.seconds(back);
   const place = `translate(${Math.round(seen.x)}px, ${Math.round(seen.y)}px) translate(-50%, -100%)`;
   element.style.setProperty("transform", place);

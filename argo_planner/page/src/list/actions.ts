@@ -1,12 +1,12 @@
 /** Actions on the selection: group, delete, rename, copy, paste. */
 
 import type { Group, Mission, Reaction } from "../api/types";
-import { copied, pasting, readCopied } from "../model/clipboard";
+import { copiedText, pasteEdits, parseCopied } from "../model/clipboard";
 import { freeName } from "../model/naming";
 import { groupKey, nameOfKey, ownName, taskKey, type Row } from "../model/outline";
-import { groupsOf, placeForNew, tasksOf } from "../model/places";
-import { edit, inTurn } from "../state/commands";
-import { tell } from "../state/notices";
+import { groupsOf, positionForNew, tasksOf } from "../model/task-positions";
+import { edit, editInTurn } from "../state/commands";
+import { showNotice } from "../state/notices";
 import { mission, select, selection } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { panel } from "../state/view";
@@ -14,15 +14,15 @@ import { t } from "../texts";
 import { allRows, shownRows } from "./rows";
 
 /** Group the selection and open the details of the group. */
-export function groupChosen(): Promise<void> {
-  return inTurn(async (make) => {
+export function groupSelection(): Promise<void> {
+  return editInTurn(async (make) => {
     const open = mission.value;
     if (open === null || !mayPlan() || selection.value.length === 0) return;
     const tasks = tasksOf(open, allRows.value, selection.value);
     const [first, last] = [tasks[0], tasks.at(-1)];
     if (!first || !last) return;
     if (open.tasks.indexOf(last) - open.tasks.indexOf(first) + 1 !== tasks.length) {
-      tell("warn", t().list.notTogether);
+      showNotice("warn", t().list.notTogether);
       return;
     }
     const row = allRows.value.find((one) => one.key === selection.value[0]);
@@ -39,8 +39,8 @@ export function groupChosen(): Promise<void> {
 }
 
 /** Delete the selection when its turn comes, and select the next row. */
-export function deleteChosen(): Promise<void> {
-  return inTurn(async (make) => {
+export function deleteSelection(): Promise<void> {
+  return editInTurn(async (make) => {
     const open = mission.value;
     const keys = selection.value;
     if (open === null || keys.length === 0) return;
@@ -52,7 +52,7 @@ export function deleteChosen(): Promise<void> {
     const stays = (row: Row) => row.kind === "task" && !tasks.includes(row.task.name);
     const next = shown.slice(last + 1).find(stays) ?? shown.slice(0, Math.max(0, first)).findLast(stays);
     const done = await make(
-      ...emptied(open, tasks).map((name) => ({ kind: "dissolve_group", name }) as const),
+      ...emptiedGroups(open, tasks).map((name) => ({ kind: "dissolve_group", name }) as const),
       ...tasks.map((name) => ({ kind: "remove_task", name }) as const),
       ...reactions.map(
         (event) => ({ kind: "remove_reaction", event: event as Reaction["event"] }) as const,
@@ -64,7 +64,7 @@ export function deleteChosen(): Promise<void> {
 
 /** Return the groups that would become empty, the inner ones first. They are dissolved, so that their tasks
  * can be removed one by one. */
-function emptied(open: Mission, gone: readonly string[]): string[] {
+function emptiedGroups(open: Mission, gone: readonly string[]): string[] {
   const away = new Set(gone);
   const at = new Map(open.tasks.map((task, index) => [task.name, index]));
   const isEmptied = ({ start, end }: Group) =>
@@ -94,24 +94,24 @@ export async function renameRow(row: Row, name: string): Promise<boolean> {
 }
 
 /** Return the selected tasks as text; null: none are selected. */
-export function copyChosen(): string | null {
+export function copySelection(): string | null {
   const open = mission.value;
   const tasks = open === null ? [] : tasksOf(open, allRows.value, selection.value);
   if (tasks.length === 0) return null;
-  tell("info", t().list.copiedCount(tasks.length));
-  return copied({ tasks, groups: open === null ? [] : groupsOf(open, selection.value) });
+  showNotice("info", t().list.copiedCount(tasks.length));
+  return copiedText({ tasks, groups: open === null ? [] : groupsOf(open, selection.value) });
 }
 
 /** Add the tasks of a copied text after the selection. */
-export function paste(text: string): Promise<void> {
-  return inTurn(async (make) => {
+export function pasteTasks(text: string): Promise<void> {
+  return editInTurn(async (make) => {
     const open = mission.value;
-    const found = readCopied(text);
+    const found = parseCopied(text);
     if (open === null || found === null) {
-      tell("info", t().list.nothingToPaste);
+      showNotice("info", t().list.nothingToPaste);
       return;
     }
-    const { edits, names } = pasting(open, found, placeForNew(allRows.value, selection.value));
+    const { edits, names } = pasteEdits(open, found, positionForNew(allRows.value, selection.value));
     if (await make(...edits)) select(names.map(taskKey));
   });
 }

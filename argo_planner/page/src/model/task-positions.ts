@@ -5,7 +5,7 @@ import type { LooseEdit } from "../state/commands";
 import { isTaskKey, nameOfKey, ownName, type Row } from "./outline";
 
 /** A position in the list: after or before a task, in a group or in none. */
-export interface Place {
+export interface TaskPosition {
   readonly after?: string;
   readonly before?: string;
   readonly into?: string;
@@ -14,7 +14,7 @@ export interface Place {
 export type Side = "before" | "after" | "into";
 
 /** Return the position beside a row; `into` means the beginning of a group. */
-export function placeAt(row: Row, side: Side): Place {
+export function positionBeside(row: Row, side: Side): TaskPosition {
   const container = row.inside === null ? {} : { into: row.inside };
   if (row.kind === "task")
     return side === "before"
@@ -26,15 +26,15 @@ export function placeAt(row: Row, side: Side): Place {
 }
 
 /** Return the position of a new task: after the last selected row, or at the end of the mission. */
-export function placeForNew(rows: readonly Row[], selection: readonly string[]): Place {
+export function positionForNew(rows: readonly Row[], selection: readonly string[]): TaskPosition {
   const last = selection.at(-1);
   const row = rows.find((one) => one.key === last);
   if (!row) return {};
-  return placeAt(row, "after");
+  return positionBeside(row, "after");
 }
 
 /** Return the edits that move the selection beside a row; none if nothing changes. */
-export function moves(
+export function moveEdits(
   mission: Mission,
   rows: readonly Row[],
   selection: readonly string[],
@@ -43,7 +43,7 @@ export function moves(
 ): LooseEdit[] {
   const moved = tasksOf(mission, rows, selection);
   if (moved.length === 0 || inSelection(rows, target, selection)) return [];
-  let place = anchored(mission, moved, placeAt(target, side));
+  let place = anchoredPosition(mission, moved, positionBeside(target, side));
   if (place === null) return [];
   const taken = groupsOf(mission, selection);
   const edits: LooseEdit[] = [];
@@ -81,7 +81,7 @@ export function groupsOf(mission: Mission, selection: readonly string[]): Group[
 }
 
 /** Return the target of one step up or down, among the visible rows; null: there is none. */
-export function step(
+export function stepTarget(
   rows: readonly Row[],
   selection: readonly string[],
   direction: "up" | "down",
@@ -138,7 +138,7 @@ function withInner(mission: Mission, group: Group): Group[] {
 }
 
 /** Return the position relative to a task that is not moved itself; null: there is none. */
-function anchored(mission: Mission, moved: readonly Task[], place: Place): Place | null {
+function anchoredPosition(mission: Mission, moved: readonly Task[], place: TaskPosition): TaskPosition | null {
   const names = new Set(moved.map((task) => task.name));
   const anchor = place.after ?? place.before;
   if (anchor === undefined || !names.has(anchor)) return place;

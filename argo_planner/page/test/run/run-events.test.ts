@@ -1,26 +1,26 @@
 import { expect, test } from "vitest";
 
 import type { Entry } from "../../src/api/types";
-import { happenings } from "../../src/model/happenings";
+import { runEvents } from "../../src/model/run-events";
 
 function entry(more: object): Entry {
   return { t: 1, pose: [0, 0, 0, 0, 0], distance: 0, climbed: 0, events: [], faults: [], mishaps: [], contacts: [], ...more } as unknown as Entry;
 }
-const kinds = (...entries: Entry[]) => happenings(entries).map((one) => one.what.kind);
+const kinds = (...entries: Entry[]) => runEvents(entries).map((one) => one.what.kind);
 
-test("where the robot was is not told", () => {
+test("an entry with only a pose makes no event", () => {
   expect(kinds(entry({}), entry({ sample: true }))).toEqual([]);
 });
 
-test("an abnormal reading is told once", () => {
+test("an abnormal reading makes one event", () => {
   const reading = { checkpoint: 4, name: "valve", value: 1, unit: "deg", normal: false };
-  const told = happenings([
+  const told = runEvents([
     entry({ reading, events: [{ kind: "succeeded", event: null }, { kind: "occurred", event: "abnormal_reading", detail: "" }] }),
   ]);
   expect(told.map((one) => [one.what.kind, one.tone])).toEqual([["read", "bad"]]);
 });
 
-test("what people do, tasks, faults and the end are told in their order", () => {
+test("interventions, tasks, faults and the end make events in order", () => {
   const done = { task: "a", outcome: "done", by_hand: false };
   expect(
     kinds(
@@ -37,11 +37,11 @@ test("what people do, tasks, faults and the end are told in their order", () => 
   ).toEqual(["fault", "steered", "done", "by hand", "failed", "stopped", "found", "resumed", "ended"]);
 });
 
-test("an end that something follows is none: the run goes on with an edited plan", () => {
+test("an end before other entries means that the run continues with an edited mission", () => {
   expect(kinds(entry({ ended: true, stopped: "it goes on" }), entry({}))).toEqual(["edited"]);
 });
 
-test("only those from one entry to another are told, with their numbers", () => {
+test("only events of the given entries are returned, with their indices", () => {
   const all = [1, 2, 3].map((t) => entry({ t, resumed: true }));
-  expect(happenings(all, 1, 3).map((one) => one.entry)).toEqual([1, 2]);
+  expect(runEvents(all, 1, 3).map((one) => one.entry)).toEqual([1, 2]);
 });

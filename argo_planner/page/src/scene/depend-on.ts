@@ -1,4 +1,4 @@
 /** Make an effect or a computed value depend on signals whose values it does not use. */
-export function heed(...signals: readonly { readonly value: unknown }[]): readonly unknown[] {
+export function dependOn(...signals: readonly { readonly value: unknown }[]): readonly unknown[] {
   return signals.map((one) => one.value);
 }

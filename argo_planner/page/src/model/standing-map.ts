@@ -27,7 +27,7 @@ export interface StandingMap {
 }
 
 /** The verdict on a pose. */
-export interface Standing {
+export interface GroundVerdict {
   readonly ground: Ground;
   /** m, height of the ground there, or the given height if there is none */
   readonly z: number;
@@ -60,10 +60,10 @@ export async function readStandingMap(content: ArrayBuffer): Promise<StandingMap
 }
 
 /** Return the verdict of the cell at a point (m); among several layers, of the nearest in height. */
-export function standingAt(map: StandingMap, x: number, y: number, z: number): Standing {
+export function cellVerdict(map: StandingMap, x: number, y: number, z: number): GroundVerdict {
   const column = Math.floor((x - map.origin[0]) / map.cell);
   const row = Math.floor((y - map.origin[1]) / map.cell);
-  let found: Standing = { ground: "none", z };
+  let found: GroundVerdict = { ground: "none", z };
   if (column < 0 || row < 0 || column >= map.columns || row >= map.rows) return found;
   let nearest = Infinity;
   for (let layer = 0; layer < map.layers; layer++) {
@@ -80,7 +80,7 @@ export function standingAt(map: StandingMap, x: number, y: number, z: number): S
 }
 
 /** Return the indices of the maps for a heading (rad): one, or those of the two neighbouring headings. */
-export function headingsBeside(yaw: number, headings: readonly number[]): number[] {
+export function neighbouringHeadings(yaw: number, headings: readonly number[]): number[] {
   const count = headings.length;
   const part = (yaw / (2 * Math.PI)) * count;
   const nearest = Math.round(part);
@@ -97,12 +97,12 @@ export function verdictAt(
   y: number,
   z: number,
   yaw: number,
-): Standing | null {
-  let worst: Standing | null = null;
-  for (const heading of headingsBeside(yaw, headings)) {
+): GroundVerdict | null {
+  let worst: GroundVerdict | null = null;
+  for (const heading of neighbouringHeadings(yaw, headings)) {
     const there = map(heading);
     if (there === undefined) return null;
-    const one = standingAt(there, x, y, z);
+    const one = cellVerdict(there, x, y, z);
     if (worst === null || WORST.indexOf(one.ground) < WORST.indexOf(worst.ground)) worst = one;
   }
   return worst;

@@ -2,12 +2,12 @@
 
 import { signal } from "@preact/signals-core";
 
-import { answered, client, newId, Refusal, untilReached } from "../api/client";
-import type { RequestState, RunAsked, RunQuestion } from "../api/types";
-import { settled, withPlan } from "./commands";
-import { tellError } from "./notices";
+import { responseData, client, newId, Refusal, retryUntilReached } from "../api/client";
+import type { RequestState, RunAsked, RunRequestBody } from "../api/types";
+import { allAnswered, withPlan } from "./commands";
+import { showError } from "./notices";
 import { revision } from "./plan";
-import { quiet, run, takeState } from "./run";
+import { quietRequests, run, takeState } from "./run";
 
 const RETRY_MS = 500;
 /** ms after which a request that has not reached the service is given up: a late motion would surprise
@@ -20,7 +20,7 @@ const STOPS: ReadonlySet<string> = new Set(["pause", "stop", "stop_by_hand"]);
  * the reason. */
 export function startRun(asked: Partial<RunAsked>): Promise<boolean> {
   return withPlan(async (id) => {
-    const begun = await answered(
+    const begun = await responseData(
       client.POST("/api/missions/{id}/runs", {
         params: { path: { id }, header: { "If-Match": `"${revision.value}"` } },
         body: asked as RunAsked,
@@ -30,42 +30,42 @@ export function startRun(asked: Partial<RunAsked>): Promise<boolean> {
   });
 }
 
-/** A request without its id, which `ask` adds. */
-export type Question = RunQuestion extends infer One
+/** A request without its id, which `sendRequest` adds. */
+export type RunRequest = RunRequestBody extends infer One
   ? One extends { readonly id: string }
     ? Partial<Omit<One, "id" | "kind">> & { readonly kind: One extends { readonly kind?: infer K } ? NonNullable<K> : never }
     : never
   : never;
 
 /** Kinds of the requests that have not reached the service yet. */
-export const asking = signal<readonly string[]>([]);
+export const pendingRequests = signal<readonly string[]>([]);
 
 /** Send a request to the run. Returns its state so far; null if it was refused or did not reach the service
  * in time. `quietly`: no notice reports a refusal or failure. `wanted`: whether the request is still wanted
  * when it is sent again. */
-export function ask(
-  question: Question,
+export function sendRequest(
+  question: RunRequest,
   quietly = false,
   wanted: () => boolean = () => true,
 ): Promise<RequestState | null> {
-  const body = { id: newId(), ...question } as unknown as RunQuestion;
-  if (quietly) quiet.add(body.id);
+  const body = { id: newId(), ...question } as unknown as RunRequestBody;
+  if (quietly) quietRequests.add(body.id);
   const send = (id: string) =>
-    answered(client.POST("/api/runs/{run}/requests", { params: { path: { run: id } }, body }));
-  return asked(question.kind, send, quietly, wanted);
+    responseData(client.POST("/api/runs/{run}/requests", { params: { path: { run: id } }, body }));
+  return sendUntilReached(question.kind, send, quietly, wanted);
 }
 
 /** Give the robot back with the edited mission. */
 export async function giveBackEdited(): Promise<RequestState | null> {
-  await settled();
+  await allAnswered();
   const body = { id: newId() };
   const header = { "If-Match": `"${revision.value}"` };
-  return asked("go_on_edited", (id) =>
-    answered(client.POST("/api/runs/{run}/plan", { params: { path: { run: id }, header }, body })),
+  return sendUntilReached("go_on_edited", (id) =>
+    responseData(client.POST("/api/runs/{run}/plan", { params: { path: { run: id }, header }, body })),
   );
 }
 
-async function asked(
+async function sendUntilReached(
   kind: string,
   send: (run: string) => Promise<RequestState>,
   quietly = false,
@@ -75,14 +75,14 @@ async function asked(
   if (id === undefined) return null;
   const end = performance.now() + (STOPS.has(kind) ? PATIENCE_TO_STOP_MS : PATIENCE_MS);
   const goesOn = () => run.value?.id === id && wanted() && performance.now() < end;
-  asking.value = [...asking.value, kind];
+  pendingRequests.value = [...pendingRequests.value, kind];
   try {
-    return await untilReached(() => send(id), goesOn, RETRY_MS);
+    return await retryUntilReached(() => send(id), goesOn, RETRY_MS);
   } catch (error) {
-    if (!(quietly && error instanceof Refusal)) tellError(error);
+    if (!(quietly && error instanceof Refusal)) showError(error);
     return null;
   } finally {
-    const at = asking.value.indexOf(kind);
-    asking.value = asking.value.filter((_, other) => other !== at);
+    const at = pendingRequests.value.indexOf(kind);
+    pendingRequests.value = pendingRequests.value.filter((_, other) => other !== at);
   }
 }

@@ -2,7 +2,7 @@
 
 import type { Entry } from "../api/types";
 
-export type Happening =
+export type RunEvent =
   | { readonly kind: "done" | "by hand"; readonly task: string }
   | { readonly kind: "failed" | "stopped"; readonly task: string; readonly why: string }
   | { readonly kind: "read" | "given"; readonly checkpoint: string; readonly value: number; readonly unit: string; readonly normal: boolean | null }
@@ -14,22 +14,22 @@ export type Happening =
   | { readonly kind: "resumed" | "edited" }
   | { readonly kind: "ended"; readonly stopped: string | null };
 
-export interface Told {
+export interface TimedEvent {
   /** s */
   readonly t: number;
   /** index of the entry */
   readonly entry: number;
-  readonly what: Happening;
+  readonly what: RunEvent;
   readonly tone: "plain" | "good" | "warn" | "bad";
 }
 
 /** Return the events of the entries from index `from` to `to`, in order. */
-export function happenings(entries: readonly Entry[], from = 0, to = entries.length): Told[] {
-  const found: Told[] = [];
+export function runEvents(entries: readonly Entry[], from = 0, to = entries.length): TimedEvent[] {
+  const found: TimedEvent[] = [];
   for (let at = from; at < to; at++) {
     const entry = entries[at] as Entry;
     if (!isPlain(entry))
-      for (const [what, tone] of of(entry, at === entries.length - 1))
+      for (const [what, tone] of eventsOfEntry(entry, at === entries.length - 1))
         found.push({ t: entry.t, entry: at, what, tone });
   }
   return found;
@@ -49,7 +49,7 @@ function isPlain(entry: Entry): boolean {
   );
 }
 
-function* of(entry: Entry, isLast: boolean): Generator<[Happening, Told["tone"]]> {
+function* eventsOfEntry(entry: Entry, isLast: boolean): Generator<[RunEvent, TimedEvent["tone"]]> {
   if (entry.resumed) yield [{ kind: "resumed" }, "warn"];
   for (const fault of entry.faults) yield [{ kind: "fault", fault: fault.kind }, "warn"];
   const { reading, task } = entry;
@@ -59,7 +59,7 @@ function* of(entry: Entry, isLast: boolean): Generator<[Happening, Told["tone"]]
   }
   for (const event of entry.events) {
     if (event.event && !(reading && event.event === "abnormal_reading"))
-      yield [{ kind: "found", event: event.event, detail: event.detail ?? "" }, goodNews(event.event) ? "good" : "bad"];
+      yield [{ kind: "found", event: event.event, detail: event.detail ?? "" }, isGoodEvent(event.event) ? "good" : "bad"];
     if (event.kind === "reading_given" && !reading)
       yield [
         { kind: "given", checkpoint: `#${event.object_id ?? ""}`, value: event.value ?? NaN, unit: "", normal: null },
@@ -83,12 +83,12 @@ function* of(entry: Entry, isLast: boolean): Generator<[Happening, Told["tone"]]
     yield isLast ? [{ kind: "ended", stopped: entry.stopped ?? null }, "plain"] : [{ kind: "edited" }, "warn"];
 }
 
-type Steering = Extract<Happening, { kind: "steered" }>["how"];
+type Steering = Extract<RunEvent, { kind: "steered" }>["how"];
 
 function isSteering(kind: string): kind is Steering {
   return ["pause", "resume", "take_over", "give_back", "cancel"].includes(kind);
 }
 
-function goodNews(event: string): boolean {
+function isGoodEvent(event: string): boolean {
   return ["all_clear", "battery_charged", "connection_restored"].includes(event);
 }

@@ -2,12 +2,12 @@
 
 import { effect, signal } from "@preact/signals-core";
 
-import { answered, client, Refusal, Unreached } from "../api/client";
+import { responseData, client, Refusal, Unreached } from "../api/client";
 import type { MissionReading } from "../api/types";
-import { broken, mission, planId, revision } from "./plan";
+import { missionHasErrors, mission, planId, revision } from "./plan";
 
 /** The last sentences and their revision; null: none yet. */
-export const reading = signal<{ revision: number; reading: MissionReading } | null>(null);
+export const missionSentences = signal<{ revision: number; reading: MissionReading } | null>(null);
 
 const PAUSE_MS = 300;
 const RETRY_MS = 2_000;
@@ -18,22 +18,22 @@ effect(() => {
   const id = planId.value;
   const at = revision.value;
   clearTimeout(waiting);
-  if (id === null) reading.value = null;
-  if (id === null || broken.value || at === 0) return;
+  if (id === null) missionSentences.value = null;
+  if (id === null || missionHasErrors.value || at === 0) return;
   const many = (mission.peek()?.tasks.length ?? 0) > LARGE;
-  waiting = setTimeout(() => void read(id, at), many ? 4 * PAUSE_MS : PAUSE_MS);
+  waiting = setTimeout(() => void readSentences(id, at), many ? 4 * PAUSE_MS : PAUSE_MS);
 });
 
-async function read(id: string, at: number): Promise<void> {
+async function readSentences(id: string, at: number): Promise<void> {
   try {
-    const found = await answered(
+    const found = await responseData(
       client.GET("/api/missions/{id}/reading", { params: { path: { id } } }),
     );
-    if (planId.value === id && revision.value === at) reading.value = { revision: at, reading: found };
+    if (planId.value === id && revision.value === at) missionSentences.value = { revision: at, reading: found };
   } catch (error) {
     // Until they are read, at the latest after the next change, the list uses its own words.
     if (error instanceof Unreached && planId.value === id && revision.value === at)
-      waiting = setTimeout(() => void read(id, at), RETRY_MS);
+      waiting = setTimeout(() => void readSentences(id, at), RETRY_MS);
     if (!(error instanceof Refusal || error instanceof Unreached)) throw error;
   }
 }

@@ -64,11 +64,11 @@ export const evaluate = both(
     kinds: {
       while: "(preliminary until all runs are done)",
       whileMixed: "(preliminary, over all runs; in the end each world counts once)",
-      exact: "(exact, Clopper-Pearson)",
-      worlds: "(confidence sequence; each world counts once, with all its runs)",
-      anyTime: "(confidence sequence: valid although the requirement decides when to stop)",
+      exact: "(exact)",
+      worlds: "(each world counts once, with all its runs)",
+      anyTime: "(valid although the requirement decides when to stop)",
       cutShort: (runs: string) =>
-        `(confidence sequence: valid for any reason to stop; from the ${runs} runs of the first complete worlds)`,
+        `(valid for any reason to stop; from the ${runs} runs of the first complete worlds)`,
     },
     count: (runs: string) => `${runs} of them count`,
     serviceEnded: "The service ended before all runs were done.",
@@ -103,7 +103,7 @@ export const evaluate = both(
     times: (least: string, median: string, most: string) =>
       least === most
         ? `Successful runs took ${median}.`
-        : `Successful runs took ${least} to ${most}, ${median} in the median.`,
+        : `Successful runs took ${least} to ${most}, half of them at most ${median}.`,
     lost: (count: number) =>
       count === 1
         ? "1 run could not be carried out and does not count."
@@ -157,11 +157,11 @@ export const evaluate = both(
     kinds: {
       while: "(vorläufig, bis alle Fahrten fertig sind)",
       whileMixed: "(vorläufig, über alle Fahrten; am Ende zählt jede Welt einmal)",
-      exact: "(exakt, Clopper-Pearson)",
-      worlds: "(Konfidenzfolge; jede Welt zählt mit allen ihren Fahrten einmal)",
-      anyTime: "(Konfidenzfolge: gültig, obwohl die Anforderung das Ende bestimmt)",
+      exact: "(exakt)",
+      worlds: "(jede Welt zählt mit allen ihren Fahrten einmal)",
+      anyTime: "(gültig, obwohl die Anforderung das Ende bestimmt)",
       cutShort: (runs: string) =>
-        `(Konfidenzfolge: gültig, warum auch immer beendet wurde; aus den ${runs} Fahrten der ersten vollständigen Welten)`,
+        `(gültig, warum auch immer beendet wurde; aus den ${runs} Fahrten der ersten vollständigen Welten)`,
     },
     count: (runs: string) => `${runs} davon zählen`,
     serviceEnded: "Der Dienst wurde beendet, bevor alle Fahrten fertig waren.",
@@ -197,7 +197,7 @@ export const evaluate = both(
     times: (least: string, median: string, most: string) =>
       least === most
         ? `Erfolgreiche Fahrten dauerten ${median}.`
-        : `Erfolgreiche Fahrten dauerten ${least} bis ${most}, im Median ${median}.`,
+        : `Erfolgreiche Fahrten dauerten ${least} bis ${most}, die Hälfte davon höchstens ${median}.`,
     lost: (count: number) =>
       count === 1
         ? "1 Fahrt konnte nicht ausgeführt werden und zählt nicht."

@@ -22,7 +22,12 @@ class ProgressReporter(Protocol):
     """Function that reports the progress of a stage."""
 
     def __call__(self, share: float | None, detail: str = "") -> None:
-        """Report `share`, from 0 to 1, and a `detail` that is shown with the stage."""
+        """Report the progress of the stage under way.
+
+        Args:
+            share: share of the stage that is done, 0 to 1; None if it is not known.
+            detail: text that is shown with the name of the stage.
+        """
 
 
 _listener: ContextVar[StageListener | None] = ContextVar("stage listener", default=None)

@@ -207,7 +207,14 @@ class Control:
             self._end(step, event, failure)
 
     def _end(self, step: AppliedRow, event: EventKind | None, failure: str | None) -> None:
-        """End the mission at once, whatever it was doing."""
+        """End the mission at once, whatever the mission was doing.
+
+        Args:
+            step: row of the table of interrupts that was taken, which leads to the end.
+            event: event that the row was taken for, if any; a reaction to it that ends the mission
+                is added to the trace.
+            failure: why the mission failed; None: it did not.
+        """
         outcome = step.after.outcome
         assert outcome is not None
         ended_by = step.before.active

@@ -70,7 +70,15 @@ class BeamSearch:
         *,
         equal_prizes: bool,
     ) -> None:
-        """`equal_prizes`: all possible routes win the same prize, so that the cost decides."""
+        """Store what all searches on the network share.
+
+        Args:
+            network: steps, nodes and travel times of the problem.
+            pruned: steps and arcs of the network that a route can have.
+            bits: bits of the network's steps, for sets of steps as bit masks.
+            bound: lower bound on the remaining cost of a route.
+            equal_prizes: True if all possible routes win the same prize, so that the cost decides.
+        """
         self._network, self._pruned = network, pruned
         self._bits, self._bound, self._equal_prizes = bits, bound, equal_prizes
         self._battery = network.problem.battery

@@ -185,9 +185,11 @@ class Blocks:
         return times
 
     def _departures(self, locations: Locations) -> list[tuple[int, Locations]]:
-        """Return the possible origins of the next drive, and the least time until it starts.
+        """Return pairs of the least time until the next drive starts, and its possible origins.
 
-        It starts at one of the robot's possible locations, or at a charger after a charge.
+        In the first pair the drive starts at once, from one of the robot's possible `locations`. In
+        each other one it starts at a charger within reach, after the drive there and a charge. The
+        times are in the unit of the problem.
         """
         departures = [(0, locations)]
         for charger in range(len(self.problem.chargers)):

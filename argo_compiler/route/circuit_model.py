@@ -21,7 +21,11 @@ _TIME_PER_ARC = 6e-5
 
 
 def time_to_build(network: StepNetwork, pruned: Pruned) -> float:
-    """Return the least remaining time in s for which a model is worth building."""
+    """Return the time in s that a search must have left to build a CircuitModel of the network.
+
+    It is the estimated time to build the model and to presolve it. With less time left, the model
+    is not worth building.
+    """
     per_arc = _TIME_PER_ARC if network.plain and not network.before.any() else 2.0 * _TIME_PER_ARC
     return per_arc * int(pruned.arcs.sum()) * (1 + len(network.chargers))
 

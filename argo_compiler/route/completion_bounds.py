@@ -28,9 +28,10 @@ class StepSets:
     """index of each mask in its list, -1 for masks in no list; None: there are too many masks"""
 
     def find(self, size: int, wanted: Masks) -> tuple[Masks, NDArray[np.bool_]]:
-        """Return the indices of sets in the list of `size`, and whether each set is in it.
+        """Return the indices of sets of `size` steps in their list, and whether each set is in it.
 
-        The index of a set that is not in the list has no meaning.
+        `wanted` are the bit masks of the sets. The index of a set that is not in the list has no
+        meaning.
         """
         if self.index is not None:
             index = self.index[wanted].astype(np.int64)

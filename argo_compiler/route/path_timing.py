@@ -55,8 +55,13 @@ class PathTiming:
     ) -> list[PathLabel]:
         """Return the undominated labels after the leg from `origin` to `node`.
 
-        Node m is the end. `position`: that of `node` in the path. The result is empty if no label
-        can be extended.
+        The leg is direct or by a charger. The result is empty if no label can be extended.
+
+        Args:
+            labels: labels of the path up to `origin`.
+            origin: last node of these labels.
+            node: next node; m, the number of nodes, stands for the end of the route.
+            position: index of `node` in the path, which the labels' charges state.
         """
         extended: list[PathLabel] = []
         self.legs += len(labels) * (1 + len(self._stations))

@@ -63,7 +63,7 @@ def record_html(record: "RunRecord") -> str:
 
 
 def _framed(page: str) -> str:
-    """Return a page in a frame, so that its style does not affect the notebook."""
+    """Return an HTML page in a frame, so that the page's style does not affect the notebook."""
     return (
         f'<iframe srcdoc="{escape(page)}" style="width:100%;height:{_HEIGHT}px;border:0" '
         'sandbox=""></iframe>'

@@ -90,7 +90,7 @@ def resting_poses(world: World, motion: Motion, robot: RobotSpec) -> list[BodyPo
 
 
 def _averaged(values: NDArray[np.float64], window: int) -> NDArray[np.float64]:
-    """Return the moving average over an odd window, which is narrower towards the ends.
+    """Return the moving average over `window` values, an odd number, and fewer towards the ends.
 
     The first and the last value stay as they are, so that a motion continues where the previous
     one ended.

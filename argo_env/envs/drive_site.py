@@ -97,7 +97,7 @@ class DriveSite(Closing):
         return self._scene.render_from(camera), camera
 
     def reset_camera(self) -> None:
-        """Choose the best viewpoint for the next picture, without regard to earlier ones."""
+        """Forget where the camera was, so that the next picture does not depend on earlier ones."""
         self._camera = None
 
 

@@ -59,7 +59,7 @@ def parse_discrete_action(action: Any, count: int, env: str) -> int:
 
 
 def check_state(state: Any, parts: StateTypes, env: str) -> None:
-    """Raise ArgoError unless the state has exactly these parts, with these types.
+    """Raise ArgoError unless the state has exactly the `parts`, each with its type.
 
     The parts `generator` and `begun` must be states of NumPy's PCG64.
     """

@@ -30,7 +30,7 @@ class Waypoint:
     yaw: float
     """heading (rad) that the robot should have there"""
     seconds: float
-    """travel time from the robot to the goal at planning speeds"""
+    """travel time (s) from the robot to the goal at planning speeds"""
 
 
 class Guide:

@@ -124,7 +124,7 @@ class Episodes:
         self.apply_options(RouteOptions())
 
     def apply_options(self, options: RouteOptions) -> None:
-        """Apply the options to the following instances."""
+        """Set the options for the instances of the episodes that begin from now on."""
         self.options = options
         self.source = self.source_for(options)
         self.instance = lru_cache(maxsize=_CACHED_INSTANCES)(self._draw)
@@ -147,7 +147,7 @@ class Episodes:
 
     @property
     def numbers(self) -> range | tuple[int, ...]:
-        """Numbers of the instances from which episodes draw."""
+        """Numbers of the instances from which episodes draw: TRAINING, TEST, or the given ones."""
         if isinstance(self.options.instance, int):
             return (self.options.instance,)
         return self.options.instance or (TEST if self.options.test else TRAINING)

@@ -100,7 +100,7 @@ class RouteInstance:
 
     @cached_property
     def budget_array(self) -> NDArray[np.float32]:
-        """Budget as an array of one number."""
+        """Budget (s) as an array of one number."""
         return np.array([self.budget], dtype=np.float32)
 
     def known_at(self, time: float) -> "RouteInstance":

@@ -209,7 +209,11 @@ class DurationCurve:
 
 
 def duration_curve(results: EvaluationResults, plan: PlanName) -> DurationCurve:
-    """Compute the duration curve of a plan; each case counts by its weight, not its runs."""
+    """Compute the share of a plan's runs that have succeeded by each time, weighted by case.
+
+    All runs of a case together count by the weight of the case, however many they are. Runs that
+    failed count as runs that never succeed. Cases without a completed run are left out.
+    """
     ran = [row for row in results.rows_for(plan) if row.is_completed]
     weights = {case.faults: case.weight for case in results.plan.cases if case.plan == plan}
     runs_by_faults = {name: sum(row.faults == name for row in ran) for name in weights}

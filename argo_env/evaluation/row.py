@@ -136,7 +136,10 @@ def make_row(
 def make_empty_row(
     key: str, case: EvaluationCase, spec: RunSpec, outcome: RunOutcome, reason: str
 ) -> RunRow:
-    """Return a row without measured values, for a run that has none, or as a base for them."""
+    """Return a row without measured values, for a run that has none or for `make_row` to complete.
+
+    `reason` states what is missing or went wrong.
+    """
     return RunRow(
         key=key,
         mission=case.mission,

@@ -51,7 +51,11 @@ def read_faults(path: Path) -> tuple[AnyFault, ...]:
 
 
 def decode_faults(content: bytes, source_name: str) -> FaultText:
-    """Return the faults in YAML; messages name it `source_name`.
+    """Return the faults in the content of a YAML file, with the text that they are parsed from.
+
+    Args:
+        content: bytes of the file.
+        source_name: name of the file in messages, such as its path.
 
     Raises:
         ArgoError: the content is too large or no text.
@@ -121,7 +125,11 @@ class FaultDistribution(Model):
 
 
 def decode_distribution(content: bytes, source_name: str) -> FaultDistribution:
-    """Return the distribution in YAML; messages name it `source_name`.
+    """Return the distribution of faults in the content of a YAML file.
+
+    Args:
+        content: bytes of the file.
+        source_name: name of the file in messages, such as its path.
 
     Raises:
         ArgoError: the content is too large or no text.

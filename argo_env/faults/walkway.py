@@ -196,7 +196,10 @@ def _is_beside_added_solids(fault: Fault, place: Vector | None, site: Site) -> b
 
 
 def _barriers(tower: TowerSpec, base: float) -> tuple[Solid, ...]:
-    """Return barriers across the foot of the lowest flight and the top of the highest one."""
+    """Return barriers across the foot of the lowest flight and the top of the highest one.
+
+    `base` is the height (m) of the floor from which the tower leads up.
+    """
     first = min(tower.flights, key=lambda f: f.foot[2])
     last = max(tower.flights, key=lambda f: f.foot[2] + f.risers * f.rise)
     return (
@@ -206,7 +209,14 @@ def _barriers(tower: TowerSpec, base: float) -> tuple[Solid, ...]:
 
 
 def _barrier(flight: FlightSpec, base: float, along: float, up: float) -> Solid:
-    """Return a panel across a flight, `along` m from its first nosing and `up` m above it."""
+    """Return an upright panel across a flight of stairs.
+
+    Args:
+        flight: flight that the panel is as wide as.
+        base: height (m) of the floor that the flight's description is relative to.
+        along: horizontal distance (m) of the panel from the flight's first nosing, uphill.
+        up: height (m) of the panel's lower edge above the first nosing.
+    """
     yaw, (thickness, height) = math.radians(flight.yaw), BARRIER
     x, y, z = flight.foot
     center = (
@@ -240,7 +250,10 @@ def _cut_out(solid: Solid, rect: Rect, z: float) -> tuple[Solid, ...]:
 def _choose_position(
     site: Site, rng: np.random.Generator, number: int | None, place: Point | None, lowest: int
 ) -> tuple[FloorSpec, Point]:
-    """Return the given floor and position on a walkway, or drawn ones."""
+    """Return the floor of the given number and the given position, drawing those that are None.
+
+    A floor is drawn from those numbered `lowest` or higher, a position on one of its walkways.
+    """
     floors = [f for f in site.spec.floors if f.number >= lowest]
     if not floors:
         raise NotFound(f"site {site.name} has no upper floor")

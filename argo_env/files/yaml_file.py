@@ -90,7 +90,11 @@ def error_at_paths(
 
 
 def _compose(text: str) -> tuple[yaml.Node | None, list[_Flaw], Any]:
-    """Return a YAML text's tree, which knows the spans, its duplicate keys, and its data."""
+    """Parse a YAML text, and return its tree of nodes, its duplicate keys, and its data.
+
+    The nodes have the spans in the text. Tree and data are None for a text without content. Raises
+    NotYamlError if the text is not YAML.
+    """
     try:
         loader = yaml.SafeLoader(text)
         try:
@@ -159,7 +163,11 @@ def _wrong_fields(
 
 
 def _list_hint(model: type[Model], path: JsonPath) -> str | None:
-    """Return the hint how to begin a file that holds only one list, if the error is there."""
+    """Return the hint how to begin a file that holds only one list; None for other errors.
+
+    The hint is for an error at the top of the file, or at the list as a whole: `path` states where
+    the error is.
+    """
     names = list(model.model_fields)
     if len(names) == 1 and path in {(), (names[0],)}:
         return f"begin with `{names[0]}:` and a list below it"

@@ -219,10 +219,11 @@ class Navigator:
         return self._with_final_turn(path, goal.yaw)
 
     def plan_to_view(self, start: Pose, checkpoint_id: int, turned: float = 0.0) -> Path:
-        """Return the path to the pose from which the checkpoint is read best.
+        """Return the path to the pose from which to read a checkpoint.
 
-        A short travel time and a good view both count. The checkpoint's face is assumed to be
-        turned by `turned` (rad) from its planned heading.
+        It is the pose with the lowest sum of the cost of the path and of the view: oblique and far
+        views cost more (`find_views`). The checkpoint's face is assumed to be turned by `turned`
+        (rad) from its planned heading.
 
         Raises:
             Unreachable: There is no such pose, or no path to one.

@@ -119,7 +119,11 @@ class Path:
 
 
 def merge(motions: Iterable[Motion]) -> list[Motion]:
-    """Join consecutive turns, and consecutive drives of one heading, gear and `on_stairs`."""
+    """Return the motions with consecutive ones of the same kind joined into one.
+
+    Turns are joined, and their angles added. Drives are joined if heading, gear (forwards or
+    backwards) and `on_stairs` are the same.
+    """
     merged: list[Motion] = []
     for motion in motions:
         last = merged[-1] if merged else None

@@ -162,9 +162,15 @@ def entry_costs_and_times(
 def tree_times(
     lattice: Lattice, area: Region, trees: Trees, ends: NDArray[np.int64]
 ) -> NDArray[np.float64]:
-    """Return the time (s) of the path to each of `ends` in each tree of a region.
+    """Return the time (s) of the path from the root of each tree to each of `ends`.
 
-    The shape is (trees, ends). The time is 0 where there is no path.
+    The shape is (trees, ends). The time is 0 where there is no path, and at the root itself.
+
+    Args:
+        lattice: Lattice that the region is part of.
+        area: Region whose states the trees connect.
+        trees: Cheapest paths from some roots to all states of the region.
+        ends: States of the region, in the region's own numbers.
     """
     costs, before = trees
     times = np.zeros((len(costs), len(ends)))

@@ -50,14 +50,15 @@ class Landmarks:
     positions: NDArray[np.float64]
     parts: Parts = NO_CACHE
     name: str = ""
-    """name of the part with their costs"""
+    """name of the part of the disk cache that has the costs from and to the landmarks"""
 
     def lower_bounds(
         self, source: int, ends: NDArray[np.int64], extra: NDArray[np.float64]
     ) -> NDArray[np.float64] | None:
         """Return for each state a lower bound (s) on the cost to reach one of `ends`.
 
-        Along a move, bounds fall by less than its cost. They are best near the paths from `source`.
+        Along a move, bounds fall by less than the cost of the move. They are closest to the true
+        costs near the paths from `source`.
 
         Args:
             source: State from which the search starts.
@@ -153,7 +154,7 @@ class Region:
     landmarks: Landmarks
     parts: Parts = NO_CACHE
     name: str = ""
-    """beginning of the names of its parts"""
+    """beginning of the names of the region's parts in the disk cache"""
 
     @cached_property
     def move_targets(self) -> NDArray[np.intp]:

@@ -55,7 +55,7 @@ class Surface:
     def cells_near(self, x: float, y: float, distance: float) -> NDArray[np.int64]:
         """Return the cells, ascending, of a square about (x, y).
 
-        Its sides are `distance` (m) away.
+        The sides of the square are `distance` (m) away from (x, y).
         """
         # Poses may be anywhere, even at coordinates that exceed the size of any array.
         i0, i1 = (
@@ -85,11 +85,14 @@ def surface_arrays(surface: Surface) -> Arrays:
 def find_surface(
     elements: tuple[Element, ...], grid: Grid, headroom: float, max_step: float
 ) -> Surface:
-    """Return all cells where a robot of height `headroom` (m) could stand.
+    """Return all cells where a robot of height `headroom` (m) could stand, with their links.
 
-    A cell is traversable where a walking solid has its top at the cell's centre, and no part of the
-    cell is obstructed between that height and `headroom` above it. The robot climbs steps of up to
-    `max_step` (m).
+    A cell is traversable at the height of the top of a solid that is there to walk on, measured at
+    the cell's centre, if nothing in the cell obstructs the space from there to `headroom` above it.
+    Solids that rise at most 1 cm into this space don't obstruct it, nor do solids to walk on that
+    rise at most `max_step` (m) into it, as the robot climbs them. Of tops within `max_step` of each
+    other only the highest counts. Links lead to neighbouring cells at most `max_step` higher or
+    lower.
     """
     columns = rasterise(elements, grid)
     cell, z = _candidates(columns, max_step)
@@ -121,7 +124,10 @@ def _obstructed(
     headroom: float,
     max_step: float,
 ) -> NDArray[np.bool_]:
-    """Return a mask of the candidates that are obstructed; steps of a walking solid don't count."""
+    """Return a mask of the candidates whose space up to `headroom` (m) above them is obstructed.
+
+    Solids to walk on that rise at most `max_step` (m) above the candidate don't obstruct it.
+    """
     first = np.searchsorted(columns.cell, cell, side="left")
     count = np.searchsorted(columns.cell, cell, side="right") - first
     # These are all pairs (candidate, column entry of the same cell).

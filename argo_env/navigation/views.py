@@ -39,7 +39,8 @@ def find_views(
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Return the states from which the checkpoint can be read, and the cost of each view in s.
 
-    A worse view costs more. Both arrays are empty if there is no such state.
+    A view costs more the more oblique it is, and if the camera is farther than half its range away.
+    Both arrays are empty if there is no such state.
     """
     sensor, target = lattice.robot.sensor, sight_target(checkpoint)
     views = candidate_views(checkpoint, lattice)
@@ -64,7 +65,7 @@ class CandidateViews:
 
 
 def candidate_views(checkpoint: SiteCheckpoint, lattice: Lattice) -> CandidateViews:
-    """Return the candidate views of a checkpoint."""
+    """Return the views of a checkpoint from states on level ground, whatever stands between."""
     sensor, target = lattice.robot.sensor, sight_target(checkpoint)
     reach = sensor.max_range + math.hypot(*sensor.offset[:2])
     states = lattice.state_of[lattice.surface.cells_near(target[0], target[1], reach)]

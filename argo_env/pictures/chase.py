@@ -62,7 +62,11 @@ class ChaseCamera:
         )
 
     def _best(self, pose: BodyPose, target: NDArray[np.float64]) -> tuple[float, float]:
-        """Return the direction from the robot to the camera and its elevation, both in rad."""
+        """Return the direction from the robot to the camera, and the camera's elevation, in rad.
+
+        They have the least cost of those that are tried: a camera behind the robot, low, and near
+        its last position costs less, and one from which the robot is hidden costs much more.
+        """
         behind = pose.yaw + math.pi
         now = behind if self._side is None else self._side
         sides, heights = (g.ravel() for g in np.meshgrid(behind + _SIDES, _HEIGHTS))

@@ -131,7 +131,10 @@ def write_gif(
 
 
 def make_palette(samples: list[Image.Image]) -> Image.Image:
-    """Return a palette image with the best colours for all the samples, RGB images of one size."""
+    """Return a palette image with the colours of all the samples, RGB images of one size.
+
+    Median cut chooses GIF_COLOURS of their colours.
+    """
     width, height = samples[0].size
     sheet = Image.new("RGB", (width, height * len(samples)))
     for row, sample in enumerate(samples):

@@ -61,7 +61,7 @@ class RecordedMotion:
         return arm | {"left_flipper_joint": flippers, "right_flipper_joint": flippers}
 
     def _raised(self, t: float) -> float:
-        """Return the share to which the arm is raised, from 0 to 1."""
+        """Return how far the arm is raised at the time t (s): 0 is stowed, 1 is fully raised."""
         share = 0.0
         for end in self._readings:
             since, left = t - (end - self._robot.sensor.measuring_time), end - t

@@ -143,7 +143,19 @@ def _draw_floor(
     site: Site,
     headline: str,
 ) -> NDArray[np.uint8]:
-    """Return the picture of a floor, shape (720, 1280, 3)."""
+    """Return the picture of a floor, red, green and blue, shape (720, 1280, 3).
+
+    Args:
+        sheet: Sheet with the plan of the floor; the picture is drawn on a copy.
+        floor: Number of the floor.
+        planned: Mission with its route problem.
+        route: Suggested order; its positions number the checkpoints.
+        old: Path in the written order, drawn thin.
+        new: Path in the suggested order, drawn bold.
+        travel: Travel times on the site, which give the mission's start.
+        site: Site of the mission.
+        headline: Text above the plan.
+    """
     image = sheet.image.copy()
     draw = ImageDraw.Draw(image)
     labels = LabelPlacer(sheet)

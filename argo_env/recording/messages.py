@@ -76,5 +76,5 @@ def make_path(poses: Iterable[Pose], t: float) -> PosesInFrame:
 
 
 def make_log(text: str, level: "Log.Level.ValueType", name: str, t: float) -> Log:
-    """Return a line of the log; `name` is the part of the run that it is about."""
+    """Return a line of the log; `name` is the part of the run that the line is about."""
     return Log(timestamp=make_timestamp(t), level=level, message=text, name=name)

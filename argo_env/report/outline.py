@@ -67,7 +67,10 @@ def on_floor(element: Element, z: float, storey: float) -> tuple[Solid, ...]:
 
 
 def _hull(points: NDArray[np.float64]) -> list[Point]:
-    """Return the convex hull of points of the shape (n, 2), by Andrew's monotone chain."""
+    """Return the corners of the convex hull of points, shape (n, 2), counter-clockwise.
+
+    The method is Andrew's monotone chain. Fewer than three different points are returned, sorted.
+    """
     ordered = sorted({(round(x, 4), round(y, 4)) for x, y in points.tolist()})
     if len(ordered) < 3:
         return ordered

@@ -62,7 +62,11 @@ def _planned(record: RunRecord) -> Iterator[Wait]:
 
 
 def _interrupted(record: RunRecord) -> list[Wait]:
-    """Return the parts of pauses and reactions in which the robot stood still."""
+    """Return the waits in pauses and reactions: the time after the last action in each of them.
+
+    Waits shorter than MOMENT are left out, except for one that lasted until a run without an
+    outcome was stopped.
+    """
     waits = []
     until = {reaction.event: reaction.until for reaction in record.mission.reactions}
     previous: Interruption | None = None

@@ -143,7 +143,11 @@ class SimulatedAction:
         return self._phase == self._drive and self._give_up_at == math.inf
 
     def count_measuring_steps(self, limit: int) -> int:
-        """Return how many steps, at most `limit`, it still measures before it looks or ends."""
+        """Return in how many steps, at most `limit`, the robot only measures.
+
+        They are the steps before the one in which it looks at the checkpoint or its measurement
+        ends.
+        """
         if self._phase != self._measure or self._give_up_at < math.inf:
             return 0
         remaining, step = self._remaining, self._setup.drive.time_step

@@ -142,7 +142,7 @@ class PowerSupply:
             self._battery.state = float(predicted.remaining[step]), float(predicted.watts[step])
 
     def charge_after(self, predicted: PredictedSupply, step: int) -> float | None:
-        """Return the battery's charge (0 to 1) after the step of this index; None without one."""
+        """Return the charge (0 to 1) after the step of this index; None without a battery."""
         return (
             None
             if self._battery is None

@@ -180,7 +180,7 @@ class RoundTracker:
         self._rules: dict[str, RepeatRule] = {}
 
     def update(self, machine: Machine, now: float) -> None:
-        """Record the state of the machine at time `now` (s); to be called after each step of it."""
+        """Record the machine's state at time `now` (s); to be called after each of its steps."""
         new = machine.trace[self._trace_length :]
         self._trace_length += len(new)
         if machine.hfsm is not self._hfsm:
@@ -256,7 +256,7 @@ class InterruptionTracker:
         self._trace_length = 0  # entries of the trace that were handled
 
     def update(self, machine: Machine, now: float) -> None:
-        """Record the state of the machine at time `now` (s); to be called after each step of it."""
+        """Record the machine's state at time `now` (s); to be called after each of its steps."""
         new = machine.trace[self._trace_length :]
         self._trace_length += len(new)
         interrupted = not machine.finished and (machine.paused or machine.reaction is not None)

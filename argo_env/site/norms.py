@@ -21,7 +21,11 @@ _TOLERANCE = 1e-3  # m
 
 
 def violations(spec: SiteSpec) -> list[str]:
-    """Return a message for each violation of the norm or the rules, in the description's order."""
+    """Return a message for each violation of ISO 14122-3 or of the competition's rules.
+
+    ISO 14122-3 applies to stairs, the rules of the competition to the positions of checkpoints.
+    Stairs come first; both are in the order of the site's description.
+    """
     stairs = [line for tower in spec.towers for line in _stairs(tower)]
     return [*stairs, *(line for floor in spec.floors for line in _checkpoints(floor))]
 

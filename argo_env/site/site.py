@@ -75,7 +75,7 @@ class Site:
 
     @cached_property
     def solids(self) -> "SolidIndex":
-        """Index that finds the solids of the site by their location."""
+        """Index that finds the solids of the site whose bounding boxes touch a box."""
         from argo_env.site.index import SolidIndex
 
         return SolidIndex(self.elements)

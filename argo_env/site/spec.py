@@ -186,7 +186,7 @@ class SiteSpec(Model):
     """Description of a whole site."""
 
     name: Annotated[str, Field(max_length=200), AfterValidator(_usable_name)]
-    """files are named by it"""
+    """name of the site, by which files are named"""
     title: str
     storey: Length
     """m from floor to floor"""

@@ -55,7 +55,7 @@ class Bodies(Connection):
             site: site as planned.
             robot: description of the robot.
             gui: True to open a window.
-            elements: actual solids of the site.
+            elements: solids that the site really has; faults may have added or removed some.
             drawn: True to load what pictures show; without it, loading takes half the time.
         """
         super().__init__(gui)
@@ -94,7 +94,7 @@ class Bodies(Connection):
 
     @property
     def solids(self) -> tuple[Element, ...]:
-        """Actual solids of the site, without its checkpoints."""
+        """Solids that the site really has, with those that faults add or remove; no checkpoints."""
         return self._solids
 
     def place_robot(self, pose: BodyPose) -> None:
@@ -219,7 +219,7 @@ class Bodies(Connection):
         return self._is_clear_at(self._pose)
 
     def _is_clear_at(self, pose: BodyPose) -> bool:
-        """Return True if the robot would surely have no such contact at `pose`."""
+        """Return True if the robot would surely touch nothing at `pose` that it must not touch."""
         if self._scene_changed or self._screens:
             return False
         if self._clearance is None:

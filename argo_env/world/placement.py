@@ -34,7 +34,7 @@ def displaced_checkpoint(checkpoint: SiteCheckpoint, placement: Placement) -> Si
 
 
 def draw_placement(rng: np.random.Generator, upright: bool = False) -> Placement:
-    """Return a random placement within the rules of the challenge.
+    """Return a random placement within the limits that the competition states (thesis, 1.2).
 
     The offset is uniform in a sphere, turn and roll are uniform up to ±90°. Level gauges are
     `upright`: they have no roll, since they work only when upright.

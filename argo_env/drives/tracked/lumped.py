@@ -67,7 +67,13 @@ def _carried(
 def _add_inertia(
     link: ET.Element, parts: list[tuple[ET.Element, Matrix]], mass_scale: float
 ) -> None:
-    """Add the masses of all parts, with their poses in the link, as one rigid body."""
+    """Add to a link one rigid body with the masses of some links.
+
+    Args:
+        link: link to add the body to.
+        parts: links that become part of it, each with its pose in `link`, shape (4, 4).
+        mass_scale: factor by which all masses are multiplied.
+    """
     masses, centers, tensors = [], [], []
     for part, pose in parts:
         inertial = part.find("inertial")

@@ -43,7 +43,10 @@ class Terrain:
         """name of the part that tracks may stand on"""
 
     def elements_at(self, part: str, points: Sequence[Vector]) -> list[str]:
-        """Return the names of the elements of a part at points (m) on its surface."""
+        """Return the names of the elements at points (m) on the surface of a part of the terrain.
+
+        `part` is `_WALKING` or `_OTHER`.
+        """
         return self._index[part].nearest_each(points)
 
     def write(self, folder: str) -> Path:

@@ -32,7 +32,10 @@ class ControlVariate:
     def from_pairs(
         cls, expensive: NDArray[np.float64], cheap: NDArray[np.float64], cost: float
     ) -> "ControlVariate":
-        """Measure it from pairs of runs, one pair in each world; arrays of shape (n,) each.
+        """Measure the correlation from pairs of runs, one pair in each world.
+
+        `expensive` and `cheap` are the results of the runs, of shape (n,) each; `cost` is that of a
+        cheap run, as a share of the cost of an expensive run.
 
         Raises Invalid for too few pairs, unequal numbers of runs, or a cost that is not positive.
         """
@@ -46,7 +49,10 @@ class ControlVariate:
 
     @property
     def cheap_runs(self) -> float:
-        """Best number of cheap runs for each expensive run; infinite for a perfect correlation."""
+        """Number of cheap runs for each expensive run with which `gain` is largest, at least 1.
+
+        It is infinite for a perfect correlation.
+        """
         unexplained = 1.0 - self.correlation**2
         if unexplained <= 0:
             return math.inf

@@ -52,11 +52,11 @@ class ConfidenceSequence:
             self._counts[float(outcome)] += 1
 
     def is_above(self, mean: float) -> bool:
-        """Return True if the outcomes show that the true mean is at least this."""
+        """Return True if the outcomes show that the true mean is at least `mean`."""
         return self._log_wealth(mean, up=True) >= self._threshold
 
     def is_below(self, mean: float) -> bool:
-        """Return True if the outcomes show that the true mean is at most this."""
+        """Return True if the outcomes show that the true mean is at most `mean`."""
         return self._log_wealth(mean, up=False) >= self._threshold
 
     @property
@@ -68,7 +68,11 @@ class ConfidenceSequence:
         return self._bound(0.0, mean, up=True), self._bound(1.0, mean, up=False)
 
     def _bound(self, refuted: float, possible: float, up: bool) -> float:
-        """Return the last possible mean between the two, rounded towards the refuted one."""
+        """Return the last mean from `possible` towards `refuted` that the outcomes don't refute.
+
+        It is found by bisection and rounded towards `refuted`. With `up`, means are refuted as too
+        low, otherwise as too high.
+        """
         if refuted == possible:
             return possible
         for _ in range(_STEPS):

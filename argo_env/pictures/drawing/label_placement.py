@@ -17,7 +17,8 @@ _TRIES = 16
 class LabelPlacer:
     """Placement of labels on a sheet.
 
-    It holds the occupied area, and the path.
+    It holds the occupied area and the robot's path. Positions are those of the middle of a label,
+    in px of the finer picture; `wide` and `high` are half the label's width and height in the same.
     """
 
     def __init__(self, sheet: FloorSheet) -> None:
@@ -29,7 +30,7 @@ class LabelPlacer:
     def occupy(self, position: Pixel, wide: float, high: float) -> None:
         """Mark a rectangle about a position as occupied.
 
-        It extends `wide` px to each side, and `high` px up and down.
+        The rectangle extends `wide` px to each side, and `high` px up and down.
         """
         self._taken[_cells(position, wide, high)] = True
 
@@ -40,7 +41,11 @@ class LabelPlacer:
         self._path[rows.clip(0, height - 1), columns.clip(0, width - 1)] = True
 
     def reserve_nearest(self, position: Pixel, wide: float, high: float, floor: int) -> Pixel:
-        """Return the position itself if it is free, else one beside it, and occupy it."""
+        """Return `position` if a label fits there, else a position beside it; mark it as occupied.
+
+        A label fits where the rectangle about the position, `wide` px to each side and `high` px up
+        and down, is free.
+        """
         if self._taken[_cells(position, wide, high)].any():
             return self.reserve_beside(position, wide, high, floor, min(wide, high))
         self.occupy(position, wide, high)
@@ -49,9 +54,10 @@ class LabelPlacer:
     def reserve_beside(
         self, position: Pixel, wide: float, high: float, floor: int, away: float = 10.0 * FINER
     ) -> Pixel:
-        """Return a free position, `away` px or more beside the given one, and occupy it.
+        """Return a free position, `away` px or more beside `position`, and mark it as occupied.
 
-        If none is free, the best one of those that were tried is returned.
+        It lies in the panel of the floor, near `position`, and preferably not on the robot's path.
+        If no position that is tried is free, an occupied one is returned.
         """
         tried = []
         for k in range(_AROUND * _TRIES):

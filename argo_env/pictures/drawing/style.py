@@ -149,7 +149,7 @@ class LegendContent:
     footprint: Footprint | None
     """footprint of the robot; None for a robot without extent"""
     stairs: bool
-    """True if any were taken"""
+    """True if the picture marks where the robot took stairs"""
     end: float | None
     """time at the end of the path in s; None without a path"""
 

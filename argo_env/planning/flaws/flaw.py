@@ -45,7 +45,7 @@ def position_text(x: float, y: float) -> str:
 
 
 def compass_direction(yaw: float) -> str:
-    """Return the name of the direction nearest to a yaw (rad); 0 is east."""
+    """Return the nearest of eight compass directions to a yaw (rad); 0 is east, pi/2 north."""
     return _DIRECTIONS[round(yaw / (math.pi / 4)) % 8]
 
 

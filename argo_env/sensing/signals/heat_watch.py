@@ -1,7 +1,7 @@
 """Watch for hot spots in the small images (°C) of a thermal camera.
 
-The camera looks ahead to the left and to the right in turn. A hot spot is warmer than the surfaces
-that the map has there can be without a fault.
+The camera looks ahead to the left and to the right in turn. A hot spot is warmer than surfaces such
+as those that the site map has at its position can be without a fault.
 """
 
 import math
@@ -213,9 +213,15 @@ class HeatWatch:
 
 
 def find_spots(image: ThermalImage, site_map: SiteMap, air: float) -> tuple[Spot, ...]:
-    """Return the spots that are warmer than the surfaces that the map has there can be.
+    """Return the hot spots in an image: warmer than its surfaces can be without a fault.
 
-    `air` is the temperature of the air in °C.
+    A spot counts if the median of its warmest pixels is more than MARGIN (K) above the highest
+    temperature that the surfaces at its position can have.
+
+    Args:
+        image: image of the thermal camera.
+        site_map: map of the site, which states what surfaces the camera sees.
+        air: temperature of the air in °C.
     """
     warm = image.pixels > air + SUSPICIOUS
     if not warm.any():

@@ -80,7 +80,7 @@ def sample(image: NDArray[np.float32], pixels: NDArray[np.float64]) -> NDArray[n
 
 
 def compare(photo: Photo, template: Template, pose: FacePose) -> Fit:
-    """Compare the face at `pose` with the picture."""
+    """Return how much of the drawn face, at `pose`, looks as in the picture."""
     values, weights = _sample_template(photo, template, pose)
     face, gain, offset = _brightness_levels(values, template, weights)
     match = _match(values, template, weights, gain, offset) if face else 0.0
@@ -90,7 +90,11 @@ def compare(photo: Photo, template: Template, pose: FacePose) -> Fit:
 def refine(
     photo: Photo, template: Template, pose: FacePose, rolled: bool, iterations: int = 12
 ) -> Fit:
-    """Return the best match near `pose`; the roll is changed only if `rolled` is True."""
+    """Return the pose near `pose` at which most of the drawn face looks as in the picture.
+
+    The search starts at `pose`, makes at most `iterations` steps, and ends at a local maximum of
+    `Fit.match`. The roll is changed only if `rolled` is True.
+    """
     free = 5 if rolled else 4
     parameters = np.array([pose.x, pose.y, pose.z, pose.yaw, pose.roll])
     damping = 1e-3

@@ -24,7 +24,7 @@ _BODY = 0.22  # brightness of the bodies behind the faces
 
 
 def find_candidates(photo: Photo, instrument: Instrument, planned: FacePose) -> list[FacePose]:
-    """Return poses at which the picture is similar to the face, best first.
+    """Return poses at which the picture is similar to the face, the most similar ones first.
 
     A round face is averaged over all rolls, so the poses have no roll.
     """

@@ -80,9 +80,9 @@ class PictureReading:
     """Reading from one picture, or from several ones together."""
 
     share: float
-    """of the scale"""
+    """value as a share of the scale, 0 at its low end to 1 at its high end"""
     probability: float
-    """that the reading is right"""
+    """probability that the reading is right, 0 to 1"""
 
 
 def reading_probability(fit: Fit, indicator: IndicatorPosition, cosine: float) -> float:

@@ -234,7 +234,7 @@ _SLACK = 0.015  # m, and times 10 in rad, that a pose may exceed the limits of d
 
 
 def find_face(photo: Photo, instrument: Instrument, planned: FacePose) -> Fit | None:
-    """Return the best match of the face in the picture, or None if nothing looks like it.
+    """Return the pose with the highest `Fit.match` in the picture, or None if no face is found.
 
     Only poses are searched that a displacement from the pose `planned` can lead to.
     """
@@ -268,9 +268,10 @@ def _best_fit(
     planned: FacePose,
     starts: list[tuple[float, FacePose]],
 ) -> Fit | None:
-    """Return the best match from any of the start poses, or None if no allowed pose is found.
+    """Return the fit with the highest match from the most likely start poses.
 
-    `rough` and `fine` are the photo with the blur `_ROUGH` and `_SOFT`.
+    Returns None if none leads to a pose that a displacement from `planned` can lead to. `rough` and
+    `fine` are the photo with the blur `_ROUGH` and `_SOFT` (m). Each start comes with its likeness.
     """
     fits = []
     for pose in _best_distinct(starts, _MAX_FITS):
@@ -290,7 +291,7 @@ def _best_fit(
 
 
 def find_face_near(photo: Photo, instrument: Instrument, pose: FacePose) -> Fit:
-    """Return the best match near `pose`, or at a pose that looks similar.
+    """Return the fit with the highest match near `pose`, or near a pose that looks similar.
 
     A face that is turned to the left looks similar to one that is turned to the right, and a scale
     is similar to itself when shifted by a few marks: so such poses are tried too.
@@ -335,7 +336,7 @@ def _mirrored_pose(pose: FacePose, photo: Photo) -> FacePose:
 
 
 def refine_coarse_to_fine(photo: Photo, instrument: Instrument, pose: FacePose) -> Fit:
-    """Return the best match near `pose`, from fits with less and less blur.
+    """Return the fit near `pose` that a series of fits with less and less blur leads to.
 
     The last fit has the blur of the picture itself.
     """
@@ -355,7 +356,10 @@ def _pixel_size(photo: Photo, point: NDArray[np.float64]) -> float:
 
 
 def _best_distinct(starts: list[tuple[float, FacePose]], count: int) -> list[FacePose]:
-    """Return up to `count` poses that differ from each other, best first."""
+    """Return up to `count` poses that differ from each other, those with the highest number first.
+
+    Each of `starts` is a number, such as a likeness, and a pose.
+    """
     chosen: list[FacePose] = []
     for _, pose in sorted(starts, key=lambda start: -start[0]):
         if len(chosen) < count and all(_differ(pose, other) for other in chosen):

@@ -85,7 +85,11 @@ class Photo:
     pose: CameraPose
 
     def blurred(self, sigma: float) -> "Photo":
-        """Return the picture blurred by `sigma` (px)."""
+        """Return the photo with its brightness blurred by a Gaussian filter.
+
+        `sigma` is the standard deviation of the filter in px. The redness is not blurred.
+        Below 0.4 px the photo itself is returned.
+        """
         import cv2
 
         if sigma < 0.4:

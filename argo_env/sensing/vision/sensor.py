@@ -138,9 +138,9 @@ class _CameraMeasurement:
         self.brightest = 1.0
         """of full scale: brightness of the bright parts of the brightest picture"""
         self.obliqueness = math.pi / 2
-        """rad, of the least oblique view of the face that was found"""
+        """rad, obliqueness of the least oblique view in which the face was found"""
         self.distance = 0.0
-        """m, of this view"""
+        """m, distance from the camera to the face in this view"""
 
     def search(self, planned: FacePose) -> Fit | None:
         """Search for the face around its planned pose; return None if it is not found."""

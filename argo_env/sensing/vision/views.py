@@ -61,10 +61,10 @@ def plan_views(
     used: Sequence[NDArray[np.float64]],
     spread: float,
 ) -> Iterator[ArmView]:
-    """Yield views of the face from a robot at `pose`, best first.
+    """Yield views of the face from a robot at `pose`, those with the least cost first.
 
-    Good views are frontal and near, and their direction from the face differs from that of used
-    positions.
+    Views cost less if they are frontal and near, and if their direction from the face differs from
+    that of used positions.
 
     Args:
         world: world in which contacts of the arm are checked.

@@ -1,4 +1,4 @@
-"""`argo doctor`: show the parts and the cache of this installation."""
+"""`argo doctor`: show the optional parts of this installation, and its cache on disk."""
 
 from typing import Annotated
 

@@ -33,10 +33,10 @@ def _lines(found: SuggestedOrder, certificate: Certificate) -> Iterator[str]:
 
 
 def _adds_nothing(found: SuggestedOrder, one: CheckedClaim) -> bool:
-    """Return True if a claim about a bound tells nothing.
+    """Return True if a claim is about a bound that tells nothing about this mission.
 
     The proof of the best order includes both bounds, and without an order they have no meaning. The
-    bound on the prize has none either if no task is optional.
+    bound on the prize has no meaning either if no task is optional.
     """
     if one.claim is Claim.PRIZE_BOUND and not found.planned.problem.selective:
         return True

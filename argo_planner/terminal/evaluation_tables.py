@@ -186,7 +186,7 @@ def _failing(results: EvaluationResults, files: Mapping[str, Path]) -> Iterator[
 
 
 def show_comparison(compared: PlanComparison, console: Console) -> None:
-    """Print which of two plans is better, and how certain that is."""
+    """Print which of two plans succeeds more often or is faster, and how certain that is."""
     pairs = compared.successes
     table = Table(title="A minus B, in the same worlds", title_justify="left")
     table.add_column("")

@@ -82,7 +82,10 @@ class StageDisplay:
         self.refresh()
 
     def refresh(self) -> None:
-        """Show the current stage if it is time to."""
+        """Show the current stage, if it began AFTER s ago or earlier.
+
+        Standard error that is no terminal gets a line every EVERY s.
+        """
         with self._lock:
             now = self._clock()
             if self._stage is None or now - self._begun < AFTER or is_quiet():

@@ -1,4 +1,8 @@
-"""Search for the best order of a mission's tasks."""
+"""Search for the best order of a mission's tasks.
+
+The best order wins the highest prize with its optional tasks, and of such orders it takes the least
+time.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -34,7 +38,7 @@ TIME_LIMIT = 5.0
 """default of the longest time of a search in s"""
 
 MAX_BYTES = 10_000_000
-"""largest size of a file of requirements"""
+"""largest size of a file of requirements, in bytes"""
 
 _VERIFICATION_TIME = 10.0  # s
 _SAMPLES = 10_000  # random durations of an order, for the probability that it is in time
@@ -148,7 +152,10 @@ def suggest_order(
 
 
 def _progress_text(progress: SearchProgress, unit: float) -> str:
-    """Return the best duration and the bound of a search in words."""
+    """Return the shortest duration found so far and its lower bound in words.
+
+    `unit` is the duration in s that one unit of the search stands for.
+    """
     if progress.cost is None:
         return "none found so far"
     best, bound = (clock(units * unit) for units in (progress.cost, progress.bound))
@@ -171,7 +178,13 @@ def require_limit(mission: Mission, requirements: Requirements) -> None:
 def suggest_robust(
     found: SuggestedOrder, spread: TravelSpread, time_limit: float, seed: int
 ) -> SuggestedOrder:
-    """Return the order that most probably keeps all time limits, in place of the best one.
+    """Return the order that most probably keeps all time limits, in place of the shortest one.
+
+    Args:
+        found: result of the search for the shortest order.
+        spread: distribution of the travel times.
+        time_limit: longest time of the search in s.
+        seed: seed of the search and of the random travel times.
 
     Raises:
         ArgoError: There is no order.

@@ -28,7 +28,7 @@ class SiteReport:
     notes: tuple[str, ...]
     """features that are unlike real sites, but do no harm"""
     flaws: tuple[Flaw, ...]
-    """parts that can't be reached, with remedies"""
+    """parts of the site that the robot can't reach, with remedies"""
     standing: SafeStates | None = None
     """poses at which the robot can stand; None: there are no flaws"""
 

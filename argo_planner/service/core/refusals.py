@@ -41,7 +41,7 @@ class NothingToUndo(Conflict):
 
 
 class ChangedSince(Conflict):
-    """Raised when the parts to revert were changed later, or later changes depend on them."""
+    """Raised when a change can't be reverted: later changes replace it, or depend on it."""
 
     code = "changed-since"
 

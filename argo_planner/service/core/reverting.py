@@ -1,4 +1,4 @@
-"""Reverting the changes of a revision, unless the same parts were changed later."""
+"""Reverting the changes of a revision, unless the same parts of the mission were changed later."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -14,11 +14,12 @@ Subject = tuple[str, str]
 
 @dataclass(frozen=True)
 class RevertResult:
-    """Mission in which a change is reverted, or the parts that prevent this."""
+    """Mission in which a change is reverted, or the header fields and items that prevent this."""
 
     mission: Mission
     """unchanged if `changed_since` is not empty"""
     changed_since: tuple[Subject, ...] = ()
+    """header fields and items that were changed again, so that the change can't be reverted"""
 
 
 def revert(now: Mission, before: Mission, after: Mission) -> RevertResult:

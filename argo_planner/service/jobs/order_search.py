@@ -1,4 +1,4 @@
-"""Search for a mission's best order, as the work of a job."""
+"""Search for a mission's best order (see `use_cases.routing`), as the work of a job."""
 
 from argo_compiler.base.model import Model
 from argo_compiler.il import Mission

@@ -173,10 +173,11 @@ class PlanRoom:
     # ---- members
 
     def join(self, client: str, author: str, since: int | None = None) -> Mailbox:
-        """Add a member and return its mailbox.
+        """Add a client as a member of the room, and return the mailbox with its messages.
 
-        Its first message is the whole state; if it knows the revision `since` and this one is in
-        the history, the first messages are a `resumed` message and the revisions since then.
+        The first message is the whole state of the plan. If the client knows the revision `since`
+        already, and the history still has all later revisions, the first messages are instead a
+        `resumed` message, the revisions after `since`, and the last analysis if there is one.
         """
         self._require_open()
         member = Member(client=client, author=author)

@@ -83,7 +83,7 @@ class CurrentRun:
         return mailbox
 
     def unsubscribe(self, client: str) -> None:
-        """Remove a follower, if it is one."""
+        """Remove the mailbox of a client, if the client is a follower."""
         self._followers.pop(client, None)
 
     def close(self, why: str) -> None:

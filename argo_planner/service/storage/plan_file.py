@@ -216,9 +216,10 @@ def _parse(content: bytes) -> _ParsedFile | None:
 
 
 def parse_first_line(line: bytes) -> dict[str, Any] | None:
-    """Return the fields of the first line of a plan's file, or None if it is damaged.
+    """Return the fields of the first line of a mission plan's file, as parsed from its JSON.
 
-    Raises Invalid if the line has another version of the format.
+    Returns None if the line is damaged, or is not that of a mission plan. Raises Invalid if it is
+    intact and has another version of the format.
     """
     base = checked_object(line)
     if base is None or base.get("format") != "argo plan":
@@ -311,7 +312,11 @@ def _write_plan(
 
 
 def _last_revisions(plan: MissionPlan, most: int) -> list[RevisionMade]:
-    """Return the last revisions as records: at most `most`, and half of `MAX_GROWTH` together."""
+    """Return the last revisions as records, the oldest first.
+
+    They are at most `most`, and together at most half of `MAX_GROWTH` bytes, but at least one if
+    `most` is not 0.
+    """
     records: list[RevisionMade] = []
     size = 0
     for revision in reversed(plan.history[-most:] if most else ()):

@@ -23,7 +23,7 @@ _NOT_BUILT = """<!doctype html><html lang=en><meta charset=utf-8><title>Argo</ti
 
 @router.get("/")
 async def show_page() -> Response:
-    """Return the page, or a hint on how to build it."""
+    """Return the planner page, or a hint on how to build it."""
     index = _load_files().get("index.html")
     if index is None:
         return HTMLResponse(_NOT_BUILT, headers={"cache-control": "no-store"})
@@ -32,7 +32,11 @@ async def show_page() -> Response:
 
 @router.get("/assets/{name}")
 async def show_asset(name: str) -> Response:
-    """Return a file that the page refers to."""
+    """Return a file of the planner page, such as a script, by its name.
+
+    The files are those in the folder `assets` of the built page. Raises NotFound if none of them
+    has this name.
+    """
     content = _load_files().get(f"assets/{name}")
     if content is None:
         raise NotFound(f"the page has no file {name[:80]!r}: load the page again")
@@ -42,12 +46,12 @@ async def show_asset(name: str) -> Response:
 
 
 def page_folder() -> Path:
-    """Return the folder of the built page."""
+    """Return the folder of the built planner page."""
     return Path(str(files("argo_planner"))) / "page" / "dist"
 
 
 def _load_files() -> Mapping[str, bytes]:
-    """Return the files of the page by their paths; empty if the page has not been built."""
+    """Return the files of the planner page by their paths; empty if it has not been built."""
     folder = page_folder()
     try:
         return _read_files(folder, os.stat(folder / "index.html").st_mtime_ns)

@@ -59,7 +59,7 @@ class WayAsked(Model):
 
 
 def _cached_file(media: str) -> dict[str, Any]:
-    """Return the arguments of a route that responds with a file, or that it has not changed."""
+    """Return the arguments of a route that responds with a file, or with 304 if it is unchanged."""
     arguments = file_responses("the file", media)
     arguments["responses"][304] = {"description": "the client has the present file"}
     return arguments

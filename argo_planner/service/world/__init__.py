@@ -1,1 +1,1 @@
-"""A site for a page: its description, meshes, maps of where the robot can stand, and paths."""
+"""A site for the planner page: description, meshes, maps of where the robot can stand, paths."""

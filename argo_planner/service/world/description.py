@@ -1,4 +1,4 @@
-"""Description of a site for a page, from which the page knows what to load and draw."""
+"""Description of a site for the planner page, which states what the page has to load and draw."""
 
 import hashlib
 import math

@@ -1,4 +1,4 @@
-"""Meshes for a page: the solids of each floor, the robot, and the checkpoints, as GLB."""
+"""Meshes for the planner page: the solids of each floor, the robot and the checkpoints, as GLB."""
 
 import math
 from collections import defaultdict
@@ -122,7 +122,10 @@ def _unit_shape(solid: Solid, role: Role, detail: Detail) -> UnitShape | None:
 
 
 def _merge(parts: list[tuple[UnitShape, Solid]], colour: Colour, widening: float) -> Mesh:
-    """Return one mesh of all parts; open bars are thicker by the factor `widening`."""
+    """Return one mesh of solids, each with the shape that it is drawn with.
+
+    Open bars are thicker by the factor `widening`.
+    """
     corners, triangles, count = [], [], 0
     for shape, solid in parts:
         size, rotation = _size_and_rotation(solid, shape)

@@ -54,7 +54,7 @@ def comparison_title(comparison: PolicyComparison) -> str:
 
 
 def reference_warnings(comparison: PolicyComparison) -> list[str]:
-    """Return a warning for each policy with routes that are better than the best known ones."""
+    """Return a warning for each policy that wins more on an instance than the best known route."""
     better: dict[str, list[BetterRoute]] = {}
     for route in comparison.better_routes:
         better.setdefault(route.policy, []).append(route)

@@ -178,7 +178,7 @@ def _box_plot(name: str, gaps: dict[str, list[float]], picture: Path) -> Path:
 
 
 def plot_convergence(name: str, problem: RouteProblem, time_limit: float, picture: Path) -> Path:
-    """Plot the best prize so far and the upper bound on the prize over the time of the search.
+    """Plot the highest prize so far and the upper bound on the prize over the time of the search.
 
     Args:
         name: name of the instance, for the title.

@@ -1,6 +1,7 @@
 """Policies that follow routes of the optimiser.
 
-Its limit is one of work, not of time, so it finds the same routes on a slow or busy machine.
+The optimiser has a limit of work, not of time, so it finds the same routes on a slow or busy
+machine.
 """
 
 from argo_compiler.route import suggest_route
@@ -13,7 +14,10 @@ WORK_LIMIT = 5.0
 
 
 class Portfolio(PlannedPolicy):
-    """Policy that drives the best route found at the start, without nodes that become illegal."""
+    """Policy that drives the optimiser's route of the start, without nodes that become illegal.
+
+    It is the route with the highest prize that the optimiser finds.
+    """
 
     name = "portfolio"
     replans = False

@@ -41,7 +41,10 @@ Route = tuple[int, ...]
 
 @dataclass(frozen=True)
 class BestKnown:
-    """Best known route of one instance, with a bound."""
+    """Best known route of one instance, with a bound.
+
+    It is the route with the highest prize, and of several such routes the one that is docked first.
+    """
 
     prize: float
     """prize of the best known route"""

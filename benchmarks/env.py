@@ -36,11 +36,11 @@ NODES = 20
 BATCH_STEPS = {"argo/Drive-v0": 100, "argo/Inspect-v0": 25}
 _TICK = os.sysconf("SC_CLK_TCK")
 Stepper = Iterator[tuple[int, float]]
-"""Iterator that makes steps, and yields the number of transitions and their time (s)."""
+"""Iterator that steps environments, and yields the number of steps and their time (s)."""
 
 
 def best_rate(stepper: Stepper, window: float) -> float:
-    """Return the transitions per second in the best window of time."""
+    """Return the steps per second in the fastest of WINDOWS periods of `window` s each."""
     next(stepper)
     rates = []
     for _ in range(WINDOWS):

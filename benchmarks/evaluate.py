@@ -37,7 +37,7 @@ _PARTS = 5
 
 
 def make_plan(drive: str, seeds: range) -> EvaluationPlan:
-    """Return the plan of mission #1 with a drive, in the worlds of these seeds."""
+    """Return the evaluation plan of UMAD's mission #1 with a drive, in the worlds of the seeds."""
     upload = Upload(str(SCRIPT), SCRIPT.read_bytes())
     mission = import_mission(upload, open_site("umad").prepare(), 1, 2).mission
     case = EvaluationCase(mission="mission 1", spec=RunSpec(mission=mission, drive=drive))

@@ -126,7 +126,10 @@ class Rounds:
 
 
 def build_flat_transitions() -> Run:
-    """Build it in transitions without nesting: each transition into a group resets its counter."""
+    """Build the mission's machine in the library transitions, without nested states.
+
+    Each transition into a group resets the counter of the group's rounds.
+    """
     from transitions import Machine
 
     model: Any = Rounds()
@@ -149,7 +152,7 @@ def build_flat_transitions() -> Run:
 
 
 def build_hierarchical_transitions() -> Run:
-    """Build it in transitions with HierarchicalMachine."""
+    """Build the mission's machine in the library transitions, as a HierarchicalMachine."""
     from transitions.extensions import HierarchicalMachine
 
     model: Any = Rounds()
@@ -177,7 +180,10 @@ def build_hierarchical_transitions() -> Run:
 
 
 def _transitions_run(model: Any) -> Run:
-    """Return the function that runs a model of transitions; a state's last letter is its task."""
+    """Return the function that runs a model of the library transitions.
+
+    The last letter of a state's name is its task.
+    """
 
     def run(values: Sequence[float]) -> list[str]:
         ended = []
@@ -190,7 +196,7 @@ def _transitions_run(model: Any) -> Run:
 
 
 def build_python_statemachine() -> Run:
-    """Build it in python-statemachine with compound states."""
+    """Build the mission's machine in python-statemachine with compound states."""
     from statemachine import State, StateChart
 
     class Night(StateChart[Any]):
@@ -264,7 +270,7 @@ statechart:
 
 
 def build_sismic() -> Run:
-    """Build it in sismic from its YAML."""
+    """Build the mission's machine in sismic, from a statechart in YAML."""
     from sismic.interpreter import Interpreter
     from sismic.io import import_from_yaml
 
@@ -282,7 +288,7 @@ def build_sismic() -> Run:
 
 
 def build_py_trees() -> Run:
-    """Build it in py_trees as sequences and repeats, with one tick for each event."""
+    """Build the mission in py_trees as sequences and repeats, with one tick for each event."""
     import py_trees as pt
 
     values_seen: dict[str, Any] = {"value": None, "last": 0.0}

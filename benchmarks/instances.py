@@ -106,7 +106,7 @@ class NamedProblem:
 
 @dataclass(frozen=True)
 class KnownRoute:
-    """Route published by OPLib, which need not be the best one."""
+    """Route published by OPLib, which need not be optimal."""
 
     nodes: tuple[int, ...]
     """numbers of the nodes, counted from 1, the depot first"""

@@ -55,7 +55,7 @@ def measure_queries(navigator: Navigator, name: str, queries: Iterable[Query]) -
 
 
 def percentiles_text(seconds: list[float]) -> str:
-    """Return median, 95th percentile and maximum in ms, as text."""
+    """Return median, 95th percentile and maximum of times (s) as text, in ms."""
     return "/".join(f"{1e3 * t:.1f}" for t in np.percentile(seconds, [50, 95, 100])) + " ms"
 
 

@@ -1,4 +1,4 @@
-"""Gain of each part of the route search: `python -m benchmarks.route_parts`.
+"""Gain of each part of the route search, a solver: `python -m benchmarks.route_parts`.
 
     python -m benchmarks.route_parts --only PyVRP --problems windows optional --count 8
     python -m benchmarks.route_parts --folder FOLDER --time-limit 10 --alone
@@ -7,7 +7,7 @@ Solves each problem with all parts, and with all but one, on one worker. The pro
 ones of the kinds of `benchmarks.routes_limits`, or those in a folder that `benchmarks.routes`
 reads. Prints for each part how often the route is worse without it and how often better, the lost
 share of the prize and of the cost, and the number of lost proofs and of lost routes. With `--alone`
-it prints the same for each part on its own, with only the first rules before it.
+it prints the same for each part on its own, with only `solvers.FIRST`, the first rules, before it.
 """
 
 import argparse
@@ -28,14 +28,17 @@ from benchmarks.routes_limits import KINDS, random_problem
 
 @dataclass(frozen=True)
 class Gain:
-    """Results of a problem with and without a part."""
+    """Results of a problem with and without a part of the route search, which is one solver."""
 
     with_it: RouteSuggestion
     without: RouteSuggestion
 
     @property
     def better(self) -> int:
-        """1: the route is better with the part; -1: it is worse; 0: neither."""
+        """1 if the route is better with the part than without it, -1 if worse, 0 if as good.
+
+        Any route is better than none, then a higher prize counts, then a lower cost.
+        """
         with_it, without = _quality(self.with_it), _quality(self.without)
         return (with_it > without) - (with_it < without)
 
@@ -58,7 +61,7 @@ def _quality(suggestion: RouteSuggestion) -> tuple[bool, int, int]:
 
 
 def summary_line(part: str, gains: Sequence[Gain]) -> str:
-    """Return the line of the table for a part."""
+    """Return the line of the table for a part of the route search."""
     lost = sum(g.with_it.proven for g in gains) - sum(g.without.proven for g in gains)
     missing = sum(g.with_it.route is not None for g in gains) - sum(
         g.without.route is not None for g in gains
@@ -87,7 +90,7 @@ def random_problems(
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Print the gain of each part."""
+    """Print the gain of each part of the route search."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--folder", type=Path, help="published problems instead of generated ones")
     parser.add_argument(

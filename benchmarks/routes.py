@@ -73,7 +73,7 @@ def measure_problem(
     seed: int,
     peers: Sequence[Peer] = (),
 ) -> Row:
-    """Solve the problem read from a file, also with other solvers, and return its row."""
+    """Solve a problem read from a file, also with other solvers; return its row of the table."""
     known = find_known_value(path, named.kind)
     started = time.perf_counter()
     suggestion = suggest_route(named.problem, time_limit, seed, workers)

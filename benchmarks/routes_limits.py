@@ -26,11 +26,14 @@ from argo_compiler.route import (
 )
 
 AddRules = Callable[[RouteProblem, np.random.Generator], RouteProblem]
-"""Function that returns a problem with more rules, drawn from the generator."""
+"""Function that returns a problem with further constraints, drawn from the generator."""
 
 
 def random_problem(count: int, rng: np.random.Generator) -> RouteProblem:
-    """Return visits of 30 s each, at random in a square with sides of 1,000 s, and no rules."""
+    """Return a problem without constraints: visits of 30 s each, at random in a square.
+
+    The sides of the square take 1,000 s to travel.
+    """
     points = rng.integers(0, 1000, (count + 3, 2))
     travel = np.abs(points[:, None] - points).sum(axis=2).astype(np.int64)
     visits = tuple(Visit(f"checkpoint {k}", 30, prize=1) for k in range(count))

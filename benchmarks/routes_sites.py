@@ -186,7 +186,7 @@ class Row:
 
 
 def time_search(problem: RouteProblem, time_limit: float) -> Row:
-    """Time the search for a route, without the search for an infeasible subset of rules."""
+    """Time the search for a route, without that for constraints that exclude each other."""
     begun = time.perf_counter()
     suggestion = suggest_route(problem, time_limit, explain=False)
     seconds = time.perf_counter() - begun

@@ -64,7 +64,7 @@ def measure_site(reference: str) -> None:
 
 
 def print_line(name: str, make: Callable[[], Iterable[bytes]]) -> None:
-    """Make the parts twice, and print a line with their sizes and both times."""
+    """Make some world data twice, and print a line with its sizes (kB) and both times (s)."""
     times = []
     for _ in range(2):
         started = time.perf_counter()
@@ -80,7 +80,7 @@ def print_line(name: str, make: Callable[[], Iterable[bytes]]) -> None:
 def make_maps(
     site: OpenedSite, floors: Sequence[int], crates: Sequence[Obstacle] = ()
 ) -> Iterable[bytes]:
-    """Yield the maps of all floors and headings."""
+    """Yield the maps of where the robot can stand, of all floors and headings."""
     return (
         standing_map(site, floor, heading, crates).to_bytes()
         for floor in floors

@@ -66,7 +66,11 @@ class _Search:
         return [visit for visit in order if visit in valid]
 
     def insert_visits(self, order: list[int]) -> list[int]:
-        """Return the order with visits inserted, the best one each time, until none fits."""
+        """Return the order with visits inserted, one after the other, until none fits.
+
+        Each time, that visit is inserted which wins the highest prize for the time that it adds,
+        at the index where it adds least.
+        """
         order = list(order)
         while True:
             spare = self._spare_time(order)
@@ -81,7 +85,10 @@ class _Search:
             order.insert(best[3], -best[2])
 
     def shorten(self, order: list[int]) -> list[int]:
-        """Return the order after all moves that save time, the first one found each time."""
+        """Return the order after 2-opt and or-opt moves that save time, until none saves any.
+
+        Each time, the first such move that is found is made, if it keeps all precedences.
+        """
         time = self._time(order)
         while True:
             for changed in self._neighbours(order):

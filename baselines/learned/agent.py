@@ -155,8 +155,9 @@ def best_rollout(
 ) -> list[int]:
     """Return the best of some simulated routes from the observed state to the dock.
 
-    The route is a list of nodes, with the dock at the end. The first simulation chooses the highest
-    scores; the others draw nodes with softmax probabilities of the scores (Gumbel-max trick).
+    The best route has the highest prize, and of several such routes the least time. It is a list
+    of nodes, with the dock at the end. The first simulation chooses the highest scores; the others
+    draw nodes with softmax probabilities of the scores (Gumbel-max trick).
     """
     nodes = open_nodes(observation)
     state = {

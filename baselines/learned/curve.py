@@ -23,7 +23,7 @@ _SETS = {
 def read_logs(folder: Path) -> dict[str, Points]:
     """Return the values in the TensorBoard logs of a training, by tag.
 
-    Raises ArgoError if there are no logs, or none of a completed part.
+    Raises ArgoError if there are no logs, or no part of the training is completed.
     """
     check_learned()
     from tensorboard.backend.event_processing.event_accumulator import (  # type: ignore[import-untyped]

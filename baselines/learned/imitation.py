@@ -1,8 +1,8 @@
 """Imitation learning, the first stage of the training: the network imitates exact values.
 
 A sample is a state of a small route problem, which has a few checkpoints of a training instance.
-The network learns which actions are best there, how much worse the others are, and the best prize
-that can still be won.
+The network learns which actions win the highest prize there, or win as much in the least time; how
+much worse the others are; and the highest prize that can still be won.
 """
 
 from collections.abc import Iterator
@@ -38,7 +38,7 @@ class Lessons:
     target: Floats
     """probability of each action, shape (samples, m + 1)"""
     value: Floats
-    """best prize that can still be won, shape (samples,)"""
+    """highest prize that can still be won, shape (samples,)"""
 
     def __len__(self) -> int:
         return len(self.value)
@@ -50,7 +50,11 @@ class Lessons:
 
 
 def make_lessons(source: RouteSource, size: int, count: int, seed: int) -> Lessons:
-    """Make at least `count` samples with `size` checkpoints; equal arguments give equal samples."""
+    """Make at least `count` samples with `size` checkpoints; equal arguments give equal samples.
+
+    A sample is a state on a route through a small problem, with the exact values of its actions.
+    There may be more than `count`, as samples are made in batches of problems.
+    """
     rng = generator(seed, "lessons", size)
     samples: list[tuple[dict[str, Floats], Floats, float]] = []
     with stage(f"making lessons with {size} checkpoints") as report:

@@ -80,8 +80,8 @@ class Oracle:
         """Return the values of legal actions on route k; see `legal_actions` for the arguments.
 
         Returns:
-            The best prize that can be won from each action on, its own included; and the least time
-            in s from the present state until the robot is docked with that prize.
+            The highest prize that can be won from each action on, its own included; and the least
+            time in s from the present state until the robot is docked with that prize.
         """
         sets = self._sets[k]
         sets = sets[(sets & visited) == 0]

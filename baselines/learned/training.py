@@ -38,9 +38,9 @@ class Settings:
 
     seed: int = 0
     lesson_parts: int = 12
-    """number of parts with lessons"""
+    """number of parts of the training with lessons"""
     parts: int = 4
-    """number of parts with MaskablePPO"""
+    """number of parts of the training with MaskablePPO"""
     lesson_sizes: tuple[int, ...] = (8, 10, 12, 12, 13, 14)
     """numbers of checkpoints in the lessons of a part"""
     lessons: int = 1500
@@ -157,7 +157,7 @@ def train(state: TrainingState, folder: Path, write_line: Callable[[str], None] 
 
 
 def _train_on_lessons(state: TrainingState, logger: Logger) -> None:
-    """Carry out one part with lessons."""
+    """Carry out one part of the training, with lessons."""
     settings, part = state.settings, state.part
     rng = generator(settings.seed, "teach", part)
     source = TrainingRoutes(20, sites=settings.sites)
@@ -219,7 +219,7 @@ class _ProgressCallback(BaseCallback):
 
 
 def _train_with_ppo(state: TrainingState, logger: Logger) -> None:
-    """Carry out one part with MaskablePPO, on instances that no other part has."""
+    """Carry out one part of the training, with MaskablePPO, on instances that no other part has."""
     settings = state.settings
     part = state.part - settings.lesson_parts
     seed = int(generator(settings.seed, "practise", part).integers(2**31))

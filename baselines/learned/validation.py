@@ -31,7 +31,7 @@ class Validation:
         }  # fmt: skip
 
     def __call__(self, network: RouteNetwork) -> dict[str, float]:
-        """Return the mean prize of the network on each set, by the name of the set."""
+        """Return the mean prize of the network's routes on each validation set, by its name."""
         batches = stage_items("evaluating", list(self._batches.items()))
         return {
             name: float(greedy_prizes(network, batch, range(batch.num_envs)).mean())
@@ -42,7 +42,7 @@ class Validation:
 def greedy_prizes(
     network: RouteNetwork, batch: RouteVectorEnv, numbers: Sequence[int]
 ) -> NDArray[np.float64]:
-    """Return the prizes of routes that follow the highest scores.
+    """Return the prizes of routes on which each node is the legal one with the highest score.
 
     `numbers` are the instances, one for each route of the batch.
     """

@@ -92,7 +92,7 @@ class Run:
     wall: float
 
 
-def run(navigator: Navigator, seed: int, drive: str) -> Run:
+def run_seed(navigator: Navigator, seed: int, drive: str) -> Run:
     """Run the random mission of a seed with a drive."""
     mission = random_mission(navigator, seed)
     began = time.perf_counter()
@@ -129,7 +129,7 @@ def time_motions(
     with World(navigator.site, navigator.robot) as world:
         drive = make(world, navigator.robot)
         start = navigator.snap(start_pose(mission, navigator.site.docks))
-        drive.place(BodyPose(start.x, start.y, start.z, start.yaw))
+        drive.set_pose(BodyPose(start.x, start.y, start.z, start.yaw))
         for task in mission.tasks[1:]:
             here = Pose(x=drive.pose.x, y=drive.pose.y, z=drive.pose.z, yaw=drive.pose.yaw)
             if task.pose is None:
@@ -140,7 +140,7 @@ def time_motions(
                 timed += time_path(drive, path)
             except RuntimeError:
                 failed += 1
-                drive.place(BodyPose(path.end.x, path.end.y, path.end.z, path.end.yaw))
+                drive.set_pose(BodyPose(path.end.x, path.end.y, path.end.z, path.end.yaw))
     return timed, failed
 
 
@@ -181,7 +181,7 @@ def _prepare(site: str) -> None:
 
 def _run(job: tuple[int, str]) -> Run:
     assert _navigator
-    return run(_navigator, *job)
+    return run_seed(_navigator, *job)
 
 
 def _time_motions(seed: int) -> tuple[list[TimedDrive], int]:

@@ -62,7 +62,8 @@ def percentiles_text(seconds: list[float]) -> str:
 def poses_of_states(navigator: Navigator, states: np.ndarray) -> list[Pose]:
     """Return the poses of states of the lattice."""
     return [
-        Pose(x=x, y=y, z=z, yaw=yaw) for x, y, z, yaw in navigator.lattice.poses(states).tolist()
+        Pose(x=x, y=y, z=z, yaw=yaw)
+        for x, y, z, yaw in navigator.lattice.state_poses(states).tolist()
     ]
 
 
@@ -76,7 +77,7 @@ def measure_paths(name: str, count: int) -> Navigator:
     elapsed = cpu_seconds(navigator.prepare)
     print(f", paths between portals and landmarks in {elapsed:.1f} s; {memory_text()}")
     random = np.random.default_rng(1)
-    z = navigator.lattice.poses()[:, 2]
+    z = navigator.lattice.state_poses()[:, 2]
     floors = [np.flatnonzero(np.abs(z - floor.z) < 0.1) for floor in site.spec.floors]
     anywhere = poses_of_states(navigator, random.integers(navigator.lattice.size, size=2 * count))
     ids = [c.id for c in site.checkpoints]

@@ -60,8 +60,8 @@ class Drive(Protocol):
         """Faults since the robot was placed, whether or not the robot could continue."""
         ...
 
-    def place(self, pose: BodyPose) -> None:
-        """Place the robot at the pose, at rest."""
+    def set_pose(self, pose: BodyPose) -> None:
+        """Set the robot to the pose, at rest."""
         ...
 
     def follow(self, path: Path, velocity: float | None) -> None:

@@ -74,7 +74,7 @@ def resting_poses(world: World, motion: Motion, robot: RobotSpec) -> list[BodyPo
         [x[:, None] + along * cos - left * sin, y[:, None] + along * sin + left * cos], axis=-1
     )
     above = np.repeat(guess + _PROBE_HEIGHT, len(along))
-    heights = world.heights(points.reshape(-1, 2), above).reshape(count, len(offsets), 2)
+    heights = world.heights_below(points.reshape(-1, 2), above).reshape(count, len(offsets), 2)
     z, slope = rest_height_and_slope(offsets, heights.max(axis=2))
     pitch = -np.arctan(slope)
     if motion.length:
@@ -160,9 +160,9 @@ class KinematicDrive(NonCopyable, TimedDrive):
         self._motion: Motion | None = None
         self._poses: list[BodyPose] = []  # along the motion
 
-    def place(self, pose: BodyPose) -> None:
-        """Place the robot at the pose, at rest."""
-        super().place(pose)
+    def set_pose(self, pose: BodyPose) -> None:
+        """Set the robot to the pose, at rest."""
+        super().set_pose(pose)
         self._show()
 
     def halt(self) -> None:

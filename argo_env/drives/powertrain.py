@@ -68,10 +68,10 @@ class Powertrain:
     def incidents(self) -> Sequence[Incident]:
         return self._drive.incidents
 
-    def place(self, pose: BodyPose) -> None:
-        """Place the robot at the pose, at rest."""
+    def set_pose(self, pose: BodyPose) -> None:
+        """Set the robot to the pose, at rest."""
         self.path_and_velocity = None
-        self._drive.place(pose)
+        self._drive.set_pose(pose)
 
     def follow(self, path: Path, velocity: float | None) -> None:
         """Start to follow `path` as soon as the robot can move."""

@@ -45,8 +45,8 @@ class TimedDrive(ABC):
     def incidents(self) -> tuple[Incident, ...]:
         return ()
 
-    def place(self, pose: BodyPose) -> None:
-        """Place the robot at the pose, at rest."""
+    def set_pose(self, pose: BodyPose) -> None:
+        """Set the robot to the pose, at rest."""
         self.halt()
         self._pose = pose
 

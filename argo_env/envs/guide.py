@@ -44,8 +44,8 @@ class Guide:
         self._speed = navigator.robot.speed
         self._back = lattice.costs.T.tocsr()
         self._cells = np.unique(lattice.cell)
-        self._poses = lattice.poses()
-        positions = lattice.surface.positions()[self._cells]
+        self._poses = lattice.state_poses()
+        positions = lattice.surface.cell_positions()[self._cells]
         self._tree = cKDTree(positions)
         self._headings = 2 * math.pi * np.arange(lattice.state_of.shape[1])
         self._headings /= lattice.state_of.shape[1]

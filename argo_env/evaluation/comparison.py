@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Conflict, NotFound, Remedy
 from argo_env.evaluation.case import PlanName
-from argo_env.evaluation.estimates.pairs import Difference, SuccessPairs, difference, power
+from argo_env.evaluation.estimates.pairs import Difference, SuccessPairs, mean_difference, power
 from argo_env.evaluation.estimates.rates import world_means
 from argo_env.evaluation.estimates.sequences import ConfidenceSequence
 from argo_env.evaluation.results import EvaluationResults
@@ -56,7 +56,7 @@ class PlanComparison:
         interval is valid whatever the true rates are.
         """
         shares = _world_means(lambda row: float(row.success), list(self.pairs))
-        estimate = difference(*shares)
+        estimate = mean_difference(*shares)
         if not self.pairs:
             return estimate
         if self.has_one_pair_per_world and not self.any_time:
@@ -88,13 +88,13 @@ class PlanComparison:
     def duration(self) -> Difference:
         """Difference of the durations in s, first plan minus second plan, if both succeeded."""
         both = [pair for pair in self.pairs if pair[0].success and pair[1].success]
-        return difference(*_world_means(lambda row: row.duration or 0.0, both))
+        return mean_difference(*_world_means(lambda row: row.duration or 0.0, both))
 
     @cached_property
     def distance(self) -> Difference:
         """Difference of the distances in m, first plan minus second plan, if both succeeded."""
         both = [pair for pair in self.pairs if pair[0].success and pair[1].success]
-        return difference(*_world_means(lambda row: row.distance or 0.0, both))
+        return mean_difference(*_world_means(lambda row: row.distance or 0.0, both))
 
     def power(self, gain: float) -> float:
         """Return the power of McNemar's exact test for this number of pairs.

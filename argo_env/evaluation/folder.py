@@ -159,7 +159,7 @@ def write_failing_specs(folder: Path, results: EvaluationResults) -> dict[str, P
             continue
         case = results.plan.case_index(row)
         assert case is not None
-        run = results.plan.run(case, row.seed)
+        run = results.plan.planned_run(case, row.seed)
         path = folder / FAILING / f"{row.key}.json"
         if not paths:
             make_folder(folder / FAILING)

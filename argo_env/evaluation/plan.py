@@ -65,7 +65,7 @@ class EvaluationPlan(Model):
         """Names of the evaluated plans, in the order of the cases."""
         return tuple(dict.fromkeys(case.plan for case in self.cases))
 
-    def run(self, case: int, seed: int) -> "PlannedRun":
+    def planned_run(self, case: int, seed: int) -> "PlannedRun":
         """Return the run of the case with this index in the world of the seed."""
         return PlannedRun(case, seed, self.variation.apply(self.cases[case].spec, seed))
 
@@ -77,7 +77,7 @@ class EvaluationPlan(Model):
         """
         for seed in self.seeds if seeds is None else seeds:
             for case in range(len(self.cases)):
-                yield self.run(case, seed)
+                yield self.planned_run(case, seed)
 
     def key(self, run: "PlannedRun") -> str:
         """Return the run's key: a hash of all that it depends on.
@@ -103,7 +103,7 @@ class EvaluationPlan(Model):
         case = self.case_index(row)
         if case is None or row.seed not in seeds:
             return False
-        return self.key(self.run(case, row.seed)) == row.key
+        return self.key(self.planned_run(case, row.seed)) == row.key
 
     def faults_for(self, case: str, seed: int) -> str:
         """Return the name of the faults drawn for the seed's world, or of the case's faults."""

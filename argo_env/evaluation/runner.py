@@ -273,7 +273,7 @@ def _by_strata(plan: EvaluationPlan, rows: Sequence[RunRow]) -> Iterator[Iterato
         runs: list[PlannedRun] = []
         for case, count in enumerate(counts):
             for _ in range(min(count, remaining)):
-                runs.append(plan.run(case, next(seeds)))
+                runs.append(plan.planned_run(case, next(seeds)))
                 remaining -= 1
         yield iter(runs)
         if plan.stopping.width is not None and should_stop(plan, rows):

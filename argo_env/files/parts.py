@@ -44,17 +44,17 @@ class Parts:
 
     def load_or_make(self, name: str, make: "Callable[[], Mapping[str, NDArray[Any]]]") -> Arrays:
         """Return the arrays of a part; if it is missing, `make` makes it, and it is stored."""
-        arrays = self.load(name)
+        arrays = self.load_arrays(name)
         if arrays is None:
             arrays = dict(make())
-            self.store(name, arrays)
+            self.store_arrays(name, arrays)
         return arrays
 
-    def load(self, name: str) -> "Arrays | None":
+    def load_arrays(self, name: str) -> "Arrays | None":
         """Return the arrays of a part, which are read-only; None if it is missing or damaged."""
         return self._load(f"{name}.npz", _read_arrays)
 
-    def store(self, name: str, arrays: "Mapping[str, NDArray[Any]]") -> None:
+    def store_arrays(self, name: str, arrays: "Mapping[str, NDArray[Any]]") -> None:
         """Write arrays as a part."""
         if self._folder is not None:
             self._store(self._folder, f"{name}.npz", _npz(arrays))

@@ -35,7 +35,7 @@ class Blockage:
 
 def closed_cells(surface: Surface, blockages: Sequence[Blockage]) -> NDArray[np.bool_]:
     """Return a mask of the cells of the surface that a blockage touches, even at their edges."""
-    positions = surface.positions()
+    positions = surface.cell_positions()
     closed = np.zeros(surface.size, dtype=bool)
     for blockage in blockages:
         closed |= _within(positions, blockage, CELL / 2 + 1e-9)
@@ -67,7 +67,7 @@ def close_states(lattice: Lattice, blockages: Sequence[Blockage]) -> Lattice:
     closed states keep their numbers, but have no moves and are not in `state_of`.
     """
     closed, no_turn = np.zeros(lattice.size, dtype=bool), np.zeros(lattice.size, dtype=bool)
-    positions = lattice.surface.positions()
+    positions = lattice.surface.cell_positions()
     for blockage in blockages:
         near = _states_near(lattice, positions, blockage)
         in_state, in_turn = _touched_states(lattice, positions, near, blockage)

@@ -68,7 +68,7 @@ class Lattice:
         """Return the seconds that moves of the given `costs` from `source` to `target` take."""
         return costs / _cost_factor(self.roomy, source, target)
 
-    def poses(self, states: NDArray[np.int64] | slice = slice(None)) -> NDArray[np.float64]:
+    def state_poses(self, states: NDArray[np.int64] | slice = slice(None)) -> NDArray[np.float64]:
         """Return x, y, z (m) and yaw (rad) of the states, shape (n, 4)."""
         cell = self.cell[states]
         x, y = self.surface.grid.centers(self.surface.i[cell], self.surface.j[cell])
@@ -110,10 +110,12 @@ def build_lattice(surface: Surface, robot: RobotSpec) -> Lattice:
     rises, rooms = [], []
     for heading in range(HEADINGS):
         stencil = footprint_stencil(robot.footprint, heading, MARGIN)
-        z = stencil.heights(surface, np.arange(surface.size))
+        z = stencil.surface_heights(surface, np.arange(surface.size))
         rises.append(footprint_rise(z, stencil, heading))
         wide = footprint_stencil(robot.footprint, heading, PREFERRED_CLEARANCE)
-        rooms.append(np.isfinite(wide.heights(surface, np.arange(surface.size)).sum(axis=0)))
+        rooms.append(
+            np.isfinite(wide.surface_heights(surface, np.arange(surface.size)).sum(axis=0))
+        )
     rise, roomy = np.stack(rises, axis=1), np.stack(rooms, axis=1)
     valid = rise <= LEVEL  # False for nan, where the robot can't stand
     state_of = np.where(valid, np.cumsum(valid.ravel()).reshape(valid.shape) - 1, -1)
@@ -230,7 +232,7 @@ def _turns(surface: Surface, robot: RobotSpec, state_of: NDArray[np.int64]) -> l
     for heading in range(HEADINGS):
         here, there = state_of[:, heading], state_of[:, (heading + 1) % HEADINGS]
         middle = np.flatnonzero((here >= 0) & (there >= 0))
-        z = turn_stencil(robot.footprint, heading, MARGIN).heights(surface, middle)
+        z = turn_stencil(robot.footprint, heading, MARGIN).surface_heights(surface, middle)
         ok = middle[z.max(axis=0) - z.min(axis=0) <= TURNING_LEVEL]  # False where a height is nan
         time = np.full(len(ok), seconds)
         edges += [(here[ok], there[ok], time), (there[ok], here[ok], time)]

@@ -140,10 +140,10 @@ class Navigator:
         """
         if "surface" in other.__dict__:
             self.surface = other.surface
-            self.parts.store("surface", surface_arrays(self.surface))
+            self.parts.store_arrays("surface", surface_arrays(self.surface))
         if "lattice" in other.__dict__:
             self.lattice = other.lattice
-            self.parts.store("lattice", lattice_arrays(self.lattice))
+            self.parts.store_arrays("lattice", lattice_arrays(self.lattice))
 
     def prepare(self) -> None:
         """Compute now what all queries share, so that no later call takes the time for it."""
@@ -342,7 +342,7 @@ class Navigator:
         turns = np.bincount(here[here == self.lattice.cell[target]], minlength=self.surface.size)
         # A cell with all turns has two from each heading.
         cells = np.flatnonzero(turns == 2 * HEADINGS)
-        return np.column_stack([self.surface.positions()[cells], np.zeros(len(cells))])
+        return np.column_stack([self.surface.cell_positions()[cells], np.zeros(len(cells))])
 
     def _states(self, locations: Sequence[Pose | int]) -> NDArray[np.int64]:
         states = [
@@ -445,7 +445,7 @@ def nearest_state(lattice: Lattice, pose: Pose) -> int | None:
 def _to_path(lattice: Lattice, states: Sequence[int]) -> Path:
     """Return the path through lattice states, with consecutive moves of the same kind merged."""
     numbers = np.array(states)
-    poses, heading = lattice.poses(numbers), lattice.heading[numbers]
+    poses, heading = lattice.state_poses(numbers), lattice.heading[numbers]
     step, turn = np.diff(poses[:, :2], axis=0), np.diff(heading)
     turn = (turn + HEADINGS // 2) % HEADINGS - HEADINGS // 2
     yaw = poses[:-1, 3]
@@ -469,7 +469,7 @@ def _to_path(lattice: Lattice, states: Sequence[int]) -> Path:
 
 def _poses(lattice: Lattice, states: Sequence[int]) -> list[Pose]:
     """Return the poses of lattice states, their coordinates rounded to 1 µm."""
-    rows = lattice.poses(np.array(states)).tolist()
+    rows = lattice.state_poses(np.array(states)).tolist()
     return [
         Pose(x=round(x, 6), y=round(y, 6), z=round(z, 6), yaw=wrap(yaw)) for x, y, z, yaw in rows
     ]

@@ -289,5 +289,5 @@ def _region(
         backward,
         local[np.unique(targets[inside[targets]])],
         local[np.unique(sources[inside[sources]])],
-        landmarks or Landmarks(forward, backward, lattice.poses(members)[:, :2]),
+        landmarks or Landmarks(forward, backward, lattice.state_poses(members)[:, :2]),
     )

@@ -32,7 +32,7 @@ class Stencil:
     parent: tuple[int, ...]
     step: tuple[int, ...]
 
-    def heights(self, surface: Surface, middle: NDArray[np.int64]) -> NDArray[np.float64]:
+    def surface_heights(self, surface: Surface, middle: NDArray[np.int64]) -> NDArray[np.float64]:
         """Return heights of the surface (m) at each offset about the cells `middle`.
 
         The shape is (len(offsets), len(middle)); nan where the surface does not continue.

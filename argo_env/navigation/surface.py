@@ -43,7 +43,7 @@ class Surface:
     def size(self) -> int:
         return len(self.z)
 
-    def positions(self) -> NDArray[np.float64]:
+    def cell_positions(self) -> NDArray[np.float64]:
         """Return the centres of the cells on the surface, in m, shape (size, 3)."""
         x, y = self.grid.centers(self.i, self.j)
         return np.stack([x, y, self.z], axis=1)

@@ -71,7 +71,7 @@ def candidate_views(checkpoint: SiteCheckpoint, lattice: Lattice) -> CandidateVi
     states = lattice.state_of[lattice.surface.cells_near(target[0], target[1], reach)]
     states = states[states >= 0]
     states = states[np.abs(lattice.rise[states]) <= LEVEL]
-    cameras = camera_positions(lattice.poses(states), lattice.robot)
+    cameras = camera_positions(lattice.state_poses(states), lattice.robot)
     sight = target - cameras
     distance = np.linalg.norm(sight, axis=1)
     cosine = -(sight @ face_normal(checkpoint)) / np.maximum(distance, 1e-9)
@@ -94,7 +94,7 @@ def has_line_of_sight(
     low = np.minimum(origins.min(axis=0), target)
     high = np.maximum(origins.max(axis=0), target)
     index = site.solids
-    for solid in index.between(low, high):
+    for solid in index.touching_box(low, high):
         entry, leave = crossing(solid, origins, target - origins)
         clear &= ~((entry <= 1.0) & (leave >= 0.0))
     return clear

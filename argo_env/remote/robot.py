@@ -51,7 +51,7 @@ class RemoteDrive:
         self.time_step = time_step
         self.pose = pose
 
-    def place(self, pose: BodyPose) -> None:
+    def set_pose(self, pose: BodyPose) -> None:
         """No-op: a remote robot stays where it is."""
 
     def follow(self, path: Path, velocity: float | None) -> NoReturn:
@@ -255,8 +255,8 @@ class RemoteRobot:
         assert received is not None
         return received - self._offset if self._clock() - received > SILENCE else None
 
-    def place(self, pose: BodyPose, now: float) -> None:  # noqa: ARG002
-        """Set the run's time to `now` (s) as it starts or continues; the robot does not move."""
+    def begin_at(self, pose: BodyPose, now: float) -> None:  # noqa: ARG002
+        """Begin or continue a run: set its time to `now` (s); the robot does not move."""
         self._offset = self._clock() - now
 
     def wait_acknowledged(self, limit: float) -> bool:
@@ -336,7 +336,7 @@ class RemoteRobot:
         end = own.to_action_end(ended, reading is not None and not reading.normal)
         return Sensed(end, reading, tuple(found))
 
-    def state(self) -> dict[str, Any]:
+    def entry_fields(self) -> dict[str, Any]:
         pose, odometry = self._drive.pose, self.odometry
         return {
             "pose": (pose.x, pose.y, pose.z, pose.yaw, pose.pitch),

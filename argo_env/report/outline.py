@@ -44,7 +44,7 @@ def outline(solid: Solid, axes: tuple[int, int]) -> list[Point]:
 
 
 @lru_cache(maxsize=_SOLIDS)
-def heights(solid: Solid) -> tuple[float, float]:
+def height_range(solid: Solid) -> tuple[float, float]:
     """Return the lowest and the highest z (m) of the solid."""
     half = float(half_extents(solid)[2])
     return solid.center[2] - half, solid.center[2] + half
@@ -59,11 +59,13 @@ def on_floor(element: Element, z: float, storey: float) -> tuple[Solid, ...]:
     """
     low, high = z - 0.2, z + storey - 0.3
     if element.role in {Role.STAIR, Role.RAILING}:
-        ends = [end for solid in element.solids for end in heights(solid)]
+        ends = [end for solid in element.solids for end in height_range(solid)]
         return element.solids if low <= (min(ends) + max(ends)) / 2 < high else ()
     if element.role in {Role.GROUND, Role.DECK}:
-        return tuple(s for s in element.solids if low <= heights(s)[1] < high)
-    return tuple(s for s in element.solids if heights(s)[0] < high and heights(s)[1] > low + 0.2)
+        return tuple(s for s in element.solids if low <= height_range(s)[1] < high)
+    return tuple(
+        s for s in element.solids if height_range(s)[0] < high and height_range(s)[1] > low + 0.2
+    )
 
 
 def _hull(points: NDArray[np.float64]) -> list[Point]:

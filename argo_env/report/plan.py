@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from argo_compiler.il import EventKind
-from argo_env.report.outline import DRAWING_ORDER, Point, heights, on_floor, outline
+from argo_env.report.outline import DRAWING_ORDER, Point, height_range, on_floor, outline
 from argo_env.report.svg import Node, drawing, node, polyline
 from argo_env.report.timeline import finding_mark
-from argo_env.report.track import arrows, flag, stretches, track
+from argo_env.report.track import arrow_heads, flag, stretches, track
 from argo_env.run.record import PathSample, RunRecord
 from argo_env.site import Site, SiteCheckpoint
 from argo_env.site.shapes import Element, Role, Solid
@@ -153,7 +153,7 @@ def _path(canvas: Canvas, parts: list[list[PathSample]], record: RunRecord) -> l
     length = sum(math.dist((a.x, a.y), (b.x, b.y)) for part in parts for a, b in pairwise(part))
     if length <= _ARROWS_UP_TO:
         for part in parts:
-            drawn += arrows(part, canvas.at, 1.6, _ASIDE)
+            drawn += arrow_heads(part, canvas.at, 1.6, _ASIDE)
     return drawn + _flags(canvas, parts, record)
 
 
@@ -253,5 +253,5 @@ def elevation(site: Site, record: RunRecord) -> Node:
 
 def _height(element: Element) -> float:
     """Return the distance (m) from the lowest to the highest point of the element."""
-    ends = [end for solid in element.solids for end in heights(solid)]
+    ends = [end for solid in element.solids for end in height_range(solid)]
     return max(ends) - min(ends)

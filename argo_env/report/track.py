@@ -94,7 +94,7 @@ def shift_right(points: NDArray[np.float64], aside: float) -> NDArray[np.float64
     return np.asarray(points + aside * right)
 
 
-def arrows(
+def arrow_heads(
     samples: Sequence[PathSample],
     at: Callable[[float, float], Point],
     spacing: float,

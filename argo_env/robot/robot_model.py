@@ -60,7 +60,7 @@ class Joint:
         """
         if self.kind == "prismatic":
             shift = rotate(self.rotation, scale(self.axis, value))
-            return add(self.position, shift), self.rotation
+            return add_vectors(self.position, shift), self.rotation
         sin, cos = math.sin(value / 2), math.cos(value / 2)
         return self.position, multiply(self.rotation, (*scale(self.axis, sin), cos))
 
@@ -122,7 +122,7 @@ def rotate(q: Quaternion, v: Vector) -> Vector:
     return rx, ry, rz
 
 
-def add(a: Vector, b: Vector) -> Vector:
+def add_vectors(a: Vector, b: Vector) -> Vector:
     """Return the sum of two vectors."""
     return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 

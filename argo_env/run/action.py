@@ -307,7 +307,7 @@ class SimulatedAction:
             return None
         self._tried_to_read = True
         try:
-            self.measurement = self._setup.read(self._checkpoint_id(), self._now)
+            self.measurement = self._setup.read_checkpoint(self._checkpoint_id(), self._now)
         except PoorViewError as error:
             return self._try_next_view(str(error))
         except MeasurementError as error:

@@ -271,7 +271,7 @@ class RunLog:
         if entry.resumed:
             self.resumed.append(entry.t)
         if entry.sample:
-            self.sample(entry.t, entry.pose, entry.charge)
+            self.add_sample(entry.t, entry.pose, entry.charge)
 
     def with_entry(self, entry: Entry) -> "RunLog":
         """Return a copy of the log with one more entry."""
@@ -283,7 +283,7 @@ class RunLog:
         other.add(entry)
         return other
 
-    def sample(self, t: float, pose: PoseTuple, charge: float | None) -> None:
+    def add_sample(self, t: float, pose: PoseTuple, charge: float | None) -> None:
         """Add a point to the recorded path: time `t` (s), pose and battery charge (0 to 1)."""
         self._pending_samples.append((t, pose, charge))
 

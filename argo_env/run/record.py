@@ -18,7 +18,7 @@ from argo_compiler.il import Action, EventKind, Mission, Response
 from argo_env.drives.drive import Trouble
 from argo_env.faults.kinds import AnyFault
 from argo_env.formatting import clock, where
-from argo_env.run.verdict_line import Headline, headline
+from argo_env.run.verdict_line import Headline, run_headline
 from argo_env.site.shapes import Vector
 from argo_env.site.spec import Rect
 
@@ -477,7 +477,7 @@ class RunRecord(Model):
     @property
     def headline(self) -> Headline:
         """Headline of the run: its verdict and what was noticed, in one line."""
-        return headline(
+        return run_headline(
             self.result.verdict,
             success=self.result.success,
             ended=self.result.ended,

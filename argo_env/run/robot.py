@@ -90,10 +90,10 @@ class AnyRobot(Protocol):
         None if the robot is connected.
         """
 
-    def place(self, pose: BodyPose, now: float) -> None:
-        """Set the robot to `pose` at the start of a run, or when it continues, at time `now`.
+    def begin_at(self, pose: BodyPose, now: float) -> None:
+        """Begin or continue a run at time `now` (s) with the robot at `pose`.
 
-        A real robot stays where it is.
+        A simulated robot is set to that pose; a real robot stays where it is.
         """
 
     def apply_initial_state(self, initial: InitialState) -> None:
@@ -117,8 +117,8 @@ class AnyRobot(Protocol):
     def advance(self, step: int, now: float, action: RobotAction | None) -> Sensed:
         """Let time step number `step` pass, up to `now`, with `action` running."""
 
-    def state(self) -> dict[str, Any]:
+    def entry_fields(self) -> dict[str, Any]:
         """Return the fields of an entry that hold the robot's state, from its pose to contacts."""
 
     def clear_reported(self) -> None:
-        """Clear the mishaps and ended contacts that `state` has already reported."""
+        """Clear the mishaps and ended contacts that `entry_fields` has already reported."""

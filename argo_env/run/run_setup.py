@@ -106,7 +106,7 @@ class RunSetup:
     instruments: Instruments | None = None
     """displays of values that change over time; None: the values are constant"""
 
-    def read(self, checkpoint_id: int, now: float) -> Measurement:
+    def read_checkpoint(self, checkpoint_id: int, now: float) -> Measurement:
         """Read the checkpoint at time `now` (s) from the robot's pose.
 
         Raises MeasurementError if the sensor can't read it.

@@ -135,7 +135,7 @@ class SimulationState:
             events=tuple(LoggedEvent.from_event(self._with_abnormality(event)) for event in events),
             task=task,
             sample=sample,
-            **self._vehicle.state(),
+            **self._vehicle.entry_fields(),
         )
 
     def apply(self, entry: Entry) -> None:
@@ -181,7 +181,7 @@ class SimulationState:
                         interrupted = self.machine.paused or self.machine.reaction is not None
                         self.action.cancel(reason, interrupted=interrupted)
 
-    def replay(self, entry: Entry) -> None:
+    def replay_entry(self, entry: Entry) -> None:
         """Apply an entry of a journal, with the robot's odometry as it was then.
 
         Raises Invalid if the entry belongs to another run.

@@ -391,9 +391,9 @@ class Simulation(Closing):
         state.start()
         require_initial_state(state.machine, self._spec)
         for entry in past:
-            state.replay(entry)
+            state.replay_entry(entry)
         last = state.log.last
-        vehicle.place(last.body_pose if last else start, self.now)
+        vehicle.begin_at(last.body_pose if last else start, self.now)
         known = [(k.anomaly, BodyPose(*k.pose)) for k in (beginning.known if beginning else ())]
         known += [(anomaly, e.body_pose) for e in past for anomaly in e.found]
         if beginning or last:
@@ -491,12 +491,12 @@ class Simulation(Closing):
             sensed = vehicle.update_watches(step, state.now) if step in updates else None
             if sensed and sensed.found:
                 self._react(sensed)
-                return batch.poses(step - first - 1)
+                return batch.poses_until(step - first - 1)
             if step in samples and self._observes_samples:
                 self._commit(state.entry(sample=True))
             elif step in samples:  # no observer needs an entry
-                state.log.sample(state.now, *batch.sample(step - first))
-        return batch.poses(batch.steps - 1) if batch.steps else None
+                state.log.add_sample(state.now, *batch.pose_and_charge(step - first))
+        return batch.poses_until(batch.steps - 1) if batch.steps else None
 
     def _react(self, sensed: Sensed) -> None:
         """Commit entries of what a step has led to, and of the events that are due."""

@@ -80,11 +80,11 @@ class StepBatch:
         self._power = supply.predict(loads, self._poses[1:], time_step)
         self.steps = len(self._power)
 
-    def poses(self, count: int) -> PoseArray:
+    def poses_until(self, count: int) -> PoseArray:
         """Return the robot's poses after the first `count` steps; no poses if it stands still."""
         return self._poses[1 : 1 if self._ahead is None else count + 1]
 
-    def sample(self, step: int) -> tuple[PoseTuple, float | None]:
+    def pose_and_charge(self, step: int) -> tuple[PoseTuple, float | None]:
         """Return the robot's pose after `step` steps, and the battery's charge then, 0 to 1."""
         charge = self._supply.charge_after(self._power, step - 1)
         return pose_tuple_at(self._poses, step), charge
@@ -135,9 +135,9 @@ class Vehicle:
         """the action that was started last"""
         self._perception = Perception(setup.watches, site, setup.drive.time_step)
 
-    def place(self, pose: BodyPose, now: float) -> None:
-        """Set the robot to the pose at time `now` (s), and update the faults."""
-        self.setup.drive.place(pose)
+    def begin_at(self, pose: BodyPose, now: float) -> None:
+        """Begin or continue a run at time `now` (s): set the robot's pose and update the faults."""
+        self.setup.drive.set_pose(pose)
         self.update_faults(now)
 
     def apply_initial_state(self, initial: InitialState) -> None:
@@ -220,7 +220,7 @@ class Vehicle:
         found = self._perception.update(step, now, self.setup.drive.pose)
         return Sensed(found=found) if found else _NOTHING_SENSED
 
-    def state(self) -> dict[str, Any]:
+    def entry_fields(self) -> dict[str, Any]:
         """Return the robot's state, as fields of an entry of the log.
 
         These are pose, distance, climb, charge and open contacts, and the mishaps and ended
@@ -238,7 +238,7 @@ class Vehicle:
         }
 
     def clear_reported(self) -> None:
-        """Clear the mishaps and ended contacts that `state` has already reported."""
+        """Clear the mishaps and ended contacts that `entry_fields` has already reported."""
         self.odometry.ended_contacts.clear()
         self.odometry.mishaps.clear()
 

@@ -41,7 +41,7 @@ class Headline(Model):
         return f"{self.word}: {self.text}."
 
 
-def headline(
+def run_headline(
     verdict: str,
     *,
     success: bool,

@@ -19,7 +19,7 @@ class SolidIndex:
         halves = np.array([half_extents(s) for s in self._solids])
         self._low, self._high = centers - halves, centers + halves
 
-    def between(self, low: NDArray[np.float64], high: NDArray[np.float64]) -> list[Solid]:
+    def touching_box(self, low: NDArray[np.float64], high: NDArray[np.float64]) -> list[Solid]:
         """Return, in order, solids whose bounding boxes touch the box from `low` to `high` (m)."""
         inside = ((self._high >= low) & (self._low <= high)).all(axis=1)
         return [self._solids[k] for k in np.flatnonzero(inside).tolist()]

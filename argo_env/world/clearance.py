@@ -48,7 +48,7 @@ class SolidBounds:
         """Return which of these boxes overlap with one box."""
         return np.asarray(((self.low <= box.high) & (self.high >= box.low)).all(axis=-1))
 
-    def select(self, mask: NDArray[np.bool_]) -> "SolidBounds":
+    def select_boxes(self, mask: NDArray[np.bool_]) -> "SolidBounds":
         """Return the boxes that the mask selects."""
         return SolidBounds(self.low[mask], self.high[mask])
 
@@ -142,8 +142,8 @@ class Clearance:
         self._gathered_around = SolidBounds(here - _GATHER_RANGE, here + _GATHER_RANGE)
         reach = _radius(full) + full.high[2] + 2 * _GATHER_RANGE
         near = self._solids.overlapping(SolidBounds(here - reach, here + reach))
-        self._walkable_solids = self._solids.select(near & self._are_walkable)
-        self._other_solids = self._solids.select(near & ~self._are_walkable)
+        self._walkable_solids = self._solids.select_boxes(near & self._are_walkable)
+        self._other_solids = self._solids.select_boxes(near & ~self._are_walkable)
 
 
 def _is_level(pose: BodyPose) -> bool:

@@ -217,7 +217,7 @@ class World(Bodies):
             )
         return contacts
 
-    def heights(
+    def heights_below(
         self, points: NDArray[np.float64], below: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """Return the height (m) of the first solid under each of `points`, shape (n, 2).
@@ -231,7 +231,7 @@ class World(Bodies):
             [hit[3][2] if hit[0] >= 0 else z for hit, z in zip(hits, depth.tolist(), strict=True)]
         )
 
-    def ranges(self, origin: Vector, ends: NDArray[np.float64]) -> NDArray[np.float64]:
+    def ray_lengths(self, origin: Vector, ends: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the distance (m) from `origin` to the first solid towards each of `ends` (n, 3).
 
         Rays pass through the robot. The distance is inf where there is nothing up to the end.
@@ -283,7 +283,7 @@ class World(Bodies):
             return None
         return self._name_at(body, link, point)
 
-    def picture(
+    def render_picture(
         self, view: Sequence[float], projection: Sequence[float], size: tuple[int, int]
     ) -> NDArray[np.uint8]:
         """Return a camera's picture in daylight: red, green and blue, shape (height, width, 3).

@@ -89,7 +89,7 @@ def test_a_run_from_python():
 def test_a_run_of_an_evaluation():
     site = open_site("yard.yaml")
     plan = Evaluation(PLAN, site, seeds=range(2)).plan
-    order = WorkOrder("k", plan.cases[0], plan.run(0, 1).spec, {})
+    order = WorkOrder("k", plan.cases[0], plan.planned_run(0, 1).spec, {})
     assert counted(lambda: execute_run(order, site)) == ONCE
 
 

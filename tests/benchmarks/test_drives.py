@@ -13,7 +13,7 @@ from argo_env.planning import open_site
 from argo_env.planning.catalog import make_catalog
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import Calibration, MotionPace
-from benchmarks.drives import Run, error_table, random_mission, run, time_path
+from benchmarks.drives import Run, error_table, random_mission, run_seed, time_path
 from benchmarks.fitting import fit_calibration, prediction_errors
 
 
@@ -42,7 +42,7 @@ def test_missions_pass_the_checks_and_depend_on_their_seed(navigator):
 
 
 def test_one_mission_is_run(navigator):
-    result = run(navigator, 3, "route")
+    result = run_seed(navigator, 3, "route")
     assert result.verdict is None
     assert result.simulated > 100
 
@@ -85,7 +85,7 @@ class StuckDrive(DriveWithCurrentMotion):
 
 
 def put_at(drive, pose):
-    drive.place(BodyPose(pose.x, pose.y, pose.z, pose.yaw))
+    drive.set_pose(BodyPose(pose.x, pose.y, pose.z, pose.yaw))
     return drive
 
 

@@ -154,7 +154,7 @@ class Scene:
 
     def _in_sight(self, eye: NDArray[np.float64], points: NDArray[np.float64]) -> float:
         x, y, z = eye.tolist()
-        return float(np.isinf(self.world.ranges((x, y, z), points)).mean())
+        return float(np.isinf(self.world.ray_lengths((x, y, z), points)).mean())
 
 
 def face_points(instrument: Instrument) -> NDArray[np.float64]:

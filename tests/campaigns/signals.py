@@ -57,7 +57,7 @@ def random_drives(
         rng = generator(number, "drive")
         drive = KinematicDrive(world, navigator.robot, STEP)
         dock = navigator.snap(next(iter(navigator.site.docks.values())))
-        drive.place(BodyPose(dock.x, dock.y, dock.z, dock.yaw))
+        drive.set_pose(BodyPose(dock.x, dock.y, dock.z, dock.yaw))
         track: Track = [(0.0, drive.pose)]
 
         def record(track: Track = track, drive: KinematicDrive = drive) -> None:

@@ -79,7 +79,7 @@ class TrackedBody(Connection):
         self._robot = robot
         self._terrain = Terrain(world)
         with tempfile.TemporaryDirectory() as folder:
-            self._ground = self._load(self._terrain.write(folder), fixed=True)
+            self._ground = self._load(self._terrain.write_urdf(folder), fixed=True)
             model = Path(folder) / "robot.urdf"
             text = lump_links(robot_folder() / robot.urdf, robot.arm_stowed, FLIPPERS, mass_scale)
             model.write_text(text, encoding="utf-8")
@@ -212,7 +212,7 @@ class TrackedBody(Connection):
         self._return_to(state)
         memory = (
             self._command, self._speed, self._turn, self._push,
-            tuple(self._belts.bends), tuple(self._contacts), self._contact_log.state(),
+            tuple(self._belts.bends), tuple(self._contacts), self._contact_log.deepest_touches(),
         )  # fmt: skip
         return Snapshot(state, memory)
 

@@ -183,8 +183,8 @@ class TrackedDrive(NonCopyable):
         """Motion of the path that is under way; None without a path."""
         return self._follower.motion if self._follower else None
 
-    def place(self, pose: BodyPose) -> None:
-        """Place the robot at the pose, at rest; it settles on the ground within a moment."""
+    def set_pose(self, pose: BodyPose) -> None:
+        """Set the robot to the pose, at rest; it settles on the ground within a moment."""
         self._clear()
         self.incidents.clear()
         self._flippers = Flippers()

@@ -65,7 +65,7 @@ class Follower:
                 if abs(error) > _ALIGNED or abs(velocity[1]) > _TURNED:
                     return FollowerCommand(0.0, self._turning(motion, error), motion)
             else:
-                left = self.remaining(motion, pose)
+                left = self.distance_to_stop(motion, pose)
                 passing = self._continues()
                 if left > (0.0 if passing else _NEAR):
                     return self._driving(motion, pose, left)
@@ -92,7 +92,7 @@ class Follower:
         short = end.model_copy(update={"x": end.x - left * ahead[0], "y": end.y - left * ahead[1]})
         return [Motion(short, end, gear=1 if left > 0 else -1)]
 
-    def remaining(self, motion: Motion, pose: BodyPose) -> float:
+    def distance_to_stop(self, motion: Motion, pose: BodyPose) -> float:
         """Return the distance (m) to the point where a straight motion should stop.
 
         It is horizontal, along the motion's line, and less than 0 beyond that point. The point is

@@ -49,7 +49,7 @@ class Terrain:
         """
         return self._index[part].nearest_each(points)
 
-    def write(self, folder: str) -> Path:
+    def write_urdf(self, folder: str) -> Path:
         """Write the URDF to the folder, and return its path."""
         path = Path(folder) / "terrain.urdf"
         path.write_text(to_urdf(self.name, self._elements, drawn=False), encoding="utf-8")
@@ -119,18 +119,18 @@ class ContactLog:
 
     def pop(self) -> tuple[Touch, ...]:
         """Return the contacts since the last call, and clear the log."""
-        touches = tuple(touch for _, touch in self.state())
+        touches = tuple(touch for _, touch in self.deepest_touches())
         self._deepest = {}
         return touches
 
-    def state(self) -> tuple[tuple[tuple[str, str], Touch], ...]:
+    def deepest_touches(self) -> tuple[tuple[tuple[str, str], Touch], ...]:
         """Return the contacts since the last `pop` in a form for `restore`."""
         if self._pending:
             self._look_up()
         return tuple(self._deepest.items())
 
     def restore(self, state: tuple[tuple[tuple[str, str], Touch], ...]) -> None:
-        """Set the log to a state that `state` returned."""
+        """Set the log to a state that `deepest_touches` returned."""
         self._pending, self._deepest = [], dict(state)
 
     def _look_up(self) -> None:

@@ -127,7 +127,7 @@ class Difference:
         return self.p_value <= 1.0 - LEVEL
 
 
-def difference(
+def mean_difference(
     first: NDArray[np.float64], second: NDArray[np.float64], seed: int = 0, level: float = LEVEL
 ) -> Difference:
     """Compute the difference of the means of two plans, from one value in each world.

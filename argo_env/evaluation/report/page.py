@@ -24,7 +24,7 @@ from argo_env.evaluation.plots import (
     paired_differences,
     pairs_that_differ,
 )
-from argo_env.evaluation.report.picture import picture
+from argo_env.evaluation.report.picture import render_plot
 from argo_env.evaluation.report.sections import (
     failing_runs,
     floors_with_failures,
@@ -34,11 +34,11 @@ from argo_env.evaluation.report.sections import (
     reasons,
 )
 from argo_env.evaluation.report.texts import (
-    between,
     chance,
     counted,
-    headline,
+    evaluation_headline,
     in_percent,
+    share_interval,
     time_or,
 )
 from argo_env.evaluation.results import EvaluationResults, duration_curve
@@ -85,12 +85,14 @@ def evaluation_page(results: EvaluationResults, folder: Path) -> str:
     blocks = [(names[plan], results.by_seeds(plan)) for plan in plans]
     return _template("evaluation.html.j2").render(
         name=results.plan.name,
-        headline=headline(results),
+        headline=evaluation_headline(results),
         plans=sections,
         verdicts=[(verdict, names[verdict.plan]) for verdict in results.verdicts],
         outcomes=results.outcomes,
         lost=results.lost,
-        forest=picture(f"Success rates with intervals: {rates}", lambda: forest_of_rates(results))
+        forest=render_plot(
+            f"Success rates with intervals: {rates}", lambda: forest_of_rates(results)
+        )
         if results.rows
         else None,
         required=any(r.quantity == "success" for r in results.plan.stopping.require),
@@ -98,11 +100,13 @@ def evaluation_page(results: EvaluationResults, folder: Path) -> str:
         heat_maps=[
             (names[plan], _heat_map(results, plan, names[plan])) for plan in _with_faults(results)
         ],
-        durations=picture("Share of runs that have succeeded by a time", lambda: durations(results))
+        durations=render_plot(
+            "Share of runs that have succeeded by a time", lambda: durations(results)
+        )
         if any(row.success for row in results.rows)
         else None,
         curves=[(names[plan], duration_curve(results, plan)) for plan in plans],
-        delays=picture(
+        delays=render_plot(
             f"Delays until {counted(len(delays), 'kind')} of faults were found",
             lambda: detection_delays(results),
         )
@@ -150,12 +154,12 @@ def comparison_page(
         test="McNemar's exact test"
         if worlds == pairs.pairs
         else "A test over worlds, which swaps the plans at random",
-        sides=picture(
+        sides=render_plot(
             f"Pairs in which one plan succeeds alone: A in {pairs.first_only}, B in "
             f"{pairs.second_only}",
             lambda: pairs_that_differ(compared),
         ),
-        histogram=picture(
+        histogram=render_plot(
             f"Differences in time, world by world; {compared.duration.value:+.1f} s on average",
             lambda: paired_differences(compared),
         )
@@ -179,7 +183,7 @@ def _with_faults(results: EvaluationResults) -> list[PlanName]:
 
 def _heat_map(results: EvaluationResults, plan: PlanName, name: str) -> Markup:
     alt = f"Outcomes of the runs of {name}, by faults"
-    return picture(alt, lambda: outcomes_by_faults(results, plan=plan))
+    return render_plot(alt, lambda: outcomes_by_faults(results, plan=plan))
 
 
 def _delay_summary(delays: list[float | None]) -> tuple[int, int, float | None, float | None]:
@@ -210,5 +214,5 @@ def _template(name: str) -> Template:
     }  # fmt: skip
     environment.filters.update(filters)
     style = (here / "style.css").read_text(encoding="utf-8")
-    environment.globals.update(outcome=RunOutcome, between=between, style=style)
+    environment.globals.update(outcome=RunOutcome, share_interval=share_interval, style=style)
     return environment.get_template(name)

@@ -33,7 +33,7 @@ _LONG_DECIMAL = re.compile(r"(\d+\.\d\d)\d+")
 _REFERENCE = re.compile(r"#([\w-]+)")
 
 
-def picture(alt: str, draw: Callable[[], "Axes"]) -> Markup:
+def render_plot(alt: str, draw: Callable[[], "Axes"]) -> Markup:
     """Return the plot that `draw` draws on a new figure, as an SVG element.
 
     `alt` describes the plot in words. Equal plots with equal descriptions give equal text.

@@ -18,8 +18,8 @@ from argo_env.evaluation.folder import FAILING
 from argo_env.evaluation.plots import failure_places
 from argo_env.evaluation.quantities import QUANTITIES
 from argo_env.evaluation.rates import PlanRate, success, world_shares
-from argo_env.evaluation.report.picture import picture
-from argo_env.evaluation.report.texts import counted, meaning, ranges
+from argo_env.evaluation.report.picture import render_plot
+from argo_env.evaluation.report.texts import counted, meaning, number_ranges
 from argo_env.evaluation.results import (
     EvaluationResults,
     FailureCluster,
@@ -203,7 +203,7 @@ def _draw_floor(results: EvaluationResults, site: Site, floor: int) -> Markup | 
         return None
     failed = sum(row.floor == floor for row in results.rows)
     alt = f"Drawing of floor {floor} of {site.name}: {counted(failed, 'run')} failed there"
-    return picture(alt, lambda: failure_places(results, site, floor))
+    return render_plot(alt, lambda: failure_places(results, site, floor))
 
 
 def how_it_was_made(results: EvaluationResults) -> list[tuple[str, list[str]]]:
@@ -223,7 +223,7 @@ def how_it_was_made(results: EvaluationResults) -> list[tuple[str, list[str]]]:
     if plan.added:
         made.append(("On the site", [plan.added]))
     most_runs = len(cases) * len(plan.seeds)
-    made.append(("Seeds", [ranges(plan.seeds)]))
+    made.append(("Seeds", [number_ranges(plan.seeds)]))
     made.append(("Runs", [f"{len(results.rows)} of at most {most_runs}"]))
     if results.cut_short:
         made.append(("Ended", ["early; only worlds with all of their runs are reported"]))

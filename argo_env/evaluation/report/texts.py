@@ -14,7 +14,7 @@ def in_percent(share: float) -> str:
     return "" if math.isnan(share) else f"{100 * share:.1f} %"
 
 
-def between(low: float, high: float) -> str:
+def share_interval(low: float, high: float) -> str:
     """Return two shares (0 to 1) as an interval in percent."""
     return f"{100 * low:.1f} to {100 * high:.1f} %"
 
@@ -26,7 +26,7 @@ def chance(p_value: float) -> str:
     return f"{p_value:.3f}" if p_value >= 0.001 else "below 0.001"
 
 
-def ranges(numbers: Sequence[int]) -> str:
+def number_ranges(numbers: Sequence[int]) -> str:
     """Return whole numbers as ranges, such as `0 to 9, 12`; at most 20 ranges are listed."""
     parts: list[list[int]] = []
     for number in sorted(numbers):
@@ -48,7 +48,7 @@ def counted(number: int, what: str) -> str:
     return f"{number} {what}{'' if number == 1 else 's'}"
 
 
-def headline(results: EvaluationResults) -> tuple[str, str]:
+def evaluation_headline(results: EvaluationResults) -> tuple[str, str]:
     """Return the headline of a report and its rating: `good`, `bad` or `notice`.
 
     The headline states whether the requirements are met or, without any, how many runs succeeded.

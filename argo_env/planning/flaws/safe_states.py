@@ -50,7 +50,7 @@ class SafeStates:
     @cached_property
     def positions(self) -> NDArray[np.float64]:
         """Positions x, y and z (m) of the states, shape (n, 3)."""
-        return self.lattice.poses()[:, :3]
+        return self.lattice.state_poses()[:, :3]
 
     def is_on_floor(self, floor: FloorSpec) -> NDArray[np.bool_]:
         """Return True for each state on the deck of a floor."""

@@ -180,7 +180,7 @@ def _find_hiding_element(site: Site, cameras: NDArray[np.float64], target: Vecto
     origins = cameras[:: max(1, len(cameras) // _SAMPLED)]
     low = np.minimum(origins.min(axis=0), target)
     high = np.maximum(origins.max(axis=0), target)
-    near = set(map(id, site.solids.between(low, high)))
+    near = set(map(id, site.solids.touching_box(low, high)))
     hidden: dict[str, int] = {}
     for element in site.elements:
         behind = np.zeros(len(origins), dtype=bool)

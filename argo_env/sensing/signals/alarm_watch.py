@@ -78,7 +78,7 @@ class AlarmWatch:
         self._idle_updates = (self._idle_updates + 1) % IDLE_UPDATES
         if self._idle_updates != 1 and not any(has_tone for _, has_tone in self._recordings):
             return ()
-        tone = has_alarm_tone(self._microphone.record(now, pose, RECORDING))
+        tone = has_alarm_tone(self._microphone.record_sound(now, pose, RECORDING))
         self._recordings.append((now, tone))
         if tone:
             self._last_tone = now

@@ -43,7 +43,7 @@ class GasSensor:
         self._zero = self.DRIFT * float(rng.standard_normal())
         self._last: float | None = None
 
-    def read(self, now: float, pose: BodyPose) -> float:
+    def measure_concentration(self, now: float, pose: BodyPose) -> float:
         """Return the concentration that the sensor shows at time `now` (s), in ppm."""
         step = 0.0 if self._last is None else now - self._last
         self._last = now
@@ -78,7 +78,7 @@ class UltrasonicMicrophone:
         self._world = world
         self._rng = rng
 
-    def read(self, pose: BodyPose) -> float:
+    def measure_level(self, pose: BodyPose) -> float:
         """Return the sound level in dB."""
         noise = float(self._rng.standard_normal())
         bang, height = map(float, self._rng.random(2))
@@ -95,7 +95,7 @@ class UltrasonicMicrophone:
         sight = np.array(leak.place) - microphone
         distance = float(np.linalg.norm(sight))
         # The leak lies in the surface of the leaking part, which therefore is no obstacle.
-        range_to_solid = self._world.ranges(to_vector(microphone), np.array([leak.place]))[0]
+        range_to_solid = self._world.ray_lengths(to_vector(microphone), np.array([leak.place]))[0]
         return leak_level(leak, distance, bool(range_to_solid < distance - 0.2))
 
 
@@ -181,7 +181,10 @@ class GasWatch:
         self._valid_from = now + WARMING_UP
 
     def update(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:
-        ppm, level = self._gas_sensor.read(now, pose), self._microphone.read(pose)
+        ppm, level = (
+            self._gas_sensor.measure_concentration(now, pose),
+            self._microphone.measure_level(pose),
+        )
         has_gas, has_hiss = self._gas.update(ppm), self._hiss.update(level)
         if not has_gas and not has_hiss:
             if now >= self._valid_from:

@@ -121,7 +121,7 @@ class ThermalCamera:
 
     def _is_visible(self, origin: NDArray[np.float64], spot: HotSpot) -> bool:
         distance = float(np.linalg.norm(np.array(spot.place) - origin))
-        range_to_solid = self._world.ranges(to_vector(origin), np.array([spot.place]))[0]
+        range_to_solid = self._world.ray_lengths(to_vector(origin), np.array([spot.place]))[0]
         return bool(range_to_solid >= distance - spot.radius - 0.05)
 
 
@@ -245,7 +245,7 @@ def find_spots(image: ThermalImage, site_map: SiteMap, air: float) -> tuple[Spot
         depths, solids = depths[: len(probed)], solids[: len(probed)]
         if not np.isfinite(depths).any():
             continue
-        allowed = max(highest_temperature(site_map.element(k).role, air) for k in solids_hit)
+        allowed = max(highest_temperature(site_map.element_of(k).role, air) for k in solids_hit)
         if float(np.median(warmth[probed])) <= allowed + MARGIN:
             continue
         nearest = int(np.argmin(depths))
@@ -253,7 +253,7 @@ def find_spots(image: ThermalImage, site_map: SiteMap, air: float) -> tuple[Spot
         spots.append(
             Spot(
                 to_vector(image.origin + depths[nearest] * ray),
-                site_map.element(int(solids[nearest])).name,
+                site_map.element_of(int(solids[nearest])).name,
                 float(warmth.max()),
             )
         )

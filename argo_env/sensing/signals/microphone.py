@@ -76,7 +76,7 @@ class Microphone:
         self._positions = pump_positions(surroundings.site)
         self._rng = rng
 
-    def record(self, now: float, pose: BodyPose, duration: float) -> NDArray[np.float32]:
+    def record_sound(self, now: float, pose: BodyPose, duration: float) -> NDArray[np.float32]:
         """Record for `duration` (s) from time `now` (s) on; return Pa, RATE samples a second."""
         count = round(duration * RATE)
         x, y, z = to_site(pose, NOSE).tolist()

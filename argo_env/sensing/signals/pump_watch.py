@@ -155,7 +155,7 @@ class PumpWatch:
         if all(math.dist(listener, position) > NEAR for position in self._positions.values()):
             self._recordings.clear()
             return ()
-        samples = self._microphone.record(now, pose, RECORDING)
+        samples = self._microphone.record_sound(now, pose, RECORDING)
         band_power = power_above_lines(samples)
         if band_power is None:
             return ()

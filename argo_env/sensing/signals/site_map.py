@@ -33,7 +33,7 @@ class SiteMap:
         """
         return self._rays.first_hits(origin, directions, reach)
 
-    def element(self, solid: int) -> Element:
+    def element_of(self, solid: int) -> Element:
         """Return the element that a solid belongs to."""
         return self._rays.elements[solid]
 

@@ -58,7 +58,7 @@ class Fit:
     """0 to 1, the share of the face that looks as drawn; dark and bright parts count equally"""
 
 
-def sample(image: NDArray[np.float32], pixels: NDArray[np.float64]) -> NDArray[np.float64]:
+def sample_image(image: NDArray[np.float32], pixels: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the image's values at `pixels` (column and row), shape (..., 2); NaN outside of it."""
     import cv2
 
@@ -143,7 +143,9 @@ def refine(
 
 def _brightness(photo: Photo, template: Template, pose: FacePose) -> NDArray[np.float64]:
     """Return the picture's brightness at the template's points; NaN outside of it."""
-    return sample(photo.brightness, photo.lens.project(pose.to_site(template.points), photo.pose))
+    return sample_image(
+        photo.brightness, photo.lens.project(pose.to_site(template.points), photo.pose)
+    )
 
 
 def _sample_template(
@@ -151,8 +153,8 @@ def _sample_template(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the picture's brightness at the template's points, and the weights of the points."""
     pixels = photo.lens.project(pose.to_site(template.points), photo.pose)
-    values = sample(photo.brightness, pixels)
-    red = sample(photo.redness, pixels)
+    values = sample_image(photo.brightness, pixels)
+    red = sample_image(photo.redness, pixels)
     seen = np.isfinite(values) & ~(red > 0.35)
     # Points outside of the picture count as a mismatch; red points don't count at all.
     outside = ~np.isfinite(values)

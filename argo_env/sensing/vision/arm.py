@@ -34,7 +34,7 @@ class CameraPose:
     """columns are the camera's axes as in OpenCV: right, down, and along the line of sight"""
 
 
-def forward(joints: NDArray[np.float64], pose: BodyPose) -> CameraPose:
+def forward_kinematics(joints: NDArray[np.float64], pose: BodyPose) -> CameraPose:
     """Return the camera's pose for joints (rad, ordered as `JOINTS`) of the robot at `pose`."""
     yaw, shoulder, elbow, wrist, pan = joints.tolist()
     reach = _UPPER_ARM * math.sin(shoulder) + _FOREARM * math.sin(shoulder + elbow)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from argo_env.sensing.vision.align import FacePose, Fit, sample
+from argo_env.sensing.vision.align import FacePose, Fit, sample_image
 from argo_env.sensing.vision.instrument import Instrument
 from argo_env.sensing.vision.photo import Photo
 
@@ -41,7 +41,7 @@ def find_indicator(
 
     def redness(points: np.ndarray) -> np.ndarray:
         spots = photo.lens.project(pose.to_site(indicator.move(points, positions)), photo.pose)
-        values = sample(photo.redness, spots)
+        values = sample_image(photo.redness, spots)
         return np.where(np.isfinite(values), values, 0.0)
 
     body = redness(indicator.body)

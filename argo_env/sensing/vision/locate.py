@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_env.sensing.vision.align import FacePose, Fit, compare, refine, sample
+from argo_env.sensing.vision.align import FacePose, Fit, compare, refine, sample_image
 from argo_env.sensing.vision.candidates import find_candidates
 from argo_env.sensing.vision.faces import PIXELS_PER_METRE
 from argo_env.sensing.vision.instrument import (
@@ -199,8 +199,8 @@ def likely_rolls(
     """
     faces = _rolled_faces(instrument, blur)
     spots = photo.lens.project(pose.to_site(faces.template.points), photo.pose)
-    values = sample(photo.brightness, spots)
-    red = sample(photo.redness, spots)
+    values = sample_image(photo.brightness, spots)
+    red = sample_image(photo.redness, spots)
     seen = np.isfinite(values) & ~(red > 0.35)
     if seen.sum() < len(seen) / 4:
         return []

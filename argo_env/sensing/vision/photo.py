@@ -42,7 +42,7 @@ def take_picture(
     """
     import cv2
 
-    picture = world.picture(_view(pose), _projection(lens), (lens.size, lens.size))
+    picture = world.render_picture(_view(pose), _projection(lens), (lens.size, lens.size))
     blurred = cv2.GaussianBlur(
         picture.astype(np.float32) / 255, (0, 0), 0.3 + rng.uniform(0.0, _MAX_BLUR - 0.3)
     )

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import SensorSpec
 from argo_env.sensing.vision.align import FacePose
-from argo_env.sensing.vision.arm import JOINTS, CameraPose, forward, inverse
+from argo_env.sensing.vision.arm import JOINTS, CameraPose, forward_kinematics, inverse
 from argo_env.site import Site
 from argo_env.site.shapes import Solid, crossing, half_extents
 from argo_env.world.world import World
@@ -88,7 +88,9 @@ def plan_views(
                 sight = eyes[k] - face.center
                 distance = float(np.linalg.norm(sight))
                 cosine = float(sight @ face.normal) / distance
-                yield ArmView(joints, forward(joints, pose), math.acos(min(1.0, cosine)), distance)
+                yield ArmView(
+                    joints, forward_kinematics(joints, pose), math.acos(min(1.0, cosine)), distance
+                )
                 break
 
 

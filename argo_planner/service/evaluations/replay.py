@@ -56,7 +56,7 @@ def replay_run(request: ReplayRequest, folder: Path, report: ReportProgress) -> 
     if plan is None or row is None:
         raise NotFound(f"the evaluation has no run {request.key[:40]!r}")
     case = next(k for k, case in enumerate(plan.cases) if case.faults == row.faults)
-    spec = plan.run(case, row.seed).spec
+    spec = plan.planned_run(case, row.seed).spec
     collector = _EntryCollector()
     record = simulate(spec, request.evaluation.open_site(), observers=(collector,))
     last = record.path[-1] if record.path else None

@@ -134,7 +134,7 @@ def obstacle_blockages(obstacle: Obstacle, navigator: Navigator) -> list[Blockag
 def _blocked_levels(obstacle: Obstacle, rects: Sequence[Rect], navigator: Navigator) -> list[float]:
     """Return heights in m that, with LAYER above and below each, contain the blocked surface."""
     surface = navigator.surface
-    x, y, z = surface.positions().T
+    x, y, z = surface.cell_positions().T
     under = np.zeros(surface.size, dtype=bool)
     for x0, y0, x1, y1 in rects:
         half = CELL / 2

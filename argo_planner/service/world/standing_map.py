@@ -194,7 +194,7 @@ def _codes_without_obstacles(navigator: Navigator) -> NDArray[np.uint8]:
         stencil = footprint_stencil(robot.footprint, heading, MARGIN)
         for first in range(0, surface.size, _CHUNK):
             cells = np.arange(first, min(first + _CHUNK, surface.size))
-            z = stencil.heights(surface, cells)
+            z = stencil.surface_heights(surface, cells)
             can_stand = footprint_rise(z, stencil, heading) <= LEVEL
             slope_codes = np.where(can_stand, Ground.CUT_OFF, Ground.TOO_STEEP)
             fits = np.isfinite(z.sum(axis=0))

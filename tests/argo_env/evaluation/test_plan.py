@@ -15,7 +15,7 @@ def key_of(plan, **changes):
     case = plan.cases[0]
     spec = case.spec.model_copy(update=changes)
     changed = plan.model_copy(update={"cases": (case.model_copy(update={"spec": spec}),)})
-    return changed.key(changed.run(0, 5))
+    return changed.key(changed.planned_run(0, 5))
 
 
 def test_a_key_depends_on_all_that_a_run_depends_on(plan, monkeypatch):
@@ -25,10 +25,10 @@ def test_a_key_depends_on_all_that_a_run_depends_on(plan, monkeypatch):
         key_of(plan, sensor="camera"),
         key_of(plan, values={3: 1.5}),
         key_of(plan, mission=plan.cases[0].spec.mission.model_copy(update={"max_duration": 9.0})),
-        plan.key(plan.run(0, 6)),
+        plan.key(plan.planned_run(0, 6)),
     }
     varied = plan.model_copy(update={"variation": Variation(speed=(0.8, 0.9))})
-    keys.add(varied.key(varied.run(0, 5)))
+    keys.add(varied.key(varied.planned_run(0, 5)))
     monkeypatch.setattr("argo_env.evaluation.plan.__version__", "99")
     keys.add(key_of(plan))
     assert len(keys) == 8
@@ -39,10 +39,10 @@ def test_a_key_is_the_same_in_another_process(plan, tmp_path):
     program = (
         "import sys\nfrom argo_env.evaluation.plan import EvaluationPlan\n"
         "plan = EvaluationPlan.model_validate_json(open(sys.argv[1]).read())\n"
-        "print(plan.key(plan.run(0, 5)))"
+        "print(plan.key(plan.planned_run(0, 5)))"
     )
     process = run_python("-c", program, tmp_path / "plan.json")
-    assert process.stdout.strip() == plan.key(plan.run(0, 5))
+    assert process.stdout.strip() == plan.key(plan.planned_run(0, 5))
 
 
 @pytest.mark.parametrize(

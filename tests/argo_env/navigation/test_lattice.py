@@ -20,7 +20,7 @@ def some(count, size, seed):
 
 
 def test_every_cell_lies_on_the_site(surface, umad_world):
-    positions = surface.positions()
+    positions = surface.cell_positions()
     up = np.array([0.0, 0.0, 0.3])
     hits = umad_world.rays(positions + up, positions - up)
     assert {material for material, _ in hits} == FLOOR_MATERIALS
@@ -39,7 +39,7 @@ def obstructing_materials(world, center, headroom, obstacles):
 
 
 def test_cells_are_free_of_obstacles(surface, umad_world, robot, obstacles):
-    for center in surface.positions()[some(1500, surface.size, seed=1)]:
+    for center in surface.cell_positions()[some(1500, surface.size, seed=1)]:
         # A rail's corner may reach into a cell between two samples.
         half = CELL / 2 - 0.015
         assert not umad_world.touched(
@@ -75,12 +75,12 @@ def test_decks_are_traversable_except_at_obstacles(umad, surface, umad_world, ro
 
 def test_decks_over_each_other_are_layers(umad, surface):
     """The north aisle is on every upper floor, above the slab."""
-    at = (np.abs(surface.positions()[:, :2] - [6.05, 10.45]) < 0.01).all(axis=1)
+    at = (np.abs(surface.cell_positions()[:, :2] - [6.05, 10.45]) < 0.01).all(axis=1)
     assert surface.z[at] == pytest.approx([f.z for f in umad.spec.floors])
 
 
 def test_openings_have_no_cells(umad, surface):
-    x, y, z = surface.positions().T
+    x, y, z = surface.cell_positions().T
     openings = [(f.z, r) for f in umad.spec.floors for r in f.openings.values()]
     assert openings
     for floor_z, (x0, y0, x1, y1) in openings:
@@ -101,7 +101,7 @@ def test_links_lead_to_the_neighbour_and_back(surface, robot):
 
 def test_consecutive_treads_are_linked(umad, surface):
     """Links lead from the cell in the middle of each tread to the next tread."""
-    x, y, z = surface.positions().T
+    x, y, z = surface.cell_positions().T
     checked = 0
     for element in umad.elements:
         if element.role != Role.STAIR:
@@ -130,7 +130,7 @@ def test_the_whole_footprint_is_free_in_every_state(lattice, umad_world, robot, 
     flat = np.flatnonzero(np.abs(lattice.rise) < 1e-6)
     chosen = np.random.default_rng(2).choice(flat, 1500, replace=False)
     low, high = footprint_box(robot, 0.06, robot.driving_height - 0.01)
-    for x, y, z, yaw in lattice.poses()[chosen]:
+    for x, y, z, yaw in lattice.state_poses()[chosen]:
         touched = umad_world.touched(low, high, (x, y, z), yaw, obstacles)
         assert not touched, (x, y, z, yaw, touched)
 
@@ -143,7 +143,7 @@ def test_the_narrowest_aisle_admits_the_robot_along_it_only(
     low, high = footprint_box(robot, 0.06, robot.driving_height - 0.01)
     at = (3.95, 5.55, 5.0)
     assert umad_world.touched(low, high, at, np.radians(degrees)) - FLOOR_MATERIALS == touched
-    (cell,) = np.flatnonzero(np.abs(lattice.surface.positions() - at).max(axis=1) < 0.01)
+    (cell,) = np.flatnonzero(np.abs(lattice.surface.cell_positions() - at).max(axis=1) < 0.01)
     assert (lattice.state_of[cell, degrees // 45] >= 0) == (not touched)
 
 
@@ -155,7 +155,7 @@ def test_the_whole_footprint_is_supported_in_every_state(lattice, umad_world, ro
     )
     flat = np.flatnonzero(np.abs(lattice.rise) < 1e-6)
     chosen = np.random.default_rng(3).choice(flat, 1000, replace=False)
-    poses = lattice.poses()[chosen]
+    poses = lattice.state_poses()[chosen]
     cos, sin = np.cos(poses[:, 3])[:, None], np.sin(poses[:, 3])[:, None]
     x = poses[:, 0, None] + along.ravel() * cos - left.ravel() * sin
     y = poses[:, 1, None] + along.ravel() * sin + left.ravel() * cos
@@ -181,7 +181,7 @@ def test_every_state_has_its_cell_and_heading(lattice):
 def test_moves_are_drives_to_a_neighbour_or_turns_in_place(lattice, robot):
     moves = lattice.costs.tocoo()
     source, target = moves.coords
-    poses = lattice.poses()
+    poses = lattice.state_poses()
     turned = (lattice.heading[target] - lattice.heading[source]) % 8
     still = lattice.cell[source] == lattice.cell[target]
     assert np.isin(turned[still], [1, 7]).all()
@@ -200,7 +200,7 @@ def test_moves_are_drives_to_a_neighbour_or_turns_in_place(lattice, robot):
 def test_backwards_up_and_forwards_down(lattice):
     moves = lattice.costs.tocoo()
     source, target = moves.coords
-    poses = lattice.poses()
+    poses = lattice.state_poses()
     step = poses[target] - poses[source]
     steep = (lattice.rise[source] + lattice.rise[target]) / 2 < -LEVEL
     ahead = step[:, 0] * np.cos(poses[source, 3]) + step[:, 1] * np.sin(poses[source, 3])
@@ -219,7 +219,7 @@ def test_turns_touch_nothing_between_two_headings(lattice, umad_world, robot, ob
         & ((lattice.heading[target] - lattice.heading[source]) % 8 == 1)
     )
     low, high = footprint_box(robot, 0.06, robot.driving_height - 0.01)
-    poses = lattice.poses()
+    poses = lattice.state_poses()
     for turn in np.random.default_rng(4).choice(turns, 300, replace=False):
         x, y, z, yaw = poses[source[turn]]
         for share in (0.25, 0.5, 0.75):

@@ -16,7 +16,7 @@ from tests.argo_env.navigation.conftest import footprint_box
 
 
 def pose_of(navigator, state):
-    ((x, y, z, yaw),) = navigator.lattice.poses(np.array([state])).tolist()
+    ((x, y, z, yaw),) = navigator.lattice.state_poses(np.array([state])).tolist()
     return Pose(x=round(x, 6), y=round(y, 6), z=round(z, 6), yaw=yaw)
 
 
@@ -295,5 +295,5 @@ def test_turning_poses_are_those_with_all_turns(navigator, umad):
     moves = np.bincount(lattice.cell[turning], minlength=navigator.surface.size)
     for floor in umad.spec.floors:
         level = np.abs(navigator.surface.z - floor.z) <= 0.01
-        wanted = navigator.surface.positions()[np.flatnonzero((moves == 16) & level)]
+        wanted = navigator.surface.cell_positions()[np.flatnonzero((moves == 16) & level)]
         assert navigator.turning_poses(floor.number)[:, :3].tolist() == wanted.tolist()

@@ -46,7 +46,7 @@ def test_the_cut_goes_through_the_flight_only(hall, hall_search):
     (below, above) = hall_search.partition.regions
     assert len(below.members) + len(above.members) == hall.lattice.size
     sources, _, _ = hall_search.partition.crossings
-    x, y, z, yaw = hall.lattice.poses(sources).T
+    x, y, z, yaw = hall.lattice.state_poses(sources).T
     assert 0 < len(sources) <= 20
     assert ((z > 0.1) & (z < 2.4)).all()
     assert ((x > 2.0) & (x < 5.7) & (np.abs(y - 1.55) < 0.5)).all()
@@ -93,7 +93,7 @@ def test_paths_in_a_large_region_with_landmarks_are_the_cheapest(navigator, umad
         )
     lattice = navigator.lattice
     search = navigator._path_search
-    ground = np.flatnonzero(np.abs(lattice.poses()[:, 2] - umad.spec.ground_z) < 0.1)
+    ground = np.flatnonzero(np.abs(lattice.state_poses()[:, 2] - umad.spec.ground_z) < 0.1)
     sources, goals = random.choice(ground, size=(2, 3))
     extra = random.uniform(0.0, 20.0, 3)
     costs = dijkstra(lattice.costs, indices=sources)

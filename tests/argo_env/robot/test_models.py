@@ -19,7 +19,7 @@ from argo_env.files import cache, resources
 from argo_env.planning.opening import open_site
 from argo_env.recording.messages import attitude
 from argo_env.robot.pose import BodyPose
-from argo_env.robot.robot_model import add, from_rpy, multiply, read_model, rotate
+from argo_env.robot.robot_model import add_vectors, from_rpy, multiply, read_model, rotate
 from argo_env.robot.spec import RobotSpec, load_robot, robot_folder
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
@@ -295,7 +295,7 @@ def test_links_are_where_pybullet_has_them(body, data) -> None:
         pybullet.resetJointState(robot, numbers[joint.name], value, physicsClientId=client)
         position, rotation = joint.child_pose(value)
         where, how = places[joint.parent]
-        places[joint.child] = add(where, rotate(how, position)), multiply(how, rotation)
+        places[joint.child] = add_vectors(where, rotate(how, position)), multiply(how, rotation)
     for joint in model.joints:
         state = pybullet.getLinkState(
             robot, numbers[joint.name], computeForwardKinematics=True, physicsClientId=client

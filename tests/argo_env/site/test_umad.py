@@ -203,7 +203,7 @@ def test_checkpoints(umad):
 
 
 def test_checkpoints_keep_the_rules_of_the_competition(umad, navigator):
-    x, y, z = navigator.surface.positions().T
+    x, y, z = navigator.surface.cell_positions().T
     for c in umad.checkpoints:
         floor = umad.spec.floors[c.floor - 1]
         assert 0.2 - 1e-9 <= c.position[2] - floor.z <= 2.0 + 1e-9, c

@@ -76,7 +76,7 @@ def is_state(lattice, pose):
     state = nearest_state(lattice, pose)
     if state is None:
         return False
-    x, y, z, yaw = lattice.poses(np.array([state]))[0]
+    x, y, z, yaw = lattice.state_poses(np.array([state]))[0]
     here = math.dist((x, y, z), (pose.x, pose.y, pose.z)) < 2e-3
     return here and abs(yaw - pose.yaw) < 1e-6
 

@@ -11,13 +11,13 @@ REACH = 5.0
 @pytest.mark.parametrize("seed", range(12))
 def test_rays_on_the_map_end_where_they_do_in_the_world(umad, simulation, navigator, seed):
     rng = np.random.default_rng(seed)
-    positions = navigator.surface.positions()
+    positions = navigator.surface.cell_positions()
     origin = positions[rng.integers(len(positions))] + [0.0, 0.0, rng.uniform(0.3, 0.9)]
     turn, spread = rng.uniform(0, 2 * np.pi), [0.3, 1.0, 3.0][seed % 3]
     around, up = turn + rng.uniform(-spread, spread, 150), rng.uniform(-1.2, 0.8, 150)
     rays = np.column_stack([np.cos(around) * np.cos(up), np.sin(around) * np.cos(up), np.sin(up)])
     on_map, solids = SiteMap(umad).distances(origin, rays, REACH)
-    in_world = simulation.ranges(tuple(origin.tolist()), origin + REACH * rays)
+    in_world = simulation.ray_lengths(tuple(origin.tolist()), origin + REACH * rays)
     differ = np.abs(np.minimum(on_map, REACH) - np.minimum(in_world, REACH)) > 0.01
     # The bodies of checkpoints are not on the map, and edges differ slightly.
     assert differ.sum() <= 0.05 * len(rays)

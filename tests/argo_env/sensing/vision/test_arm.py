@@ -15,7 +15,7 @@ from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import robot_folder
 from argo_env.run.action import TURNS
 from argo_env.sensing.vision.align import FacePose
-from argo_env.sensing.vision.arm import JOINTS, forward, inverse
+from argo_env.sensing.vision.arm import JOINTS, forward_kinematics, inverse
 from argo_env.sensing.vision.views import plan_views, solids_near
 from argo_env.site.shapes import Box
 from tests.argo_env.robot.test_models import load
@@ -62,7 +62,7 @@ def by_pybullet(tracker, joints, pose):
 @given(joints=angles, pose=poses)
 @settings(max_examples=examples(60), deadline=None)
 def test_forward_kinematics_equals_that_of_pybullet(tracker, joints, pose):
-    camera = forward(np.array(joints), pose)
+    camera = forward_kinematics(np.array(joints), pose)
     lens, axes = by_pybullet(tracker, joints, pose)
     assert camera.position == pytest.approx(lens, abs=1e-5)
     assert camera.rotation[:, 2] == pytest.approx(axes[:, 0], abs=1e-5)
@@ -73,11 +73,11 @@ def test_forward_kinematics_equals_that_of_pybullet(tracker, joints, pose):
 @example(joints=(1.0, 0.0, 0.0, 0.0, 2.0), pose=BodyPose(0.0, 0.0, 0.0, 0.0), reach=1.0)
 @settings(max_examples=examples(60), deadline=None)
 def test_inverse_kinematics_brings_the_lens_there(tracker, joints, pose, reach):
-    camera = forward(np.array(joints), pose)
+    camera = forward_kinematics(np.array(joints), pose)
     target = camera.position + reach * camera.rotation[:, 2]
     solutions = list(inverse(camera.position, target, pose))
     for solution in solutions:
-        again = forward(solution, pose)
+        again = forward_kinematics(solution, pose)
         assert again.position == pytest.approx(camera.position, abs=1e-6)
         assert again.rotation[:, 2] == pytest.approx(camera.rotation[:, 2], abs=1e-6)
         for name, angle in zip(JOINTS, solution, strict=True):
@@ -138,7 +138,7 @@ def test_the_arm_reaches_a_view_past_an_obstacle(id, place_before, simulation, r
     direct = best_view()
     path = list(poses_between(robot, direct.joints))
     # A small box on the path of the camera, away from both ends.
-    camera = forward(np.array([*path[60].values()]), pose)
+    camera = forward_kinematics(np.array([*path[60].values()]), pose)
     middle = camera.position - LENS * camera.rotation[:, 2]
     box = Box(tuple(middle.tolist()), (0.05, 0.05, 0.05))
     screen = simulation.add_screen("box", box, (0.4, 0.4, 0.4))

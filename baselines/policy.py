@@ -42,8 +42,8 @@ POLICIES: dict[str, str | Callable[[], Policy]] = {
     "portfolio": "baselines.portfolio:Portfolio",
     "portfolio-1s": "baselines.portfolio:QuickPortfolio",
     "portfolio-resolved": "baselines.portfolio:ResolvedPortfolio",
-    "learned": "baselines.learned.agent:LearnedPolicy.load",
-    "learned-sampled": "baselines.learned.agent:SampledPolicy.load",
+    "learned": "baselines.learned.agent:LearnedPolicy.from_file",
+    "learned-sampled": "baselines.learned.agent:SampledPolicy.from_file",
 }
 """Factory of each policy, by name: a class, a function, or `module:name` of one. A new policy needs
 one line here, or `POLICIES["mine"] = Mine` in the program that uses it."""

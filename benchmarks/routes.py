@@ -32,7 +32,7 @@ from benchmarks import peer_lkh, peer_pyvrp
 from benchmarks.instances import Kind, NamedProblem, read_published_problem
 from benchmarks.known_values import KnownValue, find_known_value
 from benchmarks.options import parse_seed
-from benchmarks.routes_table import PeerResult, Row, header_lines, row_line, summarize
+from benchmarks.routes_table import PeerResult, Row, header_lines, row_line, summary_lines
 
 ENDINGS = (".tsp", ".atsp", ".sop", ".oplib", ".tw")
 
@@ -171,7 +171,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except ArgoError as error:
         print(error, file=sys.stderr)
         return 2
-    print("".join(f"\n- {text}" for text in summarize(rows)))
+    print("".join(f"\n- {text}" for text in summary_lines(rows)))
     return int(any(row.wrong for row in rows))
 
 

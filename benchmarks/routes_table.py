@@ -52,7 +52,7 @@ class Row:
         return abs(value - best) / best if best else float("inf")
 
 
-def summarize(rows: Iterable[Row]) -> Iterator[str]:
+def summary_lines(rows: Iterable[Row]) -> Iterator[str]:
     """Yield one sentence of totals for the problems of each kind."""
     for kind, group in groupby(sorted(rows, key=lambda row: row.kind), key=lambda row: row.kind):
         rows_of_kind = list(group)

@@ -77,7 +77,7 @@ class LearnedPolicy:
         self.scorer = scorer
 
     @classmethod
-    def load(cls, path: Path = WEIGHTS) -> "LearnedPolicy":
+    def from_file(cls, path: Path = WEIGHTS) -> "LearnedPolicy":
         """Return a policy with the weights of a file, by default the shipped ones."""
         return cls(Scorer(path))
 
@@ -106,7 +106,7 @@ class SampledPolicy:
         self._rng = generator(0, "sampled routes")
 
     @classmethod
-    def load(cls, path: Path = WEIGHTS, rollouts: int = ROLLOUTS) -> "SampledPolicy":
+    def from_file(cls, path: Path = WEIGHTS, rollouts: int = ROLLOUTS) -> "SampledPolicy":
         """Return a policy with the weights of a file, by default the shipped ones."""
         return cls(Scorer(path), rollouts)
 

@@ -43,7 +43,7 @@ class Lessons:
     def __len__(self) -> int:
         return len(self.value)
 
-    def select(self, rows: NDArray[np.int64]) -> "Lessons":
+    def select_samples(self, rows: NDArray[np.int64]) -> "Lessons":
         """Return the samples in these rows."""
         observation = {name: array[rows] for name, array in self.observation.items()}
         return Lessons(observation, self.target[rows], self.value[rows])

@@ -41,9 +41,9 @@ def _train(options: argparse.Namespace) -> None:
     from baselines.learned.training import (
         CHECKPOINT,
         Settings,
-        initial_state,
         load_checkpoint,
         train,
+        untrained_state,
     )
 
     chosen = {
@@ -66,7 +66,7 @@ def _train(options: argparse.Namespace) -> None:
                 "another folder with --out"
             )
         make_folder(folder)
-        state = initial_state(replace(Settings(), **chosen))
+        state = untrained_state(replace(Settings(), **chosen))
     with listen_to_stages(StageLines(lambda line: print(line, file=sys.stderr, flush=True))):
         train(state, folder, lambda line: print(line, flush=True))
 

@@ -82,7 +82,7 @@ class TrainingState:
     """state of the optimiser; empty at the start of each of the two stages"""
 
 
-def initial_state(settings: Settings) -> TrainingState:
+def untrained_state(settings: Settings) -> TrainingState:
     """Return the state with an untrained network."""
     torch.manual_seed(settings.seed)
     return TrainingState(settings, RouteNetwork())
@@ -182,7 +182,7 @@ def _train_on_lessons(state: TrainingState, logger: Logger) -> None:
             for number, b in enumerate(rng.permutation(len(batches))):
                 report((done + number / len(batches)) / _PASSES, _loss_text(losses))
                 k, rows = batches[b]
-                actions, value = imitation_loss(state.network, lessons[k].select(rows))
+                actions, value = imitation_loss(state.network, lessons[k].select_samples(rows))
                 optimiser.zero_grad()
                 (actions + value).backward()  # type: ignore[no-untyped-call]
                 torch.nn.utils.clip_grad_norm_(state.network.parameters(), 1.0)

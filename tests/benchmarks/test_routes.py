@@ -21,7 +21,7 @@ from benchmarks import peer_lkh, peer_pyvrp
 from benchmarks.instances import Kind
 from benchmarks.known_values import KnownValue, find_known_value
 from benchmarks.routes import find_files, main
-from benchmarks.routes_table import PeerResult, Row, row_line, summarize
+from benchmarks.routes_table import PeerResult, Row, row_line, summary_lines
 
 ATSP = """NAME: three
 TYPE: ATSP
@@ -99,7 +99,7 @@ def test_losses_are_relative_to_the_best_value():
     assert (score.relative_loss(8.0), score.relative_loss(None)) == (pytest.approx(0.2), None)
     rounded = row(Kind.TSPTW, 9.9967, 10.0041, KnownValue(10.0, 10.0, 0.005))
     assert (rounded.relative_loss(9.9967), rounded.relative_loss(10.0)) == (0.0, 0.0)
-    lines = list(summarize([cost, score]))
+    lines = list(summary_lines([cost, score]))
     assert "P best known value 1 times of 1; L left out: precedence" in lines[0]
     assert len(lines) == 2
     text = row_line(dataclasses.replace(cost, wrong="it says more"))

@@ -25,9 +25,9 @@ from baselines.learned.training import (  # noqa: E402
     WEIGHTS,
     Settings,
     TrainingState,
-    initial_state,
     load_checkpoint,
     train,
+    untrained_state,
 )
 from baselines.learned.vec_env import RouteVecEnv  # noqa: E402
 
@@ -63,7 +63,7 @@ def trained(
     tmp_path_factory: pytest.TempPathFactory, reports: list[StageReport]
 ) -> tuple[Path, TrainingState]:
     folder = tmp_path_factory.mktemp("trained")
-    state = initial_state(SMALL)
+    state = untrained_state(SMALL)
     with listen_to_stages(lambda *report: reports.append(report)):
         train(state, folder, [].append)
     return folder, state
@@ -74,7 +74,7 @@ def test_training_changes_weights_and_saves_them(trained: tuple[Path, TrainingSt
     folder, state = trained
     assert state.part == 3
     assert state.steps > 2 * 16 * 10
-    untrained = initial_state(SMALL).network.state_dict()
+    untrained = untrained_state(SMALL).network.state_dict()
     assert all(
         not torch.equal(w, untrained[name])
         for name, w in state.network.state_dict().items()
@@ -82,7 +82,7 @@ def test_training_changes_weights_and_saves_them(trained: tuple[Path, TrainingSt
     )
     shipped = torch.load(folder / WEIGHTS, weights_only=True)
     assert all(w.dtype == torch.float16 for w in shipped.values())
-    LearnedPolicy.load(folder / WEIGHTS)
+    LearnedPolicy.from_file(folder / WEIGHTS)
 
 
 @pytest.mark.long
@@ -110,7 +110,7 @@ def test_an_interrupted_and_resumed_training_ends_with_the_same_weights(
             raise PowerFailureError
 
     with pytest.raises(PowerFailureError):
-        train(initial_state(SMALL), tmp_path, interrupt)
+        train(untrained_state(SMALL), tmp_path, interrupt)
     assert main(["--resume", str(tmp_path)]) == 0
     resumed, uninterrupted = load_checkpoint(tmp_path), load_checkpoint(trained[0])
     assert (resumed.part, resumed.steps) == (uninterrupted.part, uninterrupted.steps)
@@ -149,12 +149,12 @@ def test_errors_are_reported(
     assert main(["--resume", str(tmp_path)]) == 2
     assert "is damaged" in capsys.readouterr().err
     with pytest.raises(ArgoError, match="no weights at"):
-        LearnedPolicy.load(tmp_path / "none.pt")
+        LearnedPolicy.from_file(tmp_path / "none.pt")
     (tmp_path / "text.pt").write_text("nothing")
     with pytest.raises(ArgoError, match="has no weights of this policy"):
-        LearnedPolicy.load(tmp_path / "text.pt")
+        LearnedPolicy.from_file(tmp_path / "text.pt")
     with pytest.raises(ArgoError, match="has no weights of this policy"):
-        LearnedPolicy.load(trained[0] / CHECKPOINT)
+        LearnedPolicy.from_file(trained[0] / CHECKPOINT)
 
 
 def test_the_batch_reports_the_returns_of_its_routes() -> None:

@@ -190,7 +190,7 @@ def _reach_verdict(study: Study, node: int) -> Verdict:
 
 
 def _task_facts(study: Study, leaf: int) -> TaskFacts:
-    task = study.task(leaf)
+    task = study.leaf_task(leaf)
     conditional = 0
     facts = []
     for index, transition in enumerate(task.transitions):

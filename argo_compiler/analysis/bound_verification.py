@@ -264,7 +264,7 @@ class LeastSteps:
 
     def _explore(self) -> None:
         """Compute the robot's positions, the visits and the immediate successors of all points."""
-        pending = [(BEGIN, _RobotPosition(self.travel.start(self.mission), True))]
+        pending = [(BEGIN, _RobotPosition(self.travel.start_pose(self.mission), True))]
         while pending:
             point, robot = pending.pop()
             known = self._robots.setdefault(point, {})

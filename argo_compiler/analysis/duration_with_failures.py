@@ -57,7 +57,7 @@ class _ReactionTimes:
         self.costs = costs
         self.travel = study.travel
         self.clean_up = study.travel.clean_up
-        self._start = study.travel.start(study.mission)
+        self._start = study.travel.start_pose(study.mission)
         self.mission = study.mission
         self.reactions = [r for r in study.mission.reactions if r.response is not Response.REPORT]
 
@@ -139,7 +139,7 @@ class _ReactionTimes:
         longest = 0.0
         pose = self._pose_after(other)
         for leaf, positions in enumerate(self.costs.positions):
-            task = self.study.task(leaf)
+            task = self.study.leaf_task(leaf)
             if positions and task.action is not Action.WAIT:
                 onward = max(self._leg_time(position.pose, target) for position in positions)
                 longest = max(longest, self._leg_time(pose, task) + onward)

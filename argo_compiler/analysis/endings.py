@@ -189,7 +189,7 @@ def _is_docked_after(study: Study, leaf: int, dock: Pose) -> bool:
         node = pending.pop()
         if study.flow.is_leaf(node) and study.flow.leaves[node].wait is None:
             missed = node != leaf and study.flow.leaves[node].deadline is not None
-            if missed or not _drives_to(study.task(node), dock):
+            if missed or not _drives_to(study.leaf_task(node), dock):
                 return False
             continue
         before = study.predecessors[node]

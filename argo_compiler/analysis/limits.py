@@ -82,7 +82,7 @@ def _blocked_retreats(study: Study, travel: Travel) -> Iterator[Diagnostic]:
             where = "dock" if reaction.response is Response.RETURN else "safe area"
             aim = f"go to the {where} of the reaction to {reaction.event}"
             retreats.append((reaction.pose, subject_of("reactions", reaction.event, ".pose"), aim))
-    start = travel.start(mission)
+    start = travel.start_pose(mission)
     for pose, subject, aim in retreats:
         drive = Task(name="retreat", action=Action.WAYPOINT, pose=pose)
         leg = travel.leg(start, drive, None)

@@ -110,7 +110,7 @@ class Analysis(Model):
         """Names of all tasks that can be reached."""
         return frozenset(t.task for t in self.tasks if t.verdict is not Verdict.NEVER)
 
-    def task(self, name: str) -> TaskFacts:
+    def task_facts(self, name: str) -> TaskFacts:
         """Return the verdicts on a task.
 
         Raises:

@@ -225,7 +225,7 @@ class StepCosts:
         flow = self.flow
         if not flow.is_leaf(flow.initial):
             return
-        self._add_step(travel, BEGIN, RobotPosition(travel.start(mission)), flow.initial)
+        self._add_step(travel, BEGIN, RobotPosition(travel.start_pose(mission)), flow.initial)
         ended: list[list[tuple[Source, int]] | None] = [None] * len(flow.leaves)
         while self._pending:
             leaf, position, before = self._pending.popleft()

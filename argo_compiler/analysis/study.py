@@ -96,7 +96,7 @@ class Study:
                 return f"checkpoint {object_id} ({info.name})"
         return f"checkpoint '{object_id}'"
 
-    def task(self, leaf: int) -> Task:
+    def leaf_task(self, leaf: int) -> Task:
         return self.flow.leaves[leaf].leaf.task
 
     def is_own(self, leaf: int) -> bool:
@@ -105,7 +105,7 @@ class Study:
 
     def conditional_indices(self, leaf: int) -> list[int]:
         """Return the indices of the task's transitions that have conditions, in order."""
-        return [k for k, t in enumerate(self.task(leaf).transitions) if t.conditions]
+        return [k for k, t in enumerate(self.leaf_task(leaf).transitions) if t.conditions]
 
     @cached_property
     def ended_by_reaction(self) -> bool:
@@ -175,7 +175,7 @@ class Study:
         """
         span = None
         if leaf is not None and self.is_own(leaf):
-            span = self.task(leaf).source
+            span = self.leaf_task(leaf).source
             subject = subject_of("tasks", self.name(leaf))
             if transition is not None:
                 subject += f".transitions[{transition}]"

@@ -105,7 +105,7 @@ def _is_never_measured(study: Study, leaf: int, object_id: str) -> bool:
 
 
 def _never_taken(study: Study, leaf: int, k: int, index: int) -> Diagnostic:
-    task = study.task(leaf)
+    task = study.leaf_task(leaf)
     target = task.transitions[index].target
     start = f"the transition from task '{task.name}' to '{target}' is never taken: "
     for condition in task.transitions[index].conditions:
@@ -149,7 +149,7 @@ def _is_always_taken(study: Study, leaf: int, k: int) -> bool:
 
 
 def _always_taken(study: Study, leaf: int, k: int, index: int) -> Diagnostic:
-    task = study.task(leaf)
+    task = study.leaf_task(leaf)
     held = conditions_text(task.transitions[index].conditions)
     after = len(task.transitions) > 1
     return study.diagnostic(
@@ -186,7 +186,7 @@ class _UnmeasuredPaths:
         readings = fields.get(guards[k].state, object_id)
         if not readings & fields.scales[object_id].missing:
             return None
-        task = study.task(leaf)
+        task = study.leaf_task(leaf)
         name = study.object_name(object_id)
         path = self._path(leaf, object_id)
         return study.diagnostic(

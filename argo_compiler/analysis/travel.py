@@ -52,7 +52,7 @@ class Travel(Protocol):
         """Power in W that the robot draws while it stands and waits."""
         ...
 
-    def start(self, mission: Mission) -> RobotPose:
+    def start_pose(self, mission: Mission) -> RobotPose:
         """Return the pose of the robot when the mission starts.
 
         Raises:

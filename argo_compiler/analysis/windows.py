@@ -44,9 +44,9 @@ def diagnose_windows(study: Study, bounds: MissionBounds) -> Iterator[Diagnostic
 def diagnose_time_limits(study: Study) -> Iterator[Diagnostic]:
     """Yield diagnostics on tasks that take longer than their time limit, at the planned times."""
     for leaf, taken in sorted(study.costs.too_slow.items()):
-        limit = study.task(leaf).time_limit
+        limit = study.leaf_task(leaf).time_limit
         assert limit is not None
-        if study.task(leaf).retries:
+        if study.leaf_task(leaf).retries:
             continue  # each attempt continues from where the previous one stopped
         yield study.diagnostic(
             "time-limit",

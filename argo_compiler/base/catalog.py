@@ -90,5 +90,5 @@ class Catalog(Model):
     def floor(self, number: int) -> Floor | None:
         return next((f for f in self.floors if f.number == number), None)
 
-    def place(self, name: str) -> Place | None:
+    def find_place(self, name: str) -> Place | None:
         return next((p for p in self.places if p.name == name), None)

@@ -57,7 +57,7 @@ def _check_names(groups: tuple[Group, ...], subjects: Subjects) -> Iterator[Diag
     names = {group.name for group in groups}
     seen: set[str] = set()
     for i, group in enumerate(groups):
-        item = CheckedItem(subjects.group(i), group.source)
+        item = CheckedItem(subjects.group_subject(i), group.source)
         if group.name in seen:
             yield item.diagnostic(
                 "il.duplicate-group",
@@ -87,7 +87,7 @@ def _check_fields(mission: Mission, subjects: Subjects) -> Iterator[Diagnostic]:
     position = task_positions(mission)
     hints = 0
     for i, group in enumerate(mission.groups):
-        item = CheckedItem(subjects.group(i), group.source)
+        item = CheckedItem(subjects.group_subject(i), group.source)
         unknown = {group.end: ".end", group.start: ".start"}
         unknown = {name: field for name, field in unknown.items() if name not in position}
         for name, field in reversed(unknown.items()):
@@ -133,7 +133,7 @@ def _check_nesting(ranges: tuple[GroupRange, ...], subjects: Subjects) -> Iterat
         name = r.group.name
         parent = by_name.get(parent_name(name) or "")
         if parent and not (parent.contains(r.first) and parent.contains(r.last)):
-            yield CheckedItem(subjects.group(r.index), r.group.source).diagnostic(
+            yield CheckedItem(subjects.group_subject(r.index), r.group.source).diagnostic(
                 "il.group-outside-parent",
                 f"group '{name}' reaches beyond group '{parent.group.name}', in which it must lie",
                 f"keep its tasks between '{parent.group.start}' and '{parent.group.end}'",
@@ -143,7 +143,7 @@ def _check_nesting(ranges: tuple[GroupRange, ...], subjects: Subjects) -> Iterat
         if around and not name.startswith(around[-1].group.name + "/"):
             other = around[-1]
             same = (other.first, other.last) == (r.first, r.last)
-            yield CheckedItem(subjects.group(r.index), r.group.source).diagnostic(
+            yield CheckedItem(subjects.group_subject(r.index), r.group.source).diagnostic(
                 "il.group-same-range" if same else "il.group-overlap",
                 f"groups '{other.group.name}' and '{name}' "
                 + ("have the same tasks" if same else f"both contain task '{r.group.start}'")
@@ -161,7 +161,7 @@ def _check_starts(
     for r in ranges:
         i = bisect_left(starts, r.first)
         if i < len(starts) and r.contains(starts[i]):
-            yield CheckedItem(subjects.group(r.index), r.group.source).diagnostic(
+            yield CheckedItem(subjects.group_subject(r.index), r.group.source).diagnostic(
                 "il.start-in-group",
                 f"the START task '{mission.tasks[starts[i]].name}' lies in group '{r.group.name}'",
                 "move START before the group: it is not repeated",
@@ -170,7 +170,7 @@ def _check_starts(
 
 def _check_unused(groups: tuple[Group, ...], subjects: Subjects) -> Iterator[Diagnostic]:
     for i, group in enumerate(groups):
-        item = CheckedItem(subjects.group(i), group.source)
+        item = CheckedItem(subjects.group_subject(i), group.source)
         if group.count_interruptions and not group.max_repeat_duration:
             yield item.diagnostic(
                 "il.unused-field",
@@ -213,7 +213,7 @@ def _check_leaving_rounds(
                 inside = nesting.parent[inside]
             if group is None:
                 continue
-            yield CheckedItem(subjects.task(i), task.source).diagnostic(
+            yield CheckedItem(subjects.task_subject(i), task.source).diagnostic(
                 "il.leaves-round",
                 f"the transition from task '{task.name}' to '{target}' leaves the rounds of group "
                 f"'{group.name}' before they are over",
@@ -268,7 +268,7 @@ def _check_endless(
     for i, r in enumerate(nesting.ranges):
         left = lowest[i] < r.first or highest[i] > r.last
         if _is_endless(r.group) and not left and not bounded[i]:
-            yield CheckedItem(subjects.group(r.index), r.group.source).diagnostic(
+            yield CheckedItem(subjects.group_subject(r.index), r.group.source).diagnostic(
                 "il.endless-group",
                 f"group '{r.group.name}' is repeated without end: it has neither a count nor a "
                 "duration, and no transition that can be taken leaves it",

@@ -40,7 +40,7 @@ def check_instant_loops(mission: Mission) -> Iterator[Diagnostic]:
         position = next(i for i, t in enumerate(mission.tasks) if t.name == cycle[0])
         shown = " > ".join(cycle if len(cycle) <= _SHOWN else [*cycle[:_SHOWN], "..."])
         yield CheckedItem(
-            Subjects(mission).task(position), mission.tasks[position].source
+            Subjects(mission).task_subject(position), mission.tasks[position].source
         ).diagnostic(
             "il.instant-loop",
             f"the tasks {shown} form a loop in which nothing takes time, so the mission might "

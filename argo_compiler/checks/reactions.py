@@ -16,7 +16,7 @@ def check_reactions(mission: Mission) -> Iterator[Diagnostic]:
     subjects = Subjects(mission)
     ranked: dict[tuple[int, int], Reaction] = {}
     for i, reaction in enumerate(mission.reactions):
-        item = CheckedItem(subjects.reaction(i), reaction.source)
+        item = CheckedItem(subjects.reaction_subject(i), reaction.source)
         if first[reaction.event] is not reaction:
             yield item.diagnostic(
                 "il.duplicate-reaction",

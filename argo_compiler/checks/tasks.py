@@ -105,11 +105,11 @@ class TaskChecks:
         yield from _check_returns(self.mission, self.subjects)
         for i, group in enumerate(self.mission.groups):
             for n, condition in enumerate(group.until):
-                item = CheckedItem(self.subjects.group(i), group.source)
+                item = CheckedItem(self.subjects.group_subject(i), group.source)
                 yield from self.conditions.diagnostics(item, group, condition, f".until[{n}]")
 
     def _item(self, i: int, task: Task) -> CheckedItem:
-        return CheckedItem(self.subjects.task(i), task.source)
+        return CheckedItem(self.subjects.task_subject(i), task.source)
 
     def _check_timing(self, item: CheckedItem, task: Task) -> Iterator[Diagnostic]:
         """Yield the diagnostics of a task's failure policy, wait and time window."""
@@ -187,7 +187,7 @@ class TaskChecks:
 def _check_names(tasks: Iterable[Task], subjects: Subjects) -> Iterator[Diagnostic]:
     seen: set[str] = set()
     for i, task in enumerate(tasks):
-        item = CheckedItem(subjects.task(i), task.source)
+        item = CheckedItem(subjects.task_subject(i), task.source)
         if task.name in seen:
             yield item.diagnostic(
                 "il.duplicate-task",
@@ -254,7 +254,7 @@ def _check_returns(mission: Mission, subjects: Subjects) -> Iterator[Diagnostic]
     if returning:
         task = mission.tasks[returning[0]]
         others = f" (and {len(returning) - 1} more)" if len(returning) > 1 else ""
-        yield CheckedItem(subjects.task(returning[0]), task.source).diagnostic(
+        yield CheckedItem(subjects.task_subject(returning[0]), task.source).diagnostic(
             "il.no-dock",
             f"task '{task.name}'{others} must return to the dock if it fails, but the mission has "
             "no dock",

@@ -14,8 +14,8 @@ from argo_compiler.diagnostics.diagnostic import (
     count,
     diagnostic_of,
     has_errors,
+    severity_counts_text,
     span_at,
-    summary,
     with_excerpts,
 )
 from argo_compiler.diagnostics.error import DiagnosticError
@@ -34,8 +34,8 @@ __all__ = [
     "count",
     "diagnostic_of",
     "has_errors",
+    "severity_counts_text",
     "span_at",
-    "summary",
     "to_json",
     "to_sarif",
     "to_text",

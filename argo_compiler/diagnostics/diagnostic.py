@@ -123,7 +123,7 @@ def count(diagnostics: Iterable[Diagnostic], severity: Severity) -> int:
     return sum(diagnostic.severity is severity for diagnostic in diagnostics)
 
 
-def summary(diagnostics: Iterable[Diagnostic]) -> str:
+def severity_counts_text(diagnostics: Iterable[Diagnostic]) -> str:
     """Return the numbers of diagnostics by severity, such as `2 errors, 5 warnings`."""
     diagnostics = tuple(diagnostics)
     counts = ((count(diagnostics, severity), severity) for severity in Severity)

@@ -4,7 +4,7 @@ import unicodedata
 from collections.abc import Sequence
 
 from argo_compiler.diagnostics.codes.code import Severity
-from argo_compiler.diagnostics.diagnostic import Diagnostic, has_errors, summary
+from argo_compiler.diagnostics.diagnostic import Diagnostic, has_errors, severity_counts_text
 
 _INDENT = "    "
 
@@ -23,7 +23,7 @@ def to_text(diagnostics: Sequence[Diagnostic], source_name: str) -> str:
         if severity is Severity.ERROR or (severity is Severity.WARNING and not brief):
             lines += _details(diagnostic)
     if len(diagnostics) > 1:
-        lines.append(f"{_printable(source_name)}: {summary(diagnostics)}")
+        lines.append(f"{_printable(source_name)}: {severity_counts_text(diagnostics)}")
     return "\n".join(lines)
 
 

@@ -102,7 +102,7 @@ class MissionDraft:
             raise unknown("group", name, [g.group.name for g in self.groups])
         return group
 
-    def positions(self) -> dict[int, int]:
+    def entry_positions(self) -> dict[int, int]:
         """Return the position of each task in the list, by the `id()` of its DraftTask."""
         return {id(entry): i for i, entry in enumerate(self.tasks)}
 
@@ -177,7 +177,7 @@ class MissionDraft:
 
     def _add_to_groups(self, entry: DraftTask, into: str) -> None:
         self.find_group(into)
-        position = self.positions()
+        position = self.entry_positions()
         at = position[id(entry)]
         for g in self.groups:
             if g.first is None or g.last is None:

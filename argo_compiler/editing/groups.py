@@ -163,7 +163,7 @@ class _TaskRanges:
 
     def __init__(self, draft: MissionDraft) -> None:
         self.names = [entry.task.name for entry in draft.tasks]
-        self.position = draft.positions()
+        self.position = draft.entry_positions()
 
     def relation(self, g: DraftGroup, new: DraftGroup) -> str:
         """Return how `g` relates to `new`: "inside", "around", "apart" or "same" (the same tasks).

@@ -83,7 +83,7 @@ class _Removal:
         self.draft = draft
         self.entry = entry
         self.name = entry.task.name
-        self.position = draft.positions()
+        self.position = draft.entry_positions()
         self.successor = self._successor()
         self.leading = [
             other for other in draft.tasks if other is not entry and self._leads_to_it(other.task)

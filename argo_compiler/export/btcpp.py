@@ -100,8 +100,8 @@ class _Tree:
     def text(self) -> str:
         """Return the XML. Raises DiagnosticError if a behaviour tree can't express the mission."""
         raise_refusals(self._refusals())
-        with self.xml.element("root", {"BTCPP_format": "4", "main_tree_to_execute": "Mission"}):
-            with self.xml.element("BehaviorTree", {"ID": "Mission"}):
+        with self.xml.nest_in("root", {"BTCPP_format": "4", "main_tree_to_execute": "Mission"}):
+            with self.xml.nest_in("BehaviorTree", {"ID": "Mission"}):
                 self._mission()
             self._models()
         return self.xml.text()
@@ -172,7 +172,7 @@ class _Tree:
     def _mission(self) -> None:
         """Write the nodes of the mission."""
         xml = self.xml
-        with xml.element("Sequence", {"name": self.mission.designation or None}):
+        with xml.nest_in("Sequence", {"name": self.mission.designation or None}):
             self._script(self._initial_script())
             if any(task.window and task.window.earliest for task in self.mission.tasks):
                 xml.add("Clock", {"now": "{began}"})
@@ -205,22 +205,22 @@ class _Tree:
 
     def _task(self, task: Task, ends_group: bool) -> None:
         xml, position = self.xml, self.positions[task.name]
-        with xml.element("Sequence", {"name": task.name, "_skipIf": f"to > {position}"}):
+        with xml.nest_in("Sequence", {"name": task.name, "_skipIf": f"to > {position}"}):
             if task.action is Action.WAIT:
                 self._wait(task)
                 self._decide(task, ends_group)
             elif task.on_failure is OnFailure.CONTINUE:
                 if statements := self._failure_statements(task):
-                    with xml.element("Fallback"):
+                    with xml.nest_in("Fallback"):
                         self._attempts(task)
                         self._script("; ".join(statements))
                 else:
-                    with xml.element("ForceSuccess"):
+                    with xml.nest_in("ForceSuccess"):
                         self._attempts(task)
                 self._decide(task, ends_group)
             else:
-                with xml.element("Fallback"):
-                    with xml.element("Sequence"):
+                with xml.nest_in("Fallback"):
+                    with xml.nest_in("Sequence"):
                         self._attempts(task)
                         self._decide(task, ends_group)
                     self._script(
@@ -251,13 +251,13 @@ class _Tree:
 
     def _attempts(self, task: Task) -> None:
         """Write attempts until one succeeds; after a MEASURE, its reading is stored."""
-        with self.xml.element("Sequence"):
+        with self.xml.nest_in("Sequence"):
             if task.window is not None and task.window.earliest:
                 earliest = number_text(task.window.earliest)
                 self._script(f"not_before := began + {earliest}")
             if task.retries:
                 attempts = {"num_attempts": task.retries + 1}
-                with self.xml.element("RetryUntilSuccessful", attempts):
+                with self.xml.nest_in("RetryUntilSuccessful", attempts):
                     self._attempt(task)
             else:
                 self._attempt(task)
@@ -278,7 +278,7 @@ class _Tree:
         if task.time_limit is None:
             self._action(task)
         else:
-            with self.xml.element("Timeout", {"msec": _msec(task.time_limit)}):
+            with self.xml.nest_in("Timeout", {"msec": _msec(task.time_limit)}):
                 self._action(task)
         if measures:
             self.xml.close()
@@ -394,8 +394,8 @@ class _Tree:
         if all(task.on_failure is not OnFailure.RETURN for task in self.mission.tasks):
             return
         dock = _pose_ports(self.mission.dock)
-        with self.xml.element("Fallback", {"_skipIf": "returning == 0"}):
-            with self.xml.element("Sequence"):
+        with self.xml.nest_in("Fallback", {"_skipIf": "returning == 0"}):
+            with self.xml.nest_in("Sequence"):
                 self.xml.add("DriveTo", {"name": RETURN_TASK, **dock, "velocity": "0"})
                 self._script("outcome := 2")
             self._script("outcome := 4")
@@ -404,9 +404,9 @@ class _Tree:
         self.xml.add("Script", {"code": code})
 
     def _models(self) -> None:
-        with self.xml.element("TreeNodesModel"):
+        with self.xml.nest_in("TreeNodesModel"):
             for node, ports in _PORTS.items():
-                with self.xml.element("Action", {"ID": node}):
+                with self.xml.nest_in("Action", {"ID": node}):
                     for direction, name, type, meaning in ports:
                         self.xml.add_text(direction, meaning, {"name": name, "type": type})
 

@@ -75,7 +75,7 @@ class Diagram:
                 depth += 1
                 pending += [None, *reversed(group.children)]
 
-    def arrows(self) -> Iterator[Arrow]:
+    def transition_arrows(self) -> Iterator[Arrow]:
         """Yield all transitions: first those of the leaves, then those of the groups."""
         for leaf in self.hfsm.leaves:
             transitions = (*leaf.transitions, leaf.failure, leaf.missed)

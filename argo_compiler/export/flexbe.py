@@ -95,7 +95,7 @@ def _time_refusals(mission: Mission) -> Iterator[Diagnostic]:
 
 def _manifest(hfsm: Hfsm, name: str) -> str:
     xml = XmlWriter()
-    with xml.element("behavior", {"name": name}):
+    with xml.nest_in("behavior", {"name": name}):
         xml.add("executable", {"package_path": f"{BEHAVIORS}.{name}_sm", "class": f"{name}SM"})
         xml.add_text("tagstring", "inspection")
         xml.add_text("author", "Argo")

@@ -44,7 +44,7 @@ def _lines(hfsm: Hfsm) -> list[str]:
             lines.append(f"    e{i} [shape=note, label={_quoted(reaction_label(state.reaction))}];")
         lines.append("  }")
     lines.append(f"  start -> {diagram.target_id(hfsm.mission.initial) or 'done'};")
-    lines += (f"  {_edge(diagram, arrow)}" for arrow in diagram.arrows())
+    lines += (f"  {_edge(diagram, arrow)}" for arrow in diagram.transition_arrows())
     return [*lines, "}"]
 
 

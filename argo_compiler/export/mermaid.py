@@ -27,7 +27,7 @@ def _lines(diagram: Diagram) -> list[str]:
     lines.append(f"    [*] --> {initial}")
     # Mermaid accepts transitions between states of different groups only if all states come first
     # and all transitions last, outside of every group.
-    for arrow in diagram.arrows():
+    for arrow in diagram.transition_arrows():
         label = f" : {_escape(arrow.label)}" if arrow.label else ""
         lines.append(f"    {arrow.source} --> {arrow.target or _END}{label}")
     return lines

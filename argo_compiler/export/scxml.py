@@ -70,14 +70,14 @@ class _Document:
             "initial": "run",
             "argo:max_duration": self.hfsm.max_duration,
         }
-        with xml.element("scxml", root):
+        with xml.nest_in("scxml", root):
             write_data_model(xml, self.hfsm, self.ids)
-            with xml.element("parallel", {"id": "run"}):
+            with xml.nest_in("parallel", {"id": "run"}):
                 if self.timers and self.hfsm.max_duration is not None:
                     limit = number_text(self.hfsm.max_duration)
-                    with xml.element("onentry"):
+                    with xml.nest_in("onentry"):
                         time_up = {"event": "event.time_up", "delay": f"{limit}s"}
-                        with xml.element("send", time_up):
+                        with xml.nest_in("send", time_up):
                             xml.add("param", {"name": "time", "expr": limit})
                 self._mission_region()
                 ControlRegion(xml, self.hfsm, self.ids, self.timers).write()
@@ -90,7 +90,7 @@ class _Document:
         xml = self.xml
         xml.open("state", {"id": "plan", "initial": "start", "argo:name": self.hfsm.mission.name})
         attributes = {} if self.start is None else task_attributes(self.start)
-        with xml.element("state", {"id": "start", **attributes}):
+        with xml.nest_in("state", {"id": "start", **attributes}):
             xml.add("transition", {"target": self._target(self.hfsm.mission.initial)})
         # None in the stack closes a group.
         pending: list[str | None] = [None, *reversed(self.hfsm.mission.children)]
@@ -109,11 +109,11 @@ class _Document:
 
     def _end_state(self) -> None:
         xml = self.xml
-        with xml.element("state", {"id": "ended"}), xml.element("onentry"):
+        with xml.nest_in("state", {"id": "ended"}), xml.nest_in("onentry"):
             self._assign([("visit", "0"), *((f"due_{kind}", "0") for kind in _VISIT_DEADLINES)])
-            with xml.element("if", {"cond": "ends == 0 && failures == 0"}):
+            with xml.nest_in("if", {"cond": "ends == 0 && failures == 0"}):
                 assign(xml, "ends", str(outcome_code(Outcome.COMPLETED)))
-            with xml.element("if", {"cond": "ends == 0"}):
+            with xml.nest_in("if", {"cond": "ends == 0"}):
                 assign(xml, "ends", str(outcome_code(Outcome.COMPLETED_WITH_FAILURES)))
 
     # Groups
@@ -131,18 +131,18 @@ class _Document:
                 "argo:clock": clock,
             },
         )
-        with xml.element("onentry"):
+        with xml.nest_in("onentry"):
             assign(xml, f"round_{n}", "1")
             self._set_group_clock(group)
             if repeat.duration:
                 # In a round that is not due yet: the round's start enters the group again.
-                with xml.element("if", {"cond": "awaits != 0"}):
+                with xml.nest_in("if", {"cond": "awaits != 0"}):
                     assign(xml, f"until_{n}", NEVER)
             if self.timers and group.timeout:
-                with xml.element("if", {"cond": "mode == 0 && awaits == 0"}):
+                with xml.nest_in("if", {"cond": "mode == 0 && awaits == 0"}):
                     start_group_timer(xml, n, repeat.count_interruptions)
         if group.timeout:
-            with xml.element("transition", {"event": f"timeout.g{n}"}):
+            with xml.nest_in("transition", {"event": f"timeout.g{n}"}):
                 self._assign([("now", "_event.data.time"), ("clock", "now - lost")])
                 self._assign([("visit", "0"), ("completed", str(n))])
         if repeat.every:
@@ -150,7 +150,7 @@ class _Document:
         for transition in group.transitions:
             self._group_transition(group, transition)
         if self.timers and group.timeout:
-            with xml.element("onexit"):
+            with xml.nest_in("onexit"):
                 xml.add("cancel", {"sendid": f"timer_{n}"})
 
     def _set_group_clock(self, group: Composite) -> None:
@@ -171,7 +171,7 @@ class _Document:
             "target": self._state(group.initial),
             "type": "internal",
         }
-        with self.xml.element("transition", attributes):
+        with self.xml.nest_in("transition", attributes):
             self._assign([("now", "_event.data.time"), ("clock", "now - lost")])
             self._assign([("awaits", "0"), ("due_round", "0")])
 
@@ -196,12 +196,12 @@ class _Document:
                 )
         target = self._target(transition.target)
         attributes = {"cond": cond, "target": target, "type": "internal"}
-        with self.xml.element("transition", attributes):
+        with self.xml.nest_in("transition", attributes):
             self._assign([("completed", "0"), ("awaits", "0"), ("due_round", "0")])
             assign(self.xml, f"round_{n}", f"round_{n} + 1")
             if repeat.every:
                 due = f"entered_{n} + (round_{n} - 1) * {number_text(repeat.every)}"
-                with self.xml.element("if", {"cond": f"{due} > {clock}"}):
+                with self.xml.nest_in("if", {"cond": f"{due} > {clock}"}):
                     self._assign([("awaits", str(n)), ("due_round", round_deadline(n, repeat))])
 
     # Tasks
@@ -216,21 +216,21 @@ class _Document:
         """
         xml, id = self.xml, self._state(leaf.id)
         task = leaf.task
-        with xml.element("state", {"id": id, "initial": f"{id}_act", **task_attributes(task)}):
-            with xml.element("onentry"):
+        with xml.nest_in("state", {"id": id, "initial": f"{id}_act", **task_attributes(task)}):
+            with xml.nest_in("onentry"):
                 self._task_entry(leaf, id)
-            with xml.element("state", {"id": f"{id}_act"}):
+            with xml.nest_in("state", {"id": f"{id}_act"}):
                 self._missed_window(leaf)
                 if task.wait is not None:
                     self._wait_transitions(leaf, f"{id}_end")
                 else:
                     self._action_transitions(leaf, f"{id}_end")
-            with xml.element("state", {"id": f"{id}_end"}):
+            with xml.nest_in("state", {"id": f"{id}_end"}):
                 for transition in leaf.transitions:
                     guards = (self._guard(c) for c in transition.conditions)
                     self._onward_transition(transition, " && ".join(["completed == 0", *guards]))
             if self.timers:
-                with xml.element("onexit"):
+                with xml.nest_in("onexit"):
                     for kind in self.ids.deadlines:
                         cancel_timer(xml, kind)
 
@@ -260,10 +260,10 @@ class _Document:
         if _hard_deadline(task) is not None:
             own.append("due_window")
         if own:
-            with xml.element("if", {"cond": "awaits != 0"}):
+            with xml.nest_in("if", {"cond": "awaits != 0"}):
                 self._assign([(due, "0") for due in own])
         if self.timers:
-            with xml.element("if", {"cond": "mode == 0"}):
+            with xml.nest_in("if", {"cond": "mode == 0"}):
                 for kind in self.ids.deadlines:
                     start_timer(xml, kind)
 
@@ -276,11 +276,11 @@ class _Document:
         limit = "0" if wait.limit is None else f"now + {number_text(wait.limit)}"
         end = "now" if wait.duration is None else f"now + {number_text(wait.duration)}"
         self._assign([("due_limit", limit), ("due_wait", end)])
-        with xml.element("if", {"cond": "due_wait < earliest"}):
+        with xml.nest_in("if", {"cond": "due_wait < earliest"}):
             assign(xml, "due_wait", "earliest")
         if wait.duration is None:
             # Without a duration, only the start of the window is a deadline.
-            with xml.element("if", {"cond": "due_wait <= now"}):
+            with xml.nest_in("if", {"cond": "due_wait <= now"}):
                 assign(xml, "due_wait", "0")
 
     def _wait_transitions(self, leaf: Leaf, end: str) -> None:
@@ -291,7 +291,7 @@ class _Document:
             xml.add("transition", {"cond": f"{going} && now >= due_wait", "target": end})
         if wait.event is not None:
             event = {"event": f"event.{wait.event}", "cond": "awaits == 0"}
-            with xml.element("transition", event):
+            with xml.nest_in("transition", event):
                 assign(xml, "occurred", "1")
             cond = f"{going} && occurred == 1 && now >= earliest"
             xml.add("transition", {"cond": cond, "target": end})
@@ -299,9 +299,9 @@ class _Document:
             cond = f"{going} && look == 1 && now >= earliest"
             all_satisfied = " && ".join([cond, *map(self._guard, wait.conditions)])
             xml.add("transition", {"cond": all_satisfied, "target": end})
-            with xml.element("transition", {"cond": cond}):
+            with xml.nest_in("transition", {"cond": cond}):
                 assign(xml, "look", "0")
-        with xml.element("transition", {"event": "timeout.wait", "cond": going}):
+        with xml.nest_in("transition", {"event": "timeout.wait", "cond": going}):
             self._assign([("now", "_event.data.time"), ("clock", "now - lost")])
             if wait.duration is None:
                 assign(xml, "due_wait", "0")
@@ -316,11 +316,11 @@ class _Document:
         if leaf.task.retries:
             again = f"fails < {leaf.task.retries}"
             event: Attributes = {"event": "action.failed", "cond": f"{failed} && {again}"}
-            with xml.element("transition", event):
+            with xml.nest_in("transition", event):
                 assign(xml, "fails", "fails + 1")
             if leaf.task.time_limit is not None:
                 event = {"event": "timeout.action", "cond": f"{limited} && {again}"}
-                with xml.element("transition", event):
+                with xml.nest_in("transition", event):
                     self._assign([("now", "_event.data.time"), ("clock", "now - lost")])
                     self._assign([("fails", "fails + 1"), ("count", "count + 1")])
                     self._assign([("visit", "count"), ("due_action", "0")])
@@ -351,7 +351,7 @@ class _Document:
         target = (
             f"{self._state(leaf.id)}_end" if transition is None else self._target(transition.target)
         )
-        with xml.element("transition", {"event": event, "cond": cond, "target": target}):
+        with xml.nest_in("transition", {"event": event, "cond": cond, "target": target}):
             self._assign([("now", "_event.data.time"), ("clock", "now - lost")])
             if k := self.ids.object_number(task):
                 self._assign(
@@ -363,7 +363,7 @@ class _Document:
                     ]
                 )
                 if event == "action.failed":
-                    with xml.element("if", {"cond": "_event.data.unreadable == 1"}):
+                    with xml.nest_in("if", {"cond": "_event.data.unreadable == 1"}):
                         assign(xml, f"known_{k}", str(_UNREADABLE))
             if not task.optional:
                 assign(xml, "failures", "failures + 1")
@@ -373,7 +373,7 @@ class _Document:
 
     def _end_of_visit(self, event: str, cond: str, target: str, outcome: Outcome | None) -> None:
         attributes = {"event": event, "cond": cond, "target": target}
-        with self.xml.element("transition", attributes):
+        with self.xml.nest_in("transition", attributes):
             assign(self.xml, "visit", "0")
             if outcome is not None:
                 assign(self.xml, "ends", str(outcome_code(outcome)))
@@ -381,10 +381,10 @@ class _Document:
     def _onward_transition(self, transition: StateTransition, cond: str) -> None:
         if transition.completes is not None:
             n = self.ids.groups[transition.completes]
-            with self.xml.element("transition", {"cond": cond}):
+            with self.xml.nest_in("transition", {"cond": cond}):
                 assign(self.xml, "completed", str(n))
             return
-        with self.xml.element(
+        with self.xml.nest_in(
             "transition", {"cond": cond, "target": self._target(transition.target)}
         ):
             self._assign([("completed", "0"), ("awaits", "0"), ("due_round", "0")])
@@ -421,33 +421,33 @@ class _Document:
 
     def _actuator_region(self) -> None:
         xml = self.xml
-        with xml.element("state", {"id": "actuator", "initial": "free"}):
+        with xml.nest_in("state", {"id": "actuator", "initial": "free"}):
             for k in sorted(self.ids.objects.values()):
-                with xml.element("transition", {"event": f"reading.{k}"}):
+                with xml.nest_in("transition", {"event": f"reading.{k}"}):
                     self._store_reading(k)
-            with xml.element("state", {"id": "free"}):
+            with xml.nest_in("state", {"id": "free"}):
                 going = "mode == 0 && visit > 0 && awaits == 0"
-                with xml.element("transition", {"cond": going, "target": "busy"}):
+                with xml.nest_in("transition", {"cond": going, "target": "busy"}):
                     self._start_action("visit", "place", "object")
-                    with xml.element("if", {"cond": "limit > 0 && earliest <= now"}):
+                    with xml.nest_in("if", {"cond": "limit > 0 && earliest <= now"}):
                         assign(xml, "due_action", "now + limit")
-                    with xml.element("if", {"cond": "limit > 0 && earliest > now"}):
+                    with xml.nest_in("if", {"cond": "limit > 0 && earliest > now"}):
                         assign(xml, "due_action", "earliest + limit")
                     if self.timers and "action" in self.ids.deadlines:
                         start_timer(xml, "action")
-                with xml.element("transition", {"cond": "mode == 1", "target": "busy"}):
+                with xml.nest_in("transition", {"cond": "mode == 1", "target": "busy"}):
                     self._start_action("drive", "drive_place", "0")
             for id in ("busy", "stopping"):
-                with xml.element("state", {"id": id}):
+                with xml.nest_in("state", {"id": id}):
                     if id == "busy":
                         xml.add("transition", {"cond": _NOT_WANTED, "target": "stopping"})
                     for k in sorted(self.ids.objects.values()):
                         cond = f"running_object == {k}"
                         attributes = {"event": "action.succeeded", "cond": cond, "target": "free"}
-                        with xml.element("transition", attributes):
+                        with xml.nest_in("transition", attributes):
                             self._store_reading(k)
                             self._end_action()
-                    with xml.element("transition", {"event": "action", "target": "free"}):
+                    with xml.nest_in("transition", {"event": "action", "target": "free"}):
                         self._end_action()
 
     def _start_action(self, number: str, place: str, measured: str) -> None:
@@ -469,9 +469,9 @@ class _Document:
         """Write the assignments that store a checkpoint's reading from the event's data."""
         self._assign([(f"known_{k}", str(_UNREADABLE)), (f"time_{k}", "_event.data.time")])
         self._assign([(f"abnormal_{k}", "0"), ("look", "1")])
-        with self.xml.element("if", {"cond": "_event.data.value != null"}):
+        with self.xml.nest_in("if", {"cond": "_event.data.value != null"}):
             self._assign([(f"known_{k}", str(_VALUE)), (f"value_{k}", "_event.data.value")])
-            with self.xml.element("if", {"cond": "_event.data.abnormal == 1"}):
+            with self.xml.nest_in("if", {"cond": "_event.data.abnormal == 1"}):
                 assign(self.xml, f"abnormal_{k}", "1")
 
     def _assign(self, assignments: Sequence[tuple[str, str]]) -> None:

@@ -119,7 +119,7 @@ class ControlRegion:
         """Write the region."""
         xml = self.xml
         initial = "stopped" if self.supervised else "going"
-        with xml.element("state", {"id": "control", "initial": initial}):
+        with xml.nest_in("state", {"id": "control", "initial": initial}):
             self._going_state()
             with self._state("choose"):
                 self._enter([("mode", 2)])
@@ -140,18 +140,18 @@ class ControlRegion:
 
     def _going_state(self) -> None:
         with self._state("going"):
-            with self.xml.element("onentry"):
+            with self.xml.nest_in("onentry"):
                 self._assign([("mode", 0), ("lost", "now - clock"), ("look", 1)])
                 for n, repeat in self.rounds:
-                    with self.xml.element("if", {"cond": f"awaits == {n}"}):
+                    with self.xml.nest_in("if", {"cond": f"awaits == {n}"}):
                         self._assign([("due_round", round_deadline(n, repeat))])
                 for n, counted in self.timed.items():
-                    with self.xml.element("if", {"cond": f"In('g{n}') && until_{n} < {NEVER}"}):
+                    with self.xml.nest_in("if", {"cond": f"In('g{n}') && until_{n} < {NEVER}"}):
                         start_group_timer(self.xml, n, counted)
                 if self.timers:
                     for kind in self.deadlines:
                         start_timer(self.xml, kind)
-            with self.xml.element("onexit"):
+            with self.xml.nest_in("onexit"):
                 # An interrupted action is started again later, with its full time limit.
                 self._assign([("due_action", 0)])
                 for n in self.timed:
@@ -191,11 +191,11 @@ class ControlRegion:
     def _hold_state(self, id: str, reaction: Reaction) -> None:
         with self._state(id):
             if reaction.hold_limit is not None:
-                with self.xml.element("onentry"):
+                with self.xml.nest_in("onentry"):
                     self._assign([("due_hold", f"now + {number_text(reaction.hold_limit)}")])
                     if self.timers:
                         start_timer(self.xml, "hold")
-                with self.xml.element("onexit"):
+                with self.xml.nest_in("onexit"):
                     self._assign([("due_hold", 0)])
                     if self.timers:
                         cancel_timer(self.xml, "hold")
@@ -299,7 +299,7 @@ class ControlRegion:
         own: Reaction | None,
         kind: EventKind | None,
     ) -> None:
-        with self.xml.element("transition", {"event": event, "cond": cond, "target": target}):
+        with self.xml.nest_in("transition", {"event": event, "cond": cond, "target": target}):
             if event is not None:
                 self._assign([("now", "_event.data.time")])
                 if stage is Stage.GOING:
@@ -348,16 +348,16 @@ class ControlRegion:
         for reaction in self.reactions.values():
             ends_hold = reaction.until is kind
             if ends_hold or reaction.event is kind:
-                with self.xml.element("if", {"cond": f"since_{reaction.event} != 0"}):
+                with self.xml.nest_in("if", {"cond": f"since_{reaction.event} != 0"}):
                     self._assign([(f"over_{reaction.event}", int(ends_hold))])
 
     # Elements of the states
 
     def _state(self, id: str, attributes: Attributes | None = None) -> AbstractContextManager[None]:
-        return self.xml.element("state", {"id": id, **(attributes or {})})
+        return self.xml.nest_in("state", {"id": id, **(attributes or {})})
 
     def _enter(self, assignments: Assignments) -> None:
-        with self.xml.element("onentry"):
+        with self.xml.nest_in("onentry"):
             self._assign(assignments)
 
     def _eventless_transition(self, cond: str, target: str) -> None:
@@ -366,7 +366,7 @@ class ControlRegion:
     def _event_transition(
         self, event: str, target: str | None = None, more: Assignments = ()
     ) -> None:
-        with self.xml.element("transition", {"event": event, "target": target}):
+        with self.xml.nest_in("transition", {"event": event, "target": target}):
             self._assign([("now", "_event.data.time"), *more])
 
     def _assign(self, assignments: Assignments) -> None:

@@ -104,7 +104,7 @@ def assign(xml: XmlWriter, location: str, expr: str) -> None:
 
 def write_data_model(xml: XmlWriter, hfsm: Hfsm, ids: ChartIds) -> None:
     """Write the data model with its initial values."""
-    with xml.element("datamodel"):
+    with xml.nest_in("datamodel"):
         for name in _NUMBERS:
             xml.add("data", {"id": name, "expr": "0"})
         for name in ("place", "drive_place", "running_place"):
@@ -175,7 +175,7 @@ def start_group_timer(xml: XmlWriter, n: int, counts_interruptions: bool) -> Non
 
 def start_timer(xml: XmlWriter, kind: str) -> None:
     """Write the start of the engine's own timer for one of `DEADLINES`, if that one is set."""
-    with xml.element("if", {"cond": f"due_{kind} != 0"}):
+    with xml.nest_in("if", {"cond": f"due_{kind} != 0"}):
         _send(xml, f"timeout.{kind}", f"timer_{kind}", f"due_{kind}")
 
 
@@ -186,5 +186,5 @@ def cancel_timer(xml: XmlWriter, kind: str) -> None:
 
 def _send(xml: XmlWriter, event: str, id: str, deadline: str) -> None:
     remaining = f"Math.max(0, {deadline} - now) + 's'"
-    with xml.element("send", {"event": event, "id": id, "delayexpr": remaining}):
+    with xml.nest_in("send", {"event": event, "id": id, "delayexpr": remaining}):
         xml.add("param", {"name": "time", "expr": f"Math.max(now, {deadline})"})

@@ -48,7 +48,7 @@ class XmlWriter:
         self._lines.append(f"{self._indent}<{tag}{_attributes(attributes)}>{escape(text)}</{tag}>")
 
     @contextmanager
-    def element(self, tag: str, attributes: Attributes | None = None) -> Iterator[None]:
+    def nest_in(self, tag: str, attributes: Attributes | None = None) -> Iterator[None]:
         """Open an element for the duration of the `with` block, and close it afterwards."""
         self.open(tag, attributes)
         yield

@@ -60,7 +60,7 @@ class MissionFile:
 
         The new places replace those in the script from which the mission was imported.
         """
-        path = Subjects(self.mission).path
+        path = Subjects(self.mission).subject_path
         unplaced = (
             UnplacedDiagnostic(d, None if d.subject is None else path(d.subject))
             for d in diagnostics

@@ -131,7 +131,7 @@ class Configuration:
         if self.interrupted_at is not None:
             self.interrupted_s += now - self.interrupted_at
             self.interrupted_at = None
-        self.check_wait(now)
+        self.schedule_wait_check(now)
         self._update_group_due(now)
 
     def advance_clocks(self, seconds: float, now: float) -> None:
@@ -151,9 +151,9 @@ class Configuration:
     def reading_changed(self, now: float) -> None:
         """Let the active task, if it is a WAIT, check its conditions at `now`."""
         if self.visit.leaf is not None and self.visit.leaf.wait is not None:
-            self.check_wait(now)
+            self.schedule_wait_check(now)
 
-    def check_wait(self, now: float) -> None:
+    def schedule_wait_check(self, now: float) -> None:
         """Schedule a check of the WAIT's conditions, now or at the end of the interruption."""
         self.visit.check_at = now
         self.update_visit_due()

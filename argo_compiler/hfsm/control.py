@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from argo_compiler.hfsm.interrupt_state import AppliedRow, InterruptState, advance
+from argo_compiler.hfsm.interrupt_state import AppliedRow, InterruptState, take_rows
 from argo_compiler.hfsm.interrupts import Effect, Stage, Trigger
 from argo_compiler.hfsm.kinds import Cause, Outcome
 from argo_compiler.hfsm.machine_state import MachineState
@@ -161,7 +161,7 @@ class Control:
     ) -> None:
         over: EventKind | None = None
         outcome = self.mission.outcome
-        for step in advance(self.interrupt_state, self._reactions, trigger, event, outcome):
+        for step in take_rows(self.interrupt_state, self._reactions, trigger, event, outcome):
             self.interrupt_state = step.after
             if step.row.effects and step.row.effects[-1] is Effect.DROP:
                 over = step.before.active

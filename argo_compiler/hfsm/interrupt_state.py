@@ -52,7 +52,7 @@ class AppliedRow(NamedTuple):
     after: InterruptState
 
 
-def advance(
+def take_rows(
     state: InterruptState,
     reactions: Reactions,
     trigger: Trigger,

@@ -62,9 +62,9 @@ def lower(
         machine = _Lowering(mission).machine()
         if progress is None:
             return machine
-        from argo_compiler.hfsm.remaining import remaining  # imported late: rarely needed
+        from argo_compiler.hfsm.remaining import remaining_machine  # imported late: rarely needed
 
-        return remaining(machine, progress)
+        return remaining_machine(machine, progress)
 
 
 _END = StateTransition(kind=TransitionKind.DEFAULT, target=DONE, domain=MISSION)

@@ -9,7 +9,7 @@ from argo_compiler.hfsm.restoring import leaf_for
 from argo_compiler.hfsm.tables import CompiledTransition, GroupNode, LeafNode, build_tables
 
 
-def remaining(hfsm: Hfsm, progress: Progress) -> Hfsm:
+def remaining_machine(hfsm: Hfsm, progress: Progress) -> Hfsm:
     """Return the machine without the states that can't be reached any more (rule H5).
 
     Which conditions will be satisfied is unknown, so all of them are assumed to be possible.

@@ -17,19 +17,19 @@ class Subjects:
     def __init__(self, mission: Mission) -> None:
         self.mission = mission
 
-    def task(self, position: int, rest: str = "") -> str:
+    def task_subject(self, position: int, rest: str = "") -> str:
         """Return the subject of the task at a position; `rest` is a path within it."""
         return _named("tasks", position, self._tasks, rest)
 
-    def group(self, position: int, rest: str = "") -> str:
+    def group_subject(self, position: int, rest: str = "") -> str:
         """Return the subject of the group at a position; `rest` is a path within it."""
         return _named("groups", position, self._groups, rest)
 
-    def reaction(self, position: int, rest: str = "") -> str:
+    def reaction_subject(self, position: int, rest: str = "") -> str:
         """Return the subject of the reaction at a position; `rest` is a path within it."""
         return _named("reactions", position, self._reactions, rest)
 
-    def path(self, text: str) -> tuple[str | int, ...]:
+    def subject_path(self, text: str) -> tuple[str | int, ...]:
         """Return a subject as fields and positions in the mission's lists.
 
         If it names something that the mission does not have, the path ends with the list.

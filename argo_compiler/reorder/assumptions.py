@@ -21,12 +21,12 @@ def assumption_notes(visits: Visits, matrix: TravelMatrix) -> Iterator[str]:
     actions that may not end within their time limits.
     """
     for leaf in _waits_of_unknown_length(visits):
-        yield f"'{visits.task(leaf).name}' is assumed to take its whole limit"
+        yield f"'{visits.leaf_task(leaf).name}' is assumed to take its whole limit"
     for leaf in _leaves_beyond_limit(visits, matrix):
-        limit = time_words(visits.task(leaf).time_limit or 0.0)
+        limit = time_words(visits.leaf_task(leaf).time_limit or 0.0)
         yield (
-            f"'{visits.task(leaf).name}' may take longer than its time limit, {limit}, depending "
-            "on where the robot comes from: computed as if it had none"
+            f"'{visits.leaf_task(leaf).name}' may take longer than its time limit, {limit}, "
+            "depending on where the robot comes from: computed as if it had none"
         )
     for group_unit, _ in visits.group_units:
         group = visits.chain.flow.groups[group_unit.group]
@@ -50,7 +50,7 @@ def assumptions(visits: Visits, matrix: TravelMatrix) -> Iterator[str]:
 
 def _waits_of_unknown_length(visits: Visits) -> list[int]:
     """Return the leaves whose tasks are WAITs that may end before their limit."""
-    waits = ((leaf, visits.task(leaf).wait) for leaf in visits.visit_of_leaf)
+    waits = ((leaf, visits.leaf_task(leaf).wait) for leaf in visits.visit_of_leaf)
     return [leaf for leaf, wait in waits if wait is not None and wait.duration is None]
 
 
@@ -62,7 +62,7 @@ def _leaves_beyond_limit(visits: Visits, matrix: TravelMatrix) -> list[int]:
     longest = np.max(matrix.time, axis=0, where=np.isfinite(matrix.time), initial=0.0)
     leaves = []
     for leaf in range(len(matrix.tasks)):
-        task = visits.task(leaf)
+        task = visits.leaf_task(leaf)
         limit = None if task.action is Action.WAIT else task.time_limit
         if limit is not None and longest[leaf] > matrix.units_down(limit):
             leaves.append(leaf)

@@ -124,7 +124,7 @@ def late_visits(planned: MissionProblem, route: Tour) -> Iterator[str]:
     visits = planned.visits
     for k, start in zip(route.order, evaluate(planned.problem, route).arrivals, strict=True):
         entry = visits.task_units[k].entry
-        window = visits.task(entry).window
+        window = visits.leaf_task(entry).window
         if window is None or window.hard or window.latest is None:
             continue
         end = (start + planned.work[entry]) * planned.problem.unit
@@ -249,11 +249,12 @@ def _visits(
         optional_visits -= set(visits.with_whole_groups([last]))
     for k in everything:
         earliest, latest = windows.start_limits(k)
+        first_task = visits.leaf_task(visits.task_units[k].entry)
         yield Visit(
             visits.names[k],
             service=services[k],
             mandatory=k not in optional_visits,
-            prize=visits.task(visits.task_units[k].entry).priority if k in optional_visits else 0,
+            prize=first_task.priority if k in optional_visits else 0,
             earliest=earliest,
             latest=latest,
         )

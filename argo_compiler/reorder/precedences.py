@@ -95,7 +95,7 @@ def required_name_pairs(visits: Visits, requirements: Requirements) -> tuple[tup
 
 def _initial_wait(visits: Visits) -> Iterator[Precedence]:
     """Yield precedences that keep an initial WAIT first: it takes place at the start pose."""
-    first = visits.task(visits.task_units[0].entry) if visits.task_units else None
+    first = visits.leaf_task(visits.task_units[0].entry) if visits.task_units else None
     if first is not None and first.action is Action.WAIT:
         words = f"'{first.name}' is done before the robot sets off"
         yield from (Precedence((0, k), words) for k in range(1, len(visits.task_units)))

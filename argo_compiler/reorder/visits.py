@@ -48,7 +48,7 @@ class Visits:
         """Return the visit numbers of all task units in these units."""
         return [self.visit_of_leaf[unit.entry] for unit in task_units_in(units)]
 
-    def task(self, leaf: int) -> Task:
+    def leaf_task(self, leaf: int) -> Task:
         """Return the task of a leaf."""
         return self.chain.flow.leaves[leaf].leaf.task
 
@@ -59,7 +59,7 @@ class Visits:
 
     def is_optional(self, visit: int) -> bool:
         """Return True if all tasks of a visit may be left out."""
-        tasks = [self.task(leaf) for leaf in self.task_units[visit].leaves]
+        tasks = [self.leaf_task(leaf) for leaf in self.task_units[visit].leaves]
         return all(task.optional or task.action is Action.WAIT for task in tasks) and any(
             task.optional for task in tasks
         )
@@ -69,7 +69,7 @@ class Visits:
 
         The task's name is added to the checkpoint if another task measures the same one.
         """
-        task = self.task(leaf)
+        task = self.leaf_task(leaf)
         if task.action is not Action.MEASURE:
             return f"'{task.name}'"
         others = self._leaves_measuring[task.object_id or ""]

@@ -54,7 +54,7 @@ class Windows:
         The latest start is None if there is no limit.
         """
         entry = self._visits.task_units[visit].entry
-        window = _binding_window(self._visits.task(entry).window)
+        window = _binding_window(self._visits.leaf_task(entry).window)
         if window is None:
             return 0, None
         latest = None
@@ -64,7 +64,9 @@ class Windows:
 
     def description(self, visit: int) -> str | None:
         """Return the visit's window in words, or None if it sets no latest end."""
-        window = _binding_window(self._visits.task(self._visits.task_units[visit].entry).window)
+        window = _binding_window(
+            self._visits.leaf_task(self._visits.task_units[visit].entry).window
+        )
         if window is None or not window.hard or window.latest is None:
             return None
         start = f"begun from {time_words(window.earliest)} on and " if window.earliest else ""
@@ -73,7 +75,7 @@ class Windows:
     def end_limit(self) -> tuple[float, str] | None:
         """Return the latest end (s) of the mission's last task and its description, or None."""
         end = self._visits.chain.end
-        window = None if end is None else _binding_window(self._visits.task(end).window)
+        window = None if end is None else _binding_window(self._visits.leaf_task(end).window)
         if end is None or window is None or window.latest is None:
             return None
         return window.latest, f"time window of '{self._visits.chain.name(end)}'"

@@ -175,7 +175,7 @@ class BeamSearch:
         rules = self._bits.layer(size)
         parts = [labels.select(np.zeros(0, np.int64))]
         for node in range(network.size):
-            if search.remaining() <= 0.0:
+            if search.remaining_time() <= 0.0:
                 return None
             rows = rules.rows(labels.mask, node)
             rows = rows[pruned.arcs[labels.last[rows], node]]

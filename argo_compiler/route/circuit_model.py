@@ -325,7 +325,7 @@ class CircuitModel:
         for i, j, charger, literal in self._arcs:
             self.model.add_hint(literal, (i, j, charger) in legs)
 
-    def path(
+    def solution_path(
         self, is_true: Callable[[cp_model.IntVar], bool]
     ) -> tuple[tuple[int, ...], dict[int, int]]:
         """Return the nodes of a solution in order, and its charges.

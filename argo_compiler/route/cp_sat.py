@@ -38,7 +38,7 @@ class CpSat:
         if not network.mandatory.any():
             offer_empty_routes(search)
         patience = _PATIENCE
-        while search.remaining() > time_to_build(network, search.pruned):
+        while search.remaining_time() > time_to_build(network, search.pruned):
             _Attempt(search, self.name, patience).run()
             patience *= 2.0
 
@@ -86,7 +86,7 @@ class _Attempt:
         def must_stop() -> bool:
             now = search.best
             is_beaten = now is not best and now is not None and now.method != self._name
-            return search.remaining() <= 0.0 or (
+            return search.remaining_time() <= 0.0 or (
                 is_beaten and search.now() - begun >= self._patience
             )
 
@@ -127,4 +127,4 @@ class _SolutionCallback(cp_model.CpSolverSolutionCallback):
         self._model, self._search = model, search
 
     def on_solution_callback(self) -> None:
-        self._search.offer(*self._model.path(self.boolean_value))
+        self._search.offer(*self._model.solution_path(self.boolean_value))

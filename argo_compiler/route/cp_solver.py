@@ -31,9 +31,9 @@ def solver_for(search: Search) -> cp_model.CpSolver:
     solver.parameters.linearization_level = 2
     solver.parameters.random_seed = search.seed % (1 << 31)
     if search.timed:
-        solver.parameters.max_time_in_seconds = max(search.remaining(), 0.01)
+        solver.parameters.max_time_in_seconds = max(search.remaining_time(), 0.01)
     else:
-        solver.parameters.max_deterministic_time = search.remaining() / _NOMINAL
+        solver.parameters.max_deterministic_time = search.remaining_time() / _NOMINAL
     return solver
 
 

@@ -55,11 +55,13 @@ class ExchangeSearch:
         state = _initial_state(kernel, kernel_network, search.seed)
         worst = int(search.network.prize.sum()) + 1
         work, iterations, length = 0, 0, _FIRST_RUN
-        while search.remaining() > 0.0:
+        while search.remaining_time() > 0.0:
             _restart(kernel, kernel_network, state, search)
-            begun, remaining = search.now(), search.remaining()
+            begun, remaining = search.now(), search.remaining_time()
             length = remaining if remaining < 2.0 * length else length
-            while search.remaining() > 0.0 and (passed := (search.now() - begun) / length) < 1.0:
+            while (
+                search.remaining_time() > 0.0 and (passed := (search.now() - begun) / length) < 1.0
+            ):
                 cost, missed = state[kernel.VALUES, 4:6].tolist()
                 mean = state[kernel.VALUES, 1] / max(1, state[kernel.VALUES, 0])
                 kernel.run(
@@ -89,7 +91,7 @@ class _Kernel:
             if cls._thread is None:
                 cls._thread = Thread(target=cls._compile)
                 cls._thread.start()
-        while cls._thread.is_alive() and (not search.timed or search.remaining() > 0.0):
+        while cls._thread.is_alive() and (not search.timed or search.remaining_time() > 0.0):
             cls._thread.join(0.02)
         return cls._module
 

@@ -43,7 +43,7 @@ class FirstRules:
             lambda _at, _now: latest,
         ]
         timing = PathTiming(network)
-        until = search.now() + search.remaining() + _OVERTIME
+        until = search.now() + search.remaining_time() + _OVERTIME
         if not any(_build(search, timing, rule, until) for rule in rules):
             search.add_reason("no simple rule leads to a first route")
 
@@ -59,7 +59,7 @@ def _build(search: Search, timing: PathTiming, rule: Rule, until: float) -> bool
     remaining = network.mandatory.copy()
     missing = pruned.needs.sum(axis=0)
     closed = np.zeros(len(remaining), np.int64)
-    labels, at = timing.start(), m
+    labels, at = timing.start_labels(), m
     end_labels = timing.extend(labels, m, m, 0)
     while remaining.any():
         ready = (remaining & (missing == 0) & (closed == 0))[network.step] & pruned.arcs[at, :m]

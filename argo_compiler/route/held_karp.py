@@ -97,15 +97,15 @@ def layers_if_few(search: Search) -> list[Layer] | None:
     most = min(_MOST_SETS, _MOST_STATES // max(1, network.size))
     share = search.share(0.7)
     if not search.timed:
-        most = min(most, int(share.remaining() / (_TIME_PER_STATE * max(1, network.size))))
-    sets = count_sets(network, pruned, most, lambda: share.remaining() <= 0.0)
+        most = min(most, int(share.remaining_time() / (_TIME_PER_STATE * max(1, network.size))))
+    sets = count_sets(network, pruned, most, lambda: share.remaining_time() <= 0.0)
     is_ordered = network.windowed or pruned.before.any() or network.problem.battery is not None
     # Windows may leave much fewer sets than the precedences do.
     is_few = sets <= (most if is_ordered else _FEW_SETS) or network.windowed
     if not is_few or unlimited_horizon(network) >= INF or not StepBits(network, pruned).fits:
         search.add_reason(f"{int(pruned.steps.sum())} steps allow too many sets to check all")
         return None
-    layers = compute_layers(network, pruned, most, lambda: share.remaining() <= 0.0)
+    layers = compute_layers(network, pruned, most, lambda: share.remaining_time() <= 0.0)
     if layers is None:
         search.add_reason("there are too many sets to check all, or the time was too short")
         return None

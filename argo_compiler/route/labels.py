@@ -108,7 +108,7 @@ def solve_with_tables(
         return no_solution(network, proven=True)
     # If the battery lasts for the best route without a battery, that route is the best one.
     timing = PathTiming(network)
-    label = timing.follow(earliest.path)
+    label = timing.evaluate_path(earliest.path)
     if label is not None:
         followed = make_solution(
             network, earliest.path, dict(label.charges), int(network.prize.sum()), 0
@@ -179,7 +179,7 @@ def _widen(
             return make_solution(network, best.path, best.charges, prize, best.cost)
         bound = max(bound, beam.bound)
         search.report_bounds(bound=bound)
-        if search.remaining() <= 0.0:
+        if search.remaining_time() <= 0.0:
             break
     if best is None or best.path is None:
         return no_solution(network, proven=False, bound=bound)
@@ -217,7 +217,7 @@ def _solve_by_prize(
             beams = _search_with_tables(network, pruned, subsets_of(group, len(network.prize)))
             beam = beams.run(width, None, search)
             best, complete = _offer_if_better(network, search, beam, best), beam.complete
-            if complete or search.remaining() <= 0.0:
+            if complete or search.remaining_time() <= 0.0:
                 break
         if best is not None and best.path is not None and complete and best.prize >= lowest:
             return _cheapest(network, pruned, search, best, goals[prizes == best.prize])

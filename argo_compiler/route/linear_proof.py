@@ -83,7 +83,7 @@ class _Stage:
         if low is None:
             return
         self._report_bound(min(low, cap + 1))
-        while to_optimality and search.remaining() > 0.0 and not self._is_proven(low, cap):
+        while to_optimality and search.remaining_time() > 0.0 and not self._is_proven(low, cap):
             most = min(low + max(1, int(margin * abs(low))), self._most(cap))
             low = self._solve_within(relaxation, most)
             self._report_bound(low)
@@ -136,7 +136,7 @@ class _Stage:
             replace(network, mandatory=mandatory),
             replace(pruned, arcs=arcs, steps=pruned.steps & steps),
         )
-        if search.remaining() < time_to_build(restricted, pruned):
+        if search.remaining_time() < time_to_build(restricted, pruned):
             return min(relaxation.bound or 0, most)
         model = CircuitModel(restricted, pruned)
         for cut in relaxation.cuts:
@@ -148,13 +148,13 @@ class _Stage:
         else:
             model.minimise_cost(self.least_prize or None, most)
         solver = solver_for(search)
-        status = run_solver(solver, model.model, None, lambda: search.remaining() <= 0.0)
+        status = run_solver(solver, model.model, None, lambda: search.remaining_time() <= 0.0)
         spend(search, solver)
         if status == cp_model.INFEASIBLE:
             return most + 1
         bound = relaxation.bound or 0
         if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-            search.offer(*model.path(solver.boolean_value))
+            search.offer(*model.solution_path(solver.boolean_value))
             sign = -1 if self.least_prize is None else 1
             bound = max(bound, ceil(sign * solver.best_objective_bound - 1e-6))
         return min(bound, most)

@@ -145,13 +145,13 @@ class LinearRelaxation:
     def solve(self, search: Search, enough: int | None) -> None:
         """Raise the bound until it is at least `enough`, no cut is violated, or the time is up."""
         has_new_rows = False
-        while search.remaining() > 0.0:
+        while search.remaining_time() > 0.0:
             simplex = "true" if has_new_rows else "false"
             self._glop.SetSolverSpecificParametersAsString(
                 f"use_preprocessing: false use_dual_simplex: {simplex}"
             )
             if search.timed:
-                self._glop.SetTimeLimit(max(1, int(1e3 * search.remaining())))
+                self._glop.SetTimeLimit(max(1, int(1e3 * search.remaining_time())))
             status = self._glop.Solve()
             search.spend(_WORK[0] * len(self._rows) * (1 + self._glop.iterations()))
             if status != pywraplp.Solver.OPTIMAL:

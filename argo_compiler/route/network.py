@@ -97,7 +97,7 @@ class StepNetwork:
             tour_charges[len(order)] = charges[len(path)]
         return Tour(tuple(order), tour_charges)
 
-    def path(self, tour: Tour) -> tuple[tuple[int, ...] | None, dict[int, int]]:
+    def tour_path(self, tour: Tour) -> tuple[tuple[int, ...] | None, dict[int, int]]:
         """Return the nodes of a route, and its charges by the position among them.
 
         Instead of the nodes returns None if the network lacks the route's order of some round.

@@ -45,7 +45,7 @@ class PathTiming:
         self.legs = 0
         """number of legs tried, those by chargers included: a measure of the work"""
 
-    def start(self) -> list[PathLabel]:
+    def start_labels(self) -> list[PathLabel]:
         """Return the label before the first node."""
         used = 0 if self._battery is None else self._battery.used
         return [PathLabel(0, used, 0)]
@@ -97,9 +97,9 @@ class PathTiming:
             waited = label.waited + begin - arrival
             extended.append(PathLabel(begin + self._service[node], used, waited, charges))
 
-    def follow(self, path: tuple[int, ...]) -> PathLabel | None:
+    def evaluate_path(self, path: tuple[int, ...]) -> PathLabel | None:
         """Return the best label at the end of a complete path, or None if it is infeasible."""
-        labels, origin = self.start(), self.network.size
+        labels, origin = self.start_labels(), self.network.size
         for position, node in enumerate((*path, self.network.size)):
             labels = self.extend(labels, origin, node, position)
             if not labels:

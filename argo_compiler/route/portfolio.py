@@ -81,7 +81,7 @@ def _run_in_turn(search: Search, solvers: Sequence[RouteSolver]) -> None:
 
 
 def _run(solver: RouteSolver, search: Search) -> None:
-    if search.remaining() > 0.0:
+    if search.remaining_time() > 0.0:
         with search.turn_of(solver.name) as turn:
             solver.solve(turn)
 

@@ -67,7 +67,7 @@ class PyvrpSearch:
             # The warning says that PyVRP found no feasible route, which the search knows already.
             warnings.simplefilter("ignore", pyvrp.exceptions.PenaltyBoundWarning)
             for neighbours, perturbed in cycle(_TURNS):
-                if search.remaining() <= 0.0:
+                if search.remaining_time() <= 0.0:
                     return
                 _Turn(search, nodes, data, random, neighbours, perturbed).run(penalty)
 
@@ -180,4 +180,4 @@ class _Turn:
         return improved
 
     def _stop(self, best_cost: int) -> bool:  # noqa: ARG002
-        return self._idle > _PATIENCE or self._search.remaining() <= 0.0
+        return self._idle > _PATIENCE or self._search.remaining_time() <= 0.0

@@ -47,7 +47,7 @@ class RuinRecreate:
 
 
 def _charges(network: StepNetwork, path: Path) -> dict[int, int]:
-    label = PathTiming(network).follow(path)
+    label = PathTiming(network).evaluate_path(path)
     assert label is not None
     return dict(label.charges)
 
@@ -71,12 +71,12 @@ class LocalSearch:
         """Search for better routes from a path until the time is up, and offer them."""
         best = current = path
         best_worth = current_worth = self._worth(path) or (0, -NEVER)
-        total = search.remaining()
-        self._is_time_up = lambda: search.remaining() <= 0.0
+        total = search.remaining_time()
+        self._is_time_up = lambda: search.remaining_time() <= 0.0
         if not path and not self._network.selective:
             return
         k, legs = 0, self._timing.legs
-        while (remaining := search.remaining()) > 0.0:
+        while (remaining := search.remaining_time()) > 0.0:
             k += 1
             search.spend(_TIME_PER_CHANGE + _TIME_PER_LEG * (self._timing.legs - legs), 1)
             legs = self._timing.legs
@@ -97,7 +97,7 @@ class LocalSearch:
                 current, current_worth = best, best_worth
 
     def _worth(self, path: Path) -> Worth | None:
-        label = self._timing.follow(path)
+        label = self._timing.evaluate_path(path)
         if label is None:
             return None
         prize = sum(int(self._network.prize[self._step[node]]) for node in path)
@@ -164,6 +164,6 @@ class LocalSearch:
         tries = 1 if self._network.plain and self._network.limit >= NEVER else 6
         for _, position, node in sorted(insertions)[:tries]:
             longer = [*path[:position], node, *path[position:]]
-            if self._timing.follow(tuple(longer)) is not None:
+            if self._timing.evaluate_path(tuple(longer)) is not None:
                 return longer
         return None

@@ -116,18 +116,18 @@ class Search:
         shared = self._shared
         return shared.clock() - shared.begun if self.timed else shared.work
 
-    def remaining(self) -> float:
+    def remaining_time(self) -> float:
         """Return the remaining time, or work if that is limited, in s; 0 when the search ends."""
         shared, limits = self._shared, self._shared.limits
         if not shared.stopped:
             is_late = limits.seconds is not None and shared.clock() - shared.begun >= limits.seconds
-            if is_late or (limits.stop is not None and limits.stop(self.progress())):
+            if is_late or (limits.stop is not None and limits.stop(self.search_progress())):
                 shared.stopped = True
         return 0.0 if shared.stopped or self.proven else max(0.0, self._deadline - self.now())
 
     def share(self, share: float, most: float = inf) -> "Search":
         """Return a view of this search with a share of the remaining time, at most `most` s."""
-        return self.until(self.now() + min(most, share * self.remaining()))
+        return self.until(self.now() + min(most, share * self.remaining_time()))
 
     def until(self, deadline: float) -> "Search":
         """Return a view of this search with a deadline, on the clock of `now`.
@@ -208,7 +208,7 @@ class Search:
     def turns(self) -> tuple[SolverTurn, ...]:
         return tuple(sorted(self._shared.turns, key=lambda turn: turn.begin))
 
-    def progress(self) -> SearchProgress:
+    def search_progress(self) -> SearchProgress:
         """Return the current progress of the search."""
         shared, best = self._shared, self._shared.best
         return SearchProgress(
@@ -242,7 +242,7 @@ class Search:
 
         Raises Invalid if the route violates a constraint.
         """
-        path, charges = self.network.path(tour)
+        path, charges = self.network.tour_path(tour)
         return self._offer(tour, path, charges)
 
     def _offer(self, tour: Tour, path: tuple[int, ...] | None, charges: Mapping[int, int]) -> bool:
@@ -262,7 +262,7 @@ class Search:
             shared.better = shared.clock() - shared.begun, shared.iterations
             self._record()
         if shared.observers.on_best:
-            shared.observers.on_best(self.progress(), tour)
+            shared.observers.on_best(self.search_progress(), tour)
         return True
 
     def report_bounds(
@@ -286,7 +286,7 @@ class Search:
                 return
             self._record()
         if shared.observers.on_bound:
-            shared.observers.on_bound(self.progress())
+            shared.observers.on_bound(self.search_progress())
 
     def report_infeasible(self) -> None:
         """Report the proof that the network has no route.
@@ -315,4 +315,4 @@ class Search:
                 "problem (a route, a bound or a proof); please report it with the problem"
             )
         shared.method = self._method or shared.method
-        shared.history.append(replace(self.progress(), solver=self._method))
+        shared.history.append(replace(self.search_progress(), solver=self._method))

@@ -33,8 +33,8 @@ class RouteSolver(Protocol):
     def solve(self, search: Search, /) -> None:
         """Offer routes and report bounds to the search.
 
-        Ends when `search.remaining()` is 0, or when the solver has nothing more to try. Under a
-        limit of work (`not search.timed`) it must report its work by `search.spend`, and must be
+        Ends when `search.remaining_time()` is 0, or when the solver has nothing more to try. Under
+        a limit of work (`not search.timed`) it must report its work by `search.spend`, and must be
         deterministic.
         """
         ...

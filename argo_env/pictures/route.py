@@ -105,7 +105,7 @@ def _path_points(
     planned: MissionProblem, route: Tour, navigator: Navigator, travel: SiteTravel
 ) -> list[PathPoint]:
     """Return the robot's positions over time, from its start to the mission's end."""
-    here = travel.start(planned.mission)
+    here = travel.start_pose(planned.mission)
     site, robot = navigator.site, navigator.robot
     points = [PathPoint(0.0, here.x, here.y, site.floor_at(here.z))]
     for task in _tasks(planned, route):
@@ -127,9 +127,9 @@ def _tasks(planned: MissionProblem, route: Tour) -> Iterator[Task]:
     """Yield the tasks that are always executed, and then the one of the end, if there is one."""
     visits = planned.visits
     for visit in route.order:
-        yield visits.task(visits.task_units[visit].entry)
+        yield visits.leaf_task(visits.task_units[visit].entry)
     if visits.chain.end is not None:
-        yield visits.task(visits.chain.end)
+        yield visits.leaf_task(visits.chain.end)
 
 
 def _draw_floor(
@@ -201,9 +201,9 @@ def _stations(
     planned: MissionProblem, travel: SiteTravel, site: Site
 ) -> list[tuple[float, float, int, str]]:
     """Return the start and the end of the mission: x, y (m), floor and name."""
-    start = travel.start(planned.mission)
+    start = travel.start_pose(planned.mission)
     end = planned.visits.chain.end
-    dock = None if end is None else planned.visits.task(end).pose
+    dock = None if end is None else planned.visits.leaf_task(end).pose
     first = (start.x, start.y, site.floor_at(start.z))
     if dock is None:
         return [(*first, "start")]
@@ -214,7 +214,7 @@ def _stations(
 
 def _visit_position(planned: MissionProblem, visit: int, site: Site) -> tuple[float, float, int]:
     """Return the position of a visit's task: x, y (m) and floor."""
-    task = planned.visits.task(planned.visits.task_units[visit].entry)
+    task = planned.visits.leaf_task(planned.visits.task_units[visit].entry)
     if task.action is Action.MEASURE:
         checkpoint = site.checkpoint_for(task.object_id)
         return checkpoint.position[0], checkpoint.position[1], checkpoint.floor

@@ -69,7 +69,7 @@ def mission_travel(
         *tasks,
         *(Task(name=f"docking station {n}", action=Action.WAYPOINT, pose=p) for n, p in docks),
     ]
-    start = travel.start(mission)
+    start = travel.start_pose(mission)
     end_poses = _end_poses(goals, start, travel)
     origins = [*end_poses[: len(tasks)], start, *end_poses[len(tasks) :]]
     if len(goals) <= MOST_PLANNED:

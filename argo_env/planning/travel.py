@@ -127,7 +127,7 @@ class SiteTravel:
         """Greatest time in s from the cancellation of an action until the arm is stowed."""
         return self._round_up(self._robot.sensor.stowing_time) + self.time_step
 
-    def start(self, mission: Mission) -> Pose:
+    def start_pose(self, mission: Mission) -> Pose:
         """Return the pose at which the robot starts: that of START, or of the starting area's dock.
 
         Raises Unreachable if the robot can't stand there.

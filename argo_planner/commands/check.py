@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from argo_compiler.base.errors import ArgoError
-from argo_compiler.diagnostics import Diagnostic, has_errors, summary
+from argo_compiler.diagnostics import Diagnostic, has_errors, severity_counts_text
 from argo_compiler.diagnostics.codes.code import Severity
 from argo_env.planning.opening import open_site
 from argo_planner.terminal.files import STANDARD_OUTPUT, check_outputs, read_upload, write_content
@@ -41,7 +41,7 @@ def check_command(
     written = write_diagnostics(diagnostics, str(source), format)
     if output and output != STANDARD_OUTPUT:
         write_content(output, written + "\n")
-        print(f"{source}: {summary(diagnostics)}")
+        print(f"{source}: {severity_counts_text(diagnostics)}")
     else:
         print(written)
     if has_errors(diagnostics):

@@ -13,7 +13,7 @@ from argo_compiler.diagnostics import (
     Severity,
     by_position,
     has_errors,
-    summary,
+    severity_counts_text,
     to_json,
     to_sarif,
     to_text,
@@ -121,4 +121,4 @@ def write_diagnostics(diagnostics: tuple[Diagnostic, ...], source_name: str, for
             # The text of several diagnostics ends with their number.
             if len(diagnostics) > 1:
                 return text
-            return f"{text}\n{source_name}: {summary(diagnostics)}".lstrip()
+            return f"{text}\n{source_name}: {severity_counts_text(diagnostics)}".lstrip()

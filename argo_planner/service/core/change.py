@@ -59,7 +59,7 @@ def item_name(item: Task | Group | Reaction) -> str:
     return str(item.event) if isinstance(item, Reaction) else item.name
 
 
-def difference(before: Mission, after: Mission) -> MissionChange:
+def mission_change(before: Mission, after: Mission) -> MissionChange:
     """Return the change from the first mission to the second, in O(n log n) for n tasks."""
     header = {n: getattr(after, n) for n in HEADER if getattr(after, n) != getattr(before, n)}
     return MissionChange.model_construct(
@@ -146,13 +146,13 @@ def _apply_list_change(items: Sequence[Item], change: ListChange[Item]) -> tuple
     known.update((item_name(item), item) for item in change.put)
     moved = {name for name, _ in change.placed}
     unmoved = [item_name(i) for i in items if item_name(i) in known and item_name(i) not in moved]
-    order = insert_after(unmoved, change.placed)
+    order = insert_placed(unmoved, change.placed)
     if len(order) != len(known):
         raise KeyError("this is a change of another mission")
     return tuple(known[name] for name in order)
 
 
-def insert_after(unmoved: Sequence[str], placed: Sequence[tuple[str, str | None]]) -> list[str]:
+def insert_placed(unmoved: Sequence[str], placed: Sequence[tuple[str, str | None]]) -> list[str]:
     """Return the unmoved names with the placed ones inserted, one after the other, in linear time.
 
     Each placed name is inserted directly after its predecessor; None inserts it as the first.

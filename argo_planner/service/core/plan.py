@@ -11,7 +11,7 @@ from argo_compiler.editing import Consequence, EditError
 from argo_compiler.editing.commands import apply
 from argo_compiler.editing.consequences import new_errors
 from argo_compiler.il import Mission
-from argo_planner.service.core.change import apply_change, difference
+from argo_planner.service.core.change import apply_change, mission_change
 from argo_planner.service.core.commands import (
     EditPlan,
     PlanCommand,
@@ -119,7 +119,7 @@ class MissionPlan:
             case UndoEdit() | RedoEdit():
                 reverts = self._revision_to_revert(command, author)
                 mission = self._revert(reverts)
-        change = difference(self.mission, mission)
+        change = mission_change(self.mission, mission)
         require_within_limits(mission, change)
         revision = Revision.model_construct(
             number=self.revision + 1,

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from argo_compiler.il import Group, Mission, Reaction, Task
-from argo_planner.service.core.change import HEADER, LISTS, insert_after, item_name, placements
+from argo_planner.service.core.change import HEADER, LISTS, insert_placed, item_name, placements
 
 Named = Task | Group | Reaction
 Subject = tuple[str, str]
@@ -99,7 +99,7 @@ class _ListMerge:
                 ordered.add(name)
             if name in ordered:
                 last = name
-        return tuple(items[name] for name in insert_after(unmoved, placed))
+        return tuple(items[name] for name in insert_placed(unmoved, placed))
 
     def _has_moved(self, name: str) -> bool:
         """Return True if the item has another position now than after the change."""

@@ -53,13 +53,13 @@ class EvaluationFolder:
     def __init__(self, path: Path) -> None:
         self._path = path
 
-    def path(self, id: str) -> Path:
+    def evaluation_path(self, id: str) -> Path:
         """Return the folder of one evaluation."""
         return self._path / id
 
     def store(self, evaluation: StoredEvaluation) -> None:
         """Store the state of an evaluation; raises Unavailable if it can't be written."""
-        folder = self.path(evaluation.job.id)
+        folder = self.evaluation_path(evaluation.job.id)
         make_folder(folder)
         write_atomically(folder / _JOB_FILE, evaluation.model_dump_json().encode())
 
@@ -68,11 +68,13 @@ class EvaluationFolder:
         evaluations = []
         names = os.listdir(self._path) if os.path.isdir(self._path) else []
         for name in names:
-            if re.fullmatch(JOB_ID, name) and not os.path.islink(self.path(name)):
+            if re.fullmatch(JOB_ID, name) and not os.path.islink(self.evaluation_path(name)):
                 try:
                     evaluations.append(self._read(name))
                 except (FileError, ValidationError) as error:
-                    _log.warning("%s: can't be read and is ignored: %s", self.path(name), error)
+                    _log.warning(
+                        "%s: can't be read and is ignored: %s", self.evaluation_path(name), error
+                    )
         return sorted(evaluations, key=lambda evaluation: evaluation.job.begun)
 
     def with_stored_rows(self, job: EvaluationJob) -> EvaluationJob:
@@ -81,7 +83,7 @@ class EvaluationFolder:
         Returns it unchanged if there are no rows or they can't be read.
         """
         try:
-            partial_results = read_partial_results(self.path(job.id))
+            partial_results = read_partial_results(self.evaluation_path(job.id))
         except ArgoError as error:
             _log.warning("evaluation %s: its rows can't be read: %s", job.id, error)
             return job
@@ -90,11 +92,13 @@ class EvaluationFolder:
     def delete(self, id: str) -> None:
         """Delete an evaluation; raises Unavailable if that fails."""
         try:
-            shutil.rmtree(self.path(id))
+            shutil.rmtree(self.evaluation_path(id))
         except OSError as error:
-            raise Unavailable(f"{self.path(id)}: can't be deleted: {error.strerror}") from error
+            raise Unavailable(
+                f"{self.evaluation_path(id)}: can't be deleted: {error.strerror}"
+            ) from error
 
-    def load(self, id: str) -> StoredEvaluation:
+    def load_evaluation(self, id: str) -> StoredEvaluation:
         """Return a stored evaluation; raises NotFound if it can't be read."""
         try:
             return self._read(id)
@@ -103,10 +107,10 @@ class EvaluationFolder:
 
     def read_report(self, id: str) -> bytes:
         """Return the report of an evaluation; raises NotFound if there is none yet."""
-        return read_bytes(self.path(id) / REPORT, "report", _MAX_BYTES)
+        return read_bytes(self.evaluation_path(id) / REPORT, "report", _MAX_BYTES)
 
     def _read(self, id: str) -> StoredEvaluation:
-        content = read_bytes(self.path(id) / _JOB_FILE, "evaluation", _MAX_BYTES)
+        content = read_bytes(self.evaluation_path(id) / _JOB_FILE, "evaluation", _MAX_BYTES)
         evaluation = StoredEvaluation.model_validate_json(content)
         if evaluation.job.state is not JobState.RUNNING:
             return evaluation
@@ -165,7 +169,7 @@ class Evaluations:
             if job.state not in (JobState.INTERRUPTED, JobState.CANCELLED):
                 raise Conflict(f"evaluation {id} can't be resumed: it is {job.state}")
             self._require_none_running()
-            stored = await asyncio.to_thread(self._folder.load, id)
+            stored = await asyncio.to_thread(self._folder.load_evaluation, id)
             job = job.model_copy(update={"state": JobState.RUNNING, "problem": None})
             return await self._start_job(StoredEvaluation(order=stored.order, job=job))
 
@@ -210,7 +214,7 @@ class Evaluations:
         if job.state is JobState.RUNNING:  # an earlier report would lack the new runs
             raise NotFound(f"evaluation {id} has no report yet: it is running")
         if job.state in (JobState.CANCELLED, JobState.INTERRUPTED):
-            work = JobProcess(write_partial_report, self._folder.path(id))
+            work = JobProcess(write_partial_report, self._folder.evaluation_path(id))
             try:
                 await work.result(lambda _: None)
             finally:
@@ -229,7 +233,7 @@ class Evaluations:
         Raises NotFound if there is no such run, Unavailable if it takes too long.
         """
         job = self.find(id)
-        stored = await asyncio.to_thread(self._folder.load, id)
+        stored = await asyncio.to_thread(self._folder.load_evaluation, id)
         request = ReplayRequest(
             key=key,
             plan=job.mission,
@@ -239,7 +243,7 @@ class Evaluations:
             evaluation=stored.order,
         )
         async with self._replays:
-            work = JobProcess(replay_run, request, self._folder.path(id))
+            work = JobProcess(replay_run, request, self._folder.evaluation_path(id))
             try:
                 async with asyncio.timeout(LONGEST_REPLAY):
                     return await work.result(lambda _: None)
@@ -262,7 +266,10 @@ class Evaluations:
     async def _start_job(self, evaluation: StoredEvaluation) -> EvaluationJob:
         await asyncio.to_thread(self._folder.store, evaluation)
         work = JobProcess(
-            evaluate_mission, evaluation.order, self._folder.path(evaluation.job.id), parent=True
+            evaluate_mission,
+            evaluation.order,
+            self._folder.evaluation_path(evaluation.job.id),
+            parent=True,
         )
 
         async def on_end(job: Job) -> None:

@@ -36,7 +36,7 @@ class Analyst:
         self._site = site.reference
         self._pool = _make_pool()
 
-    async def analyse(self, mission: Mission, revision: int) -> AnalysisFound:
+    async def analyse_revision(self, mission: Mission, revision: int) -> AnalysisFound:
         """Return the analysis of a mission, with the number of its revision."""
         for _ in range(2):  # the second time in a new process
             pool = self._pool

@@ -65,7 +65,7 @@ class OrderJob(_Job):
         found = self.found and self.found.model_copy(update={"mission": None})
         return self.model_copy(update={"found": found})
 
-    def summary(self) -> "OrderJob":
+    def without_result(self) -> "OrderJob":
         """Return the job without its result."""
         return self.model_copy(update={"found": None})
 
@@ -92,7 +92,7 @@ class EvaluationJob(_Job):
         """Return the job as the members of the room get it: complete."""
         return self
 
-    def summary(self) -> "EvaluationJob":
+    def without_result(self) -> "EvaluationJob":
         """Return the job without its result."""
         return self.model_copy(update={"standing": None})
 

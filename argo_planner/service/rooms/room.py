@@ -90,7 +90,7 @@ class PlanRoom:
         """The last analysis, which may be of an earlier revision; None if there is none yet."""
         return self._analysis
 
-    def state(self, author: str) -> PlanState:
+    def plan_state(self, author: str) -> PlanState:
         """Return the present state of the plan, for an author."""
         lost = self._file.recovery
         return PlanState.from_document(
@@ -185,7 +185,7 @@ class PlanRoom:
         missed = None if since is None else self.document.plan.since(since)
         messages: list[Model] = []
         if since is None or missed is None:
-            state = self.state(author)
+            state = self.plan_state(author)
             snapshot = SnapshotTold.model_construct(client=client, state=state, members=members)
             messages.append(snapshot)
         else:
@@ -209,7 +209,7 @@ class PlanRoom:
         self._members[client] = (member, mailbox)
         return mailbox
 
-    def select(self, client: str, names: tuple[str, ...]) -> None:
+    def set_selection(self, client: str, names: tuple[str, ...]) -> None:
         """Set the selection of a member to these tasks and groups."""
         member, mailbox = self._members[client]
         if member.selection != names:
@@ -305,5 +305,5 @@ class PlanRoom:
     async def _analyse(self, analyst: Analyst) -> None:
         await asyncio.sleep(ANALYSED_AFTER)
         plan = self.document.plan
-        self._analysis = await analyst.analyse(plan.mission, plan.revision)
+        self._analysis = await analyst.analyse_revision(plan.mission, plan.revision)
         self._broadcast(AnalysisTold.model_construct(analysis=self._analysis))

@@ -9,7 +9,7 @@ from argo_compiler.base.catalog import Catalog
 from argo_compiler.il import Mission
 from argo_planner.service.jobs.analysis import Analyst
 from argo_planner.service.rooms.room import PlanRoom
-from argo_planner.service.storage.folder import PlanFolder, summarize
+from argo_planner.service.storage.folder import PlanFolder, summarize_plan
 from argo_planner.service.storage.outline import PlanSummary
 
 MOST_OPEN = 50
@@ -37,7 +37,7 @@ class PlanRooms:
     async def list_plans(self) -> list[PlanSummary]:
         """Return all plans, the newest ones first."""
         async with self._listing:
-            open_plans = {id: summarize(room.document) for id, room in self._rooms.items()}
+            open_plans = {id: summarize_plan(room.document) for id, room in self._rooms.items()}
             return await asyncio.to_thread(self._folder.list_plans, open_plans)
 
     async def list_deleted(self) -> list[PlanSummary]:

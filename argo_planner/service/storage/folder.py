@@ -163,7 +163,7 @@ class PlanFolder(Closing):
         return self.path / _BIN / (_require_id(id) + _SUFFIX)
 
 
-def summarize(document: PlanDocument) -> PlanSummary:
+def summarize_plan(document: PlanDocument) -> PlanSummary:
     """Return the summary of a plan for lists."""
     return PlanSummary(
         id=document.id,

@@ -82,7 +82,7 @@ async def start_order_search(
 async def list_jobs(service: Service, _: Viewer) -> Response:
     """Return the running jobs and the last ones that have ended, without their results."""
     return json_response(
-        JobList.model_construct(jobs=tuple(job.summary() for job in service.jobs.all()))
+        JobList.model_construct(jobs=tuple(job.without_result() for job in service.jobs.all()))
     )
 
 

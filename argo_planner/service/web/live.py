@@ -46,7 +46,7 @@ async def follow_mission(
         return
 
     def receive_text(text: str) -> None:
-        room.select(client, SelectTasks.model_validate_json(text).names)
+        room.set_selection(client, SelectTasks.model_validate_json(text).names)
 
     try:
         await exchange_messages(socket, mailbox, receive_text)

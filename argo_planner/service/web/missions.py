@@ -18,12 +18,12 @@ from argo_compiler.checks import check
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, has_errors
 from argo_compiler.il import Mission
 from argo_env.planning.opening import OpenedSite
-from argo_planner.service.core.change import difference
+from argo_planner.service.core.change import mission_change
 from argo_planner.service.core.commands import Revision
 from argo_planner.service.core.document import PlanDocument
 from argo_planner.service.core.plan_limits import require_within_limits
 from argo_planner.service.rooms.messages import PlanState
-from argo_planner.service.storage.folder import summarize
+from argo_planner.service.storage.folder import summarize_plan
 from argo_planner.service.storage.import_notes import (
     delete_import_notes,
     load_import_notes,
@@ -157,7 +157,7 @@ async def import_a_mission(
 @router.get("/missions/{id}", operation_id="read_mission", response_model=PlanState)
 async def read_current_mission(service: Service, visitor: Viewer, id: PlanId) -> Response:
     """Return the present state of a mission; its ETag is the revision."""
-    state = (await service.rooms.open(id)).state(visitor.author)
+    state = (await service.rooms.open(id)).plan_state(visitor.author)
     return json_response(state, revision=state.revision)
 
 
@@ -168,7 +168,7 @@ async def rename_mission(
     """Rename a mission."""
     room = await service.rooms.open(id)
     await room.rename(given.name, visitor.author)
-    return json_response(summarize(room.document))
+    return json_response(summarize_plan(room.document))
 
 
 @router.post(
@@ -214,7 +214,7 @@ async def list_bin(service: Service, _: Viewer) -> Response:
 async def restore_mission(service: Service, _: Planner, id: PlanId) -> Response:
     """Restore a mission from the bin."""
     room = await service.rooms.restore(id)
-    return json_response(summarize(room.document), location=f"/api/missions/{id}")
+    return json_response(summarize_plan(room.document), location=f"/api/missions/{id}")
 
 
 @router.delete("/bin/{id}", operation_id="destroy_mission", status_code=204)
@@ -311,14 +311,14 @@ def require_valid_mission(document: PlanDocument, site: OpenedSite) -> ImportedM
 async def _create(
     service: Service, name: str, mission: Mission, notes: tuple[Diagnostic, ...] = ()
 ) -> Response:
-    require_within_limits(mission, difference(Mission(tasks=()), mission))
+    require_within_limits(mission, mission_change(Mission(tasks=()), mission))
     room = await service.rooms.create(name, mission)
     document = room.document
     if notes:
         revision = document.plan.revision
         await asyncio.to_thread(store_import_notes, service.folder, document.id, revision, notes)
     return json_response(
-        summarize(document),
+        summarize_plan(document),
         201,
         revision=document.plan.revision,
         location=f"/api/missions/{document.id}",

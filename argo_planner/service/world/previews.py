@@ -124,7 +124,7 @@ def preview_mission(
     """
     previewer = _PathPreviewer(site, obstacles)
     tasks = {task.name: task for task in mission.tasks}
-    start, first = previewer.travel.start(mission), initial_task(mission)
+    start, first = previewer.travel.start_pose(mission), initial_task(mission)
     if first is None:
         return PreviewedMission()
     order = _default_order(tasks, first)

@@ -83,7 +83,7 @@ class ConstantTravel:
         self.blocked = blocked
         self.battery = battery
 
-    def start(self, mission):  # noqa: ARG002
+    def start_pose(self, mission):  # noqa: ARG002
         return "start"
 
     def leg(self, origin, task, velocity):

@@ -32,7 +32,7 @@ def codes(analysis):
 
 
 def verdicts(analysis, name):
-    return [t.verdict for t in analysis.task(name).transitions]
+    return [t.verdict for t in analysis.task_facts(name).transitions]
 
 
 @pytest.mark.parametrize(
@@ -85,7 +85,7 @@ def test_a_value_is_known_along_the_path():
     assert verdicts(analysis, "Low") == [NEVER, ALWAYS, NEVER]
     # If the measurement failed there is no value, and no condition holds.
     assert verdicts(analysis, "High") == [NEVER, ALWAYS]
-    assert analysis.task("Never").verdict is NEVER
+    assert analysis.task_facts("Never").verdict is NEVER
     assert verdicts(analysis, "Join") == [POSSIBLE, POSSIBLE]
 
 
@@ -121,9 +121,9 @@ def test_what_only_a_failure_leads_to():
         task("High"),
         task("Broken", transition("Low", "1 < 20")),
     )
-    assert analysis.task("Broken").verdict is AFTER
+    assert analysis.task_facts("Broken").verdict is AFTER
     assert verdicts(analysis, "Broken") == [NEVER]
-    assert analysis.task("Low").verdict is POSSIBLE
+    assert analysis.task_facts("Low").verdict is POSSIBLE
 
 
 def test_after_an_abort_nothing_follows():

@@ -221,7 +221,7 @@ PLAN = mission(
 def test_a_claim_that_is_made_up_is_named():
     analysis = analyse(PLAN, CATALOG)
     assert unproved(PLAN, CATALOG, analysis) == ()
-    assert analysis.task("C").verdict is Verdict.AFTER_FAILURE
+    assert analysis.task_facts("C").verdict is Verdict.AFTER_FAILURE
     for k, facts in enumerate(analysis.tasks):
         claimed = Verdict.AFTER_FAILURE if facts.task == "C" else Verdict.POSSIBLE
         assert facts.verdict is claimed

@@ -180,7 +180,7 @@ class MadeUpTravel:
         self.standing_power = standing_power
         self.blocked = blocked
 
-    def start(self, mission):  # noqa: ARG002
+    def start_pose(self, mission):  # noqa: ARG002
         return "start"
 
     def leg(self, origin, task, velocity):
@@ -251,7 +251,7 @@ class _World:
         self.rng = Random(seed)
         self.checkpoints = {str(c.id): c for c in catalog.checkpoints}
         self.result = Run(Executor(hfsm))
-        self.position = _AtPose(travel.start(mission))
+        self.position = _AtPose(travel.start_pose(mission))
         self.action = None
         self.stop_at = None
         self.external = []

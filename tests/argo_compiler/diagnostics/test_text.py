@@ -9,7 +9,7 @@ from argo_compiler.diagnostics import (
     Severity,
     Span,
     by_position,
-    summary,
+    severity_counts_text,
     to_text,
 )
 
@@ -81,10 +81,10 @@ def test_diagnostics_are_sorted_by_position_and_counted():
     assert str(caught).endswith("\nf: 4 errors, 2 warnings")
 
 
-def test_summaries():
-    assert summary([]) == "no findings"
-    assert summary([finding()]) == "1 error"
-    assert summary([finding(Severity.WARNING)] * 3) == "3 warnings"
+def test_severities_are_counted_in_words():
+    assert severity_counts_text([]) == "no findings"
+    assert severity_counts_text([finding()]) == "1 error"
+    assert severity_counts_text([finding(Severity.WARNING)] * 3) == "3 warnings"
 
 
 def test_warnings_are_brief_beside_errors_only():

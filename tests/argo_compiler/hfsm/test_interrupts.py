@@ -25,7 +25,7 @@ from argo_compiler.hfsm import (
     Tick,
     lower,
 )
-from argo_compiler.hfsm.interrupt_state import InterruptState, advance
+from argo_compiler.hfsm.interrupt_state import InterruptState, take_rows
 from argo_compiler.hfsm.interrupts import ROWS, TABLE, InterruptGuard, Stage, Trigger
 from argo_compiler.hfsm.progress import Waiting
 from argo_compiler.il import Afterwards, EventKind, Mission, Reaction, Response, Task
@@ -135,7 +135,7 @@ def explore(reactions, taken):
     for before in states:
         for trigger, event in everything:
             plan = Outcome.COMPLETED if trigger is Trigger.DONE else Outcome.RETURNED
-            rows = advance(before, known, trigger, event, plan)
+            rows = take_rows(before, known, trigger, event, plan)
             taken.update((row.row, row.before.stage) for row in rows)
             after = rows[-1].after
             expected = by_rules(rules, as_alarmed(before), trigger, event)

@@ -29,17 +29,21 @@ def test_any_name_is_read_back(name, rest):
 @given(missions())
 def test_each_part_of_any_mission_has_a_subject_of_its_own_that_leads_to_it(mission):
     subjects = Subjects(mission)
-    ways = {"tasks": subjects.task, "groups": subjects.group, "reactions": subjects.reaction}
+    ways = {
+        "tasks": subjects.task_subject,
+        "groups": subjects.group_subject,
+        "reactions": subjects.reaction_subject,
+    }
     seen = []
     for field, name in ways.items():
         for i in range(len(getattr(mission, field))):
             seen.append(name(i, ".name"))
-            assert subjects.path(seen[-1]) == (field, i, "name")
+            assert subjects.subject_path(seen[-1]) == (field, i, "name")
     assert len(set(seen)) == len(seen)
 
 
 def test_what_is_not_there_leads_to_the_list():
-    assert Subjects(Mission()).path("tasks['A'].pose") == ("tasks",)
+    assert Subjects(Mission()).subject_path("tasks['A'].pose") == ("tasks",)
 
 
 def test_diagnostics_about_odd_and_repeated_names_point_into_the_file(tmp_path):

@@ -42,7 +42,7 @@ def _require_best_route(
     """A best route has only the arcs that its value allows, and all mandatory steps."""
     route = suggest_route(problem, time_limit=60.0, explain=False).route
     assert route is not None
-    path, charges = net.path(route)
+    path, charges = net.tour_path(route)
     if path is None or charges:
         return
     arcs, mandatory = relaxation.restrict(most)

@@ -38,7 +38,7 @@ def test_starts(header: str, catalog: Catalog) -> None:
 
 def test_other_places_to_start_and_to_finish_at(catalog: Catalog) -> None:
     found = mission("Start: at the front of the site\nFinish: at the front of the site", catalog)
-    place = catalog.place("front of the site")
+    place = catalog.find_place("front of the site")
     assert place is not None
     assert [t.pose for t in found.tasks if t.action is not Action.MEASURE] == [place.pose] * 2
 

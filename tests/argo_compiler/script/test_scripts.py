@@ -41,7 +41,7 @@ def assert_mission_1(mission: Mission, catalog: Catalog, start: int, end: int) -
 def assert_protocol_2(mission: Mission, catalog: Catalog) -> None:
     patrol = [f"WAYPOINT {k}" for k in range(1, 5)]
     assert [t.name for t in mission.tasks] == ["START", *patrol, "MEASURE 2", "MEASURE 14"]
-    place = catalog.place("front of the site")
+    place = catalog.find_place("front of the site")
     floor = catalog.floor(1)
     assert place is not None
     assert floor is not None

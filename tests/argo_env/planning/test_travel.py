@@ -60,7 +60,7 @@ def test_velocities_count_for_the_way_to_the_task(navigator, catalog, travel):
 
 
 def test_ways_that_do_not_exist_say_why(travel):
-    start = travel.start(Mission(tasks=(measure(1),)))
+    start = travel.start_pose(Mission(tasks=(measure(1),)))
     far = Task(name="far", action=Action.WAYPOINT, pose=Pose(x=500, y=0, z=0))
     away = travel.leg(start, far, None)
     assert isinstance(away, NoPath)
@@ -72,7 +72,7 @@ def test_ways_that_do_not_exist_say_why(travel):
 
 def test_energy_follows_from_times_and_powers(navigator, travel):
     robot = navigator.robot
-    start = travel.start(Mission(tasks=(measure(1),)))
+    start = travel.start_pose(Mission(tasks=(measure(1),)))
     leg = travel.leg(start, measure(8), None)
     assert isinstance(leg, Leg)
     assert leg.work == pytest.approx(robot.sensor.measuring_time)

@@ -68,7 +68,7 @@ async def work(_: OpenedSite) -> object:
 async def analysis(site: OpenedSite) -> AnalysisFound:
     analyst = Analyst(site)
     try:
-        return await analyst.analyse(Mission(tasks=()), 1)
+        return await analyst.analyse_revision(Mission(tasks=()), 1)
     finally:
         analyst.close()
 
@@ -128,10 +128,10 @@ def test_missions_are_analysed_again_after_their_process_is_killed(site: OpenedS
     async def killed() -> None:
         analyst = Analyst(site)
         try:
-            first = await analyst.analyse(Mission(tasks=()), 1)
+            first = await analyst.analyse_revision(Mission(tasks=()), 1)
             (process,) = analyst._pool._processes.values()
             process.kill()
-            together = (analyst.analyse(Mission(tasks=()), 1) for _ in range(5))
+            together = (analyst.analyse_revision(Mission(tasks=()), 1) for _ in range(5))
             assert await asyncio.gather(*together) == [first] * 5
         finally:
             analyst.close()
@@ -143,13 +143,13 @@ def test_missions_sent_while_the_process_dies_are_analysed_again(site: OpenedSit
     async def killed() -> None:
         analyst = Analyst(site)
         try:
-            first = await analyst.analyse(Mission(tasks=()), 1)
+            first = await analyst.analyse_revision(Mission(tasks=()), 1)
             for milliseconds in range(5):
                 (process,) = analyst._pool._processes.values()
                 process.kill()
                 for _ in range(3):
                     await asyncio.sleep(milliseconds / 1000)
-                    assert await analyst.analyse(Mission(tasks=()), 1) == first
+                    assert await analyst.analyse_revision(Mission(tasks=()), 1) == first
         finally:
             analyst.close()
 

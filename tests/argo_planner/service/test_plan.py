@@ -13,7 +13,7 @@ from argo_compiler.checks import check
 from argo_compiler.diagnostics import Severity
 from argo_compiler.editing import commands as edits
 from argo_compiler.il import Group, Mission, Transition
-from argo_planner.service.core.change import HEADER, apply_change, difference
+from argo_planner.service.core.change import HEADER, apply_change, mission_change
 from argo_planner.service.core.commands import (
     EditPlan,
     PlanCommand,
@@ -375,7 +375,9 @@ def check_invariants(before: MissionPlan, after: MissionPlan) -> None:
     revision = after.history[-1]
     assert after.revision == before.revision + 1 == revision.number
     assert not errors(after.mission) - errors(before.mission)
-    assert apply_change(before.mission, difference(before.mission, after.mission)) == after.mission
+    assert (
+        apply_change(before.mission, mission_change(before.mission, after.mission)) == after.mission
+    )
     if revision.reverts is None:
         return
     missions = (*before.missions, before.mission)
@@ -400,5 +402,5 @@ def names(mission: Mission) -> list[str]:
 
 
 def moved_names(before: Mission, after: Mission) -> set[str]:
-    tasks = difference(before, after).tasks
+    tasks = mission_change(before, after).tasks
     return {*tasks.gone, *(name for name, _ in tasks.placed)} if tasks else set()

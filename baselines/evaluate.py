@@ -189,7 +189,9 @@ def _evaluate(options: argparse.Namespace) -> None:
     test_sets = [find_test_set(name) for name in dict.fromkeys(options.family)]
     available = min(len(test_set.numbers) for test_set in test_sets)
     if not 1 <= options.instances <= available:
-        raise Invalid(f"--instances is {options.instances}: give a number from 1 to {available}")
+        raise Invalid(
+            f"--instances is {options.instances}: give a number of instances from 1 to {available}"
+        )
     if options.seed < 0:
         raise Invalid(f"--seed is {options.seed}: give a number of at least 0")
     best = {s.name: load_references(s.name)[: options.instances] for s in test_sets}

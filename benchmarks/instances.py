@@ -141,7 +141,7 @@ def read_known_route(path: Path) -> KnownRoute:
     numbers = keywords.section("NODE_SEQUENCE")
     nodes = numbers.take(keywords.whole_number("ROUTE_NODES"), "NODE_SEQUENCE_SECTION")
     wrong = (nodes < 1) | (nodes != np.rint(nodes))
-    numbers.raise_if(wrong, "is no node", "nodes are counted from 1")
+    numbers.raise_if(wrong, "is not a node", "nodes are counted from 1")
     score, cost = keywords.whole_number("ROUTE_SCORE"), keywords.whole_number("ROUTE_COST")
     return KnownRoute(tuple(int(node) for node in nodes), score, cost)
 
@@ -232,7 +232,7 @@ def _parse_numbers(file: _File, line: int) -> list[float]:
         except ValueError:
             value = np.nan
         if not abs(value) <= LARGEST:
-            raise file.error(line, f"`{word[:40]}` is no number of up to {LARGEST}", _CORRECT)
+            raise file.error(line, f"`{word[:40]}` is not a number of up to {LARGEST}", _CORRECT)
         numbers.append(value)
     return numbers
 
@@ -261,7 +261,7 @@ class _Keywords:
                 return number
         except ValueError:
             pass
-        problem = f"{keyword} `{text[:40]}` is no whole number of up to {LARGEST}"
+        problem = f"{keyword} `{text[:40]}` is not a whole number of up to {LARGEST}"
         raise self.file.error(line, problem, _CORRECT)
 
     def section(self, keyword: str) -> _Numbers:
@@ -292,7 +292,7 @@ def _parse_keywords(file: _File) -> _Keywords:
         if match is None and section is not None:
             sections[section] = range(sections[section].start, line + 1)
         elif match is None and text.strip():
-            problem = f"`{text.strip()[:40]}` is no keyword with its value"
+            problem = f"`{text.strip()[:40]}` is not a keyword with its value"
             raise file.error(line, problem, f"is this a {_FILE}?")
         elif match is not None:
             keyword, value = match[1].upper(), match[2] or ""
@@ -374,7 +374,7 @@ def _make_orienteering_problem(keywords: _Keywords, distances: NDArray[np.int64]
     numbers = keywords.section("DEPOT")
     depots = numbers.take(1, "DEPOT_SECTION")
     known = np.isin(depots, np.arange(1, size + 1))
-    numbers.raise_if(~known, "is no node", f"there are 1 to {size}")
+    numbers.raise_if(~known, "is not a node", f"there are 1 to {size}")
     numbers.skip(-1)
     numbers.expect_end("one depot")
     depot = int(depots[0]) - 1
@@ -427,7 +427,7 @@ def _distances(keywords: _Keywords, nodes: int) -> NDArray[np.int64]:
 def _take_distances(numbers: _Numbers, count: int) -> NDArray[np.int64]:
     values = numbers.take(count, "EDGE_WEIGHT_SECTION")
     wrong = (values != np.rint(values)) | (values < FORBIDDEN)
-    numbers.raise_if(wrong, "is no distance", "distances are whole numbers from 0")
+    numbers.raise_if(wrong, "is not a distance", "distances are whole numbers from 0")
     return values.astype(np.int64)
 
 
@@ -445,7 +445,7 @@ def _take_node_values(
         row = numbers.take(columns + 1, f"{section}_SECTION")
         wrong = np.zeros(columns + 1, dtype=bool)
         wrong[0] = row[0] not in range(1, nodes + 1) or row[0] in values
-        problem = f"is no node, or is given twice, in {section}_SECTION"
+        problem = f"is not a node, or is given twice, in {section}_SECTION"
         numbers.raise_if(wrong, problem, f"number the nodes from 1 to {nodes}")
         values[row[0]] = row[1:]
     numbers.expect_end(f"{section}_SECTION")

@@ -87,7 +87,7 @@ def search_with_lkh(
             return None
         except OSError as error:
             raise ArgoError(
-                f"{program}: can't be run as LKH: {error.strerror}; name the program LKH-3"
+                f"{program} can't be run as LKH: {error.strerror}; name the program LKH-3"
             ) from None
         tour = _read_tour(tour_file, problem.size) if tour_file.exists() else None
         return tour if tour and evaluate(problem, tour).feasible else None

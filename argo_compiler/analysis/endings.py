@@ -50,16 +50,16 @@ def _endless_loops(study: Study, traps: tuple[tuple[int, ...], ...]) -> Iterator
         )
     if not can_end:
         why = (
-            "each path runs into a loop that no transition leaves"
+            "each execution path runs into a loop that no transition leaves"
             if traps
-            else "no path leads to its end"
+            else "no execution path leads to its end"
         )
         if study.with_failures.is_reached(study.flow.end_node):
             why += ", unless an action fails"
         yield study.diagnostic(
             "no-end",
             f"the mission never ends: {why}",
-            "let a task on each path have no unconditional transition, or leave the loop",
+            "let a task on each execution path have no unconditional transition, or leave the loop",
             subject="tasks",
             severity=severity,
         )
@@ -164,7 +164,7 @@ def _ends_elsewhere(study: Study) -> Iterator[Diagnostic]:
         yield study.diagnostic(
             "end-elsewhere",
             f"the mission must end docked in starting area {area}, but it can end {where}{path}",
-            f"let each path end with a WAYPOINT task at the dock of starting area {area}",
+            f"let each execution path end with a WAYPOINT task at the dock of starting area {area}",
             leaf,
         )
 

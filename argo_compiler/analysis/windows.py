@@ -25,8 +25,8 @@ def diagnose_windows(study: Study, bounds: MissionBounds) -> Iterator[Diagnostic
                 soonest = f": it ends after {time_words(end.soonest)} at the soonest"
             yield study.diagnostic(
                 "window-missed" if window.hard else "window-late",
-                f"if nothing fails, no path is in time for task '{name}', whose window closes "
-                f"{latest} after the mission's start{soonest}",
+                f"if nothing fails, no execution path is in time for task '{name}', whose window "
+                f"closes {latest} after the mission's start{soonest}",
                 "do it earlier, or let its window close later",
                 leaf,
             )
@@ -34,7 +34,7 @@ def diagnose_windows(study: Study, bounds: MissionBounds) -> Iterator[Diagnostic
             yield study.diagnostic(
                 "window-maybe-missed",
                 f"task '{name}' may come too late: its window closes {latest} after the "
-                "mission's start, and some path may take longer",
+                "mission's start, and some execution path may take longer",
                 "do it earlier, or let its window close later"
                 + ("" if not window.hard else ", and give the next task with missed_target"),
                 leaf,

@@ -91,7 +91,7 @@ def _check_battery(item: CheckedItem, reaction: Reaction) -> Iterator[Diagnostic
             "il.battery-level",
             f"the reaction to {reaction.event} has `battery_below`, but that event does not depend "
             "on the battery",
-            f"remove it, or set the event of the reaction to {EventKind.LOW_BATTERY}",
+            f"remove `battery_below`, or set the event of the reaction to {EventKind.LOW_BATTERY}",
             ".battery_below",
         )
 
@@ -116,7 +116,7 @@ def _check_unused(item: CheckedItem, reaction: Reaction) -> Iterator[Diagnostic]
             "il.unused-field",
             f"the reaction to {reaction.event} has `{field}`, which has no effect on the response "
             f"{response}",
-            "remove it or choose another response",
+            f"remove `{field}` or choose another response",
             f".{field}",
         )
 

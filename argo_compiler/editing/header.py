@@ -58,7 +58,7 @@ def require_known_fields(given: Iterable[str], known: Collection[str], owner: st
         hint = f"the fields that can be changed: {', '.join(known)}"
         raise EditInvalid(
             diagnostic_of(
-                "edit.value", f"`{name}` is no field of {owner} that can be changed", hint
+                "edit.value", f"`{name}` is not a field of {owner} that can be changed", hint
             )
             for name in unknown_names
         )

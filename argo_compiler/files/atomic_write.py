@@ -34,14 +34,14 @@ def check_writable(file: Path) -> None:
         return
     path = Path(os.path.realpath(file)) if os.path.islink(file) else file.absolute()
     if os.path.isdir(path):
-        raise Conflict(f"{file}: is a folder; choose another name")
+        raise Conflict(f"{file} is a folder; choose another name")
     if os.path.isfile(path.parent):
         raise Conflict(f"{file}: {file.parent} is a file, not a folder; choose another folder")
     if not os.path.isdir(path.parent):
         raise NotFound(f"{file}: folder {file.parent} does not exist; create it or choose another")
     if not os.access(path.parent, os.W_OK | os.X_OK):
         raise Unavailable(
-            f"{file}: can't be written: its folder is not writable; choose another folder"
+            f"{file} can't be written: its folder is not writable; choose another folder"
         )
     try:
         path.lstat()
@@ -49,7 +49,7 @@ def check_writable(file: Path) -> None:
         return
     except OSError as error:  # for example, the name is too long
         raise Unavailable(
-            f"{file}: can't be written: {error.strerror}; choose another path"
+            f"{file} can't be written: {error.strerror}; choose another path"
         ) from None
 
 

@@ -30,18 +30,18 @@ class FileError(ArgoError):
 
     Attributes:
         problem: The reason.
-        message: The reason in words.
+        message: The reason in words, with a verb but without the file as its subject.
         hint: What the user can do.
     """
 
     def __init__(self, name: object, problem: FileProblem, message: str, hint: str) -> None:
-        super().__init__(f"{name}: {message}; {hint}")
+        super().__init__(f"{name} {message}; {hint}")
         self.problem = problem
         self.message = message
         self.hint = hint
 
     def __reduce__(self) -> tuple[object, ...]:
-        name = str(self).removesuffix(f": {self.message}; {self.hint}")
+        name = str(self).removesuffix(f" {self.message}; {self.hint}")
         return type(self), (name, self.problem, self.message, self.hint), vars(self)
 
 
@@ -86,7 +86,7 @@ def open_file(path: Path, kind: str) -> Iterator[BinaryIO]:
     """
     try:
         if os.path.isdir(path):
-            message = "can't be read: is a directory"
+            message = "can't be read: it is a directory"
             raise UnreadableFile(path, FileProblem.DIRECTORY, message, f"name the {kind} in it")
         with path.open("rb") as file:
             yield file

@@ -48,7 +48,7 @@ def unplaced(
 def too_deep() -> UnplacedDiagnostic:
     """Return the error for data that are nested too deeply for the program's stack."""
     return unplaced(
-        "file.too-deep", "is nested too deeply", "no mission needs that: check the file"
+        "file.too-deep", "the file is nested too deeply", "no mission needs that: check the file"
     )
 
 
@@ -118,7 +118,7 @@ def _portions(values: list[Any]) -> Iterator[tuple[int, str]]:
 def _too_large(part: str, path: JsonPath | None) -> UnplacedDiagnostic:
     return unplaced(
         "file.too-large",
-        f"{part}: is longer than {MAX_ITEM} characters",
+        f"{part} is longer than {MAX_ITEM} characters",
         "no mission needs that much: check the file",
         path,
     )

@@ -128,7 +128,7 @@ def write_mission(mission: Mission, path: Path) -> None:
     try:
         write_atomically(path, mission_text(mission))
     except OSError as error:
-        message = f"can't be written: {error.strerror}"
+        message = f"the file can't be written: {error.strerror}"
         _refuse(str(path), "", [unplaced("file.unwritable", message, "choose another path")])
 
 
@@ -143,7 +143,7 @@ def _refuse(source_name: str, text: str, faults: Iterable[UnplacedDiagnostic]) -
 
 
 def _refuse_file(source_name: str, error: FileError) -> NoReturn:
-    def refuse(code: str, message: str = error.message) -> NoReturn:
+    def refuse(code: str, message: str = f"the file {error.message}") -> NoReturn:
         _refuse(source_name, "", [unplaced(code, message, error.hint)])
 
     match error.problem:
@@ -152,7 +152,7 @@ def _refuse_file(source_name: str, error: FileError) -> NoReturn:
         case FileProblem.DIRECTORY:
             refuse("file.directory")
         case FileProblem.TOO_LARGE:
-            refuse("file.too-large", f"is larger than {MAX_BYTES // 1_000_000} MB")
+            refuse("file.too-large", f"the file is larger than {MAX_BYTES // 1_000_000} MB")
         case FileProblem.NOT_TEXT:
             refuse("file.not-text")
         case FileProblem.UNREADABLE:
@@ -188,35 +188,39 @@ def _parse(source_name: str, text: str) -> tuple[Any, bool]:
 
     if not text.strip():
         _refuse(
-            source_name, "", [unplaced("file.not-json", "is empty", "choose a file with a mission")]
+            source_name,
+            "",
+            [unplaced("file.not-json", "the file is empty", "choose a file with a mission")],
         )
     try:
         return json.loads(text, object_pairs_hook=to_dict), has_repeated_keys
     except json.JSONDecodeError as error:
         lines = JsonText(text)
         diagnostic, _ = unplaced(
-            "file.not-json", f"is not JSON: {error.msg}", "correct it at the marked place"
+            "file.not-json", f"the file is not JSON: {error.msg}", "correct it at the marked place"
         )
         span = lines.span(error.pos, error.pos + 1)
         raise DiagnosticError(source_name, [_with_span(lines, diagnostic, span)]) from None
     except RecursionError:
         _refuse(source_name, text, [too_deep()])
     except ValueError as error:  # an integer with thousands of digits
-        message = f"is not usable JSON: {error}"
+        message = f"the file has a number that can't be read: {error}"
         _refuse(source_name, text, [unplaced("file.not-json", message, "correct the number")])
 
 
 def _not_a_mission() -> UnplacedDiagnostic:
     return unplaced(
         "file.not-a-mission",
-        "is not a mission: its JSON is not an object",
+        "the file is not a mission: its JSON is not an object",
         f'a mission begins with {{"version": {VERSION}, "tasks": [',
     )
 
 
 def _run_record() -> UnplacedDiagnostic:
     return unplaced(
-        "file.not-a-mission", "is the report of a run, not a mission", "choose the mission's file"
+        "file.not-a-mission",
+        "the file is the report of a run, not a mission",
+        "choose the mission's file",
     )
 
 
@@ -224,7 +228,7 @@ def _unsupported_version(version: object) -> UnplacedDiagnostic:
     text = json.dumps(version)
     return unplaced(
         "file.unsupported-version",
-        f"has version {text if len(text) < 40 else '...'} of the mission format",
+        f"the file has version {text if len(text) < 40 else '...'} of the mission format",
         f"this Argo reads versions up to {VERSION}: use a newer Argo, or save the mission again",
         ("version",),
     )

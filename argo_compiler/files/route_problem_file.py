@@ -71,7 +71,7 @@ def write_route_problem(problem: RouteProblem, path: Path) -> None:
     try:
         write_atomically(path, route_problem_text(problem))
     except OSError as error:
-        raise Unavailable(f"{path}: can't be written: {error.strerror}") from error
+        raise Unavailable(f"{path} can't be written: {error.strerror}") from error
 
 
 def route_problem_text(problem: RouteProblem) -> str:
@@ -108,13 +108,13 @@ def parse_route_problem(text: str, name: str) -> RouteProblem:
     except (json.JSONDecodeError, RecursionError) as error:
         where = f"{error.lineno}:{error.colno}:" if isinstance(error, json.JSONDecodeError) else ""
         what = getattr(error, "msg", "it is nested too deeply")
-        raise Invalid(f"{name}:{where} is not JSON: {what}; correct it there") from error
+        raise Invalid(f"{name}:{where} the text is not JSON: {what}; correct it there") from error
     except ValueError as error:  # an integer with thousands of digits
-        raise Invalid(f"{name}: is not usable JSON: {error}; correct the number") from error
+        raise Invalid(f"{name} has a number that can't be read: {error}; correct it") from error
     version = data.get("version") if isinstance(data, dict) else None
     if version != VERSION or isinstance(version, bool):
         raise Invalid(
-            f"{name}: is not a route problem of version {VERSION}, which begins with "
+            f"{name} is not a route problem of version {VERSION}, which begins with "
             f'{{"version": {VERSION}, "visits": [; write it again with this version of Argo'
         )
     try:

@@ -152,7 +152,7 @@ class _Importer:
     def _require(self, path: str, is_given: bool, code: str, message: str) -> None:
         if not is_given:
             hint = "remove the task, or complete it"
-            self.diagnostics.append(diagnostic_of(f"isar.{code}", f"{path}: {message}", hint))
+            self.diagnostics.append(diagnostic_of(f"isar.{code}", f"{path} {message}", hint))
 
     def _warn_of_extras(self, path: str, part: Part) -> None:
         for name, value in (part.model_extra or {}).items():
@@ -160,7 +160,7 @@ class _Importer:
                 self._warn(f"{path}.{name}".removeprefix("."), "is ignored")
 
     def _warn(self, path: str, message: str) -> None:
-        self.diagnostics.append(diagnostic_of("isar.dropped", f"{path}: {message}"))
+        self.diagnostics.append(diagnostic_of("isar.dropped", f"{path} {message}"))
 
 
 def _unused(name: str, used: set[str]) -> str:

@@ -23,7 +23,7 @@ def parse_seconds(text: str) -> float:
         part = _PART.match(text, at)
         factor = _SECONDS[(part.group(2) or "s")[0]] if part else scale
         if part is None or factor >= scale:  # larger units come first, each once
-            raise Invalid(f"`{text}` is no duration: write `20 min`, `1 h 30 min` or `90 s`")
+            raise Invalid(f"`{text}` is not a duration: write `20 min`, `1 h 30 min` or `90 s`")
         total, at, scale = total + float(part.group(1)) * factor, part.end(), factor
     if not text:
         raise Invalid("a duration is missing: write `20 min`, `1 h 30 min` or `90 s`")

@@ -129,8 +129,8 @@ class TaskGraph:
         for i in self.own_leaves:
             if not reached[i]:
                 raise Invalid(
-                    f"no path leads to task '{flow.leaves[i].name}', so it can't be part of "
-                    "an order: remove it, or add a transition to it; a check gives details",
+                    f"no execution path leads to task '{flow.leaves[i].name}', so it can't be "
+                    "part of an order: remove it, or add a transition to it; a check gives details",
                     remedies=(Remedy.CHECK_MISSION,),
                 )
         if not reached[flow.end_node]:

@@ -104,7 +104,10 @@ class Visits:
             for i, leaf in enumerate(self.chain.flow.leaves):
                 if leaf.name == what:
                     if i == self.chain.end or i not in self.visit_of_leaf:
-                        raise Invalid(f"'{what}' stays where it is: it ends the mission")
+                        raise Invalid(
+                            f"'{what}' ends the mission, so its place in the order is fixed: "
+                            "remove the requirement that names it"
+                        )
                     return [self.visit_of_leaf[i]]
             for group in self.chain.flow.groups:
                 if group.name == what:

@@ -124,13 +124,15 @@ def read_bag(path: Path, source_name: str | None = None) -> Received:
     is_folder = os.path.isdir(path)
     if is_folder and not os.path.isfile(path / "metadata.yaml"):
         hint = "choose the script, mission or bag in it; a rosbag2 folder has a metadata.yaml"
-        raise_error(name, "file.directory", "is a directory", hint)
+        raise_error(name, "file.directory", "the path is a directory", hint)
     try:
         first = b"" if is_folder else read_first_bytes(path)
     except FileError as error:
-        raise_error(name, f"file.{error.problem}", error.message, error.hint)
+        raise_error(name, f"file.{error.problem}", f"the file {error.message}", error.hint)
     if not is_folder and not first.startswith(MAGIC):
-        raise_error(name, "ros.not-a-bag", "is not a bag", "choose a ROS 1 bag or a rosbag2 folder")
+        raise_error(
+            name, "ros.not-a-bag", "the file is not a bag", "choose a ROS 1 bag or a rosbag2 folder"
+        )
     types = ros1_types() if first.startswith(ROS1) else ros2_types()
     # For broken bytes, rosbags raises errors of many types: its own, those of SQLite, struct, YAML
     # and the decompressors, KeyError, AssertionError.
@@ -141,11 +143,14 @@ def read_bag(path: Path, source_name: str | None = None) -> Received:
     except DiagnosticError:
         raise
     except TooLargeError as error:
-        raise_error(name, "ros.compressed", f"is not unpacked: {error}", _UNPACK)
+        raise_error(name, "ros.compressed", f"the bag is not unpacked: {error}", _UNPACK)
     except Exception as error:
         reason = " ".join(str(error).split())[:200] or type(error).__name__
         raise_error(
-            name, "ros.broken-bag", f"can't be read as a bag: {reason}", "record or copy it again"
+            name,
+            "ros.broken-bag",
+            f"the file can't be read as a bag: {reason}",
+            "record or copy it again",
         )
     return from_message(message, types, name)
 
@@ -203,13 +208,15 @@ def _read_message(name: str, reader: Any, types: RosTypes) -> bytes:
         listed = (
             f"only {', '.join(topics[:_MAX_LISTED_TOPICS])}{more}" if topics else "no topic at all"
         )
-        raise_error(name, "ros.no-mission", f"has no topic {TOPIC}, {listed}", f"record {TOPIC}")
+        raise_error(
+            name, "ros.no-mission", f"the bag has no topic {TOPIC}, {listed}", f"record {TOPIC}"
+        )
     for connection in connections:
         if connection.msgtype != SPECIFICATION:
             raise_error(
                 name,
                 "ros.wrong-type",
-                f"has messages of the type {connection.msgtype} on {TOPIC}",
+                f"the bag has messages of the type {connection.msgtype} on {TOPIC}",
                 f"the type of a mission is {SPECIFICATION}",
             )
         # Bags from before ROS 2 Iron, and single MCAP files, have no type hash.
@@ -217,7 +224,8 @@ def _read_message(name: str, reader: Any, types: RosTypes) -> bytes:
             raise_error(
                 name,
                 "ros.other-definitions",
-                f"was written with other definitions of {SPECIFICATION}: {connection.digest}",
+                f"the bag was written with other definitions of {SPECIFICATION}: "
+                f"{connection.digest}",
                 f"this Argo uses {types.digest()}: build its ros-package and record again",
             )
     contents: set[bytes] = set()
@@ -226,7 +234,7 @@ def _read_message(name: str, reader: Any, types: RosTypes) -> bytes:
             raise_error(
                 name,
                 "file.too-large",
-                f"has a message larger than {MAX_BYTES // 1_000_000} MB",
+                f"the bag has a message larger than {MAX_BYTES // 1_000_000} MB",
                 "a mission is far smaller: is this the right bag?",
             )
         contents.add(bytes(raw))
@@ -234,9 +242,11 @@ def _read_message(name: str, reader: Any, types: RosTypes) -> bytes:
             raise_error(
                 name,
                 "ros.several-missions",
-                f"contains more than one mission on {TOPIC}",
+                f"the bag contains more than one mission on {TOPIC}",
                 "keep one of them: rosbag filter, or ros2 bag convert",
             )
     if not contents:
-        raise_error(name, "ros.no-mission", f"has no message on {TOPIC}", f"record {TOPIC} again")
+        raise_error(
+            name, "ros.no-mission", f"the bag has no message on {TOPIC}", f"record {TOPIC} again"
+        )
     return contents.pop()

@@ -195,7 +195,7 @@ def _text(path: str, text: str) -> str:
     try:
         text.encode("utf-8")
     except UnicodeEncodeError:
-        message = f"{path}: is not text that UTF-8 can represent"
+        message = f"{path} is not text that UTF-8 can represent"
         raise_error("mission", "export.not-text", message, "remove the invalid characters")
     return text
 
@@ -221,7 +221,7 @@ def from_message(message: Any, types: RosTypes, source_name: str) -> Received:
         raise_error(
             source_name,
             "ros.unsupported-version",
-            f"has version {message.version} of the messages",
+            f"the message has version {message.version} of the messages",
             f"this Argo reads version {version}: set the field, or use the Argo that wrote it",
         )
     data = _MessageReader(types, source_name).part(message, "")
@@ -303,7 +303,7 @@ class _MessageReader:
                 return member
         valid = ", ".join(f"{value} {member.name}" for member, value in constants.items())
         raise_error(
-            self.source_name, "ros.wrong-field", f"{path}: is {number}", f"valid values: {valid}"
+            self.source_name, "ros.wrong-field", f"{path} is {number}", f"valid values: {valid}"
         )
 
 

@@ -187,7 +187,7 @@ class _Check:
         if enumeration.best is not None:
             self._refute_by(enumeration.best)
         for claim in list(self._open) if is_complete else []:
-            why = f"all routes enumerated, with {enumeration.count} partial routes"
+            why = f"all routes enumerated, by extending {enumeration.count} partial routes"
             self._decide(claim, Judgement.CONFIRMED, why)
 
     def _relax(self, blocks: Blocks) -> None:

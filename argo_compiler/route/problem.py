@@ -141,7 +141,7 @@ class RouteProblem:
     def __post_init__(self) -> None:
         """Raise Invalid if the parts do not fit together."""
         for flaw in _flaws(self):
-            raise Invalid(f"this is no route problem: {flaw}")
+            raise Invalid(f"this is not a route problem: {flaw}")
         self.travel.setflags(write=False)
         if self.battery is not None:
             self.battery.energy.setflags(write=False)
@@ -225,7 +225,7 @@ def _round_flaws(problem: RouteProblem) -> Iterator[str]:
             or len(members) < len(round_.members)
             or not members <= set(range(problem.size))
         ):
-            yield f"the round {round_.name} has no members, one twice, or one that is no visit"
+            yield f"the round {round_.name} has no members, one twice, or one that is not a visit"
             continue
         if round_.repeat < 0 or round_.duration < 0 or round_.repeat == round_.duration == 0:
             yield f"the round {round_.name} needs a number of rounds or a duration"

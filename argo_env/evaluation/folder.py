@@ -59,7 +59,7 @@ def open_rows(
         if not _continues(folder, plan):
             if not replace:
                 raise Conflict(
-                    f"{folder}: has another evaluation: choose another folder; or replace its "
+                    f"{folder} has another evaluation: choose another folder; or replace its "
                     "plan, and keep those of its rows that fit",
                     remedies=(Remedy.CHOOSE_OUTPUT, Remedy.REPLACE),
                 )
@@ -121,7 +121,7 @@ def read_plan(folder: Path, digest: str | None = None) -> EvaluationPlan | None:
     except ValidationError:
         if digest is not None:
             return None  # of another version of Argo; the caller makes the plan again
-        raise Invalid(f"{folder / PLAN}: is no plan of an evaluation by this version") from None
+        raise Invalid(f"{folder / PLAN} is not the plan of an evaluation by this version") from None
     return stored.plan if digest in (None, stored.digest) else None
 
 
@@ -133,7 +133,7 @@ def read_results(folder: Path) -> EvaluationResults:
     """
     plan = read_plan(folder)
     if plan is None:
-        raise NotFound(f"{folder}: has no evaluation")
+        raise NotFound(f"{folder} has no evaluation")
     rows = sort_rows(plan, read_rows(folder))
     if plan.strata or len(rows) == len(plan.seeds) * len(plan.cases) or should_stop(plan, rows):
         return EvaluationResults(plan, rows)

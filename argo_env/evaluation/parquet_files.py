@@ -49,7 +49,7 @@ def write_part(folder: Path, rows: Sequence[RunRow]) -> Path:
         os.replace(draft, path)
         sync_folder(parts)
     except OSError as error:
-        raise Unavailable(f"{path}: can't be written: {error}") from error
+        raise Unavailable(f"{path} can't be written: {error}") from error
     return path
 
 
@@ -74,7 +74,7 @@ def read_parts(folder: Path) -> tuple[RunRow, ...]:
             # Reading it as a dataset would make a column of the folder's name.
             records = parquet.ParquetFile(path).read().to_pylist(maps_as_pydicts="strict")
         except (OSError, ArrowInvalid) as error:
-            raise Unavailable(f"{path}: can't be read: {error}") from error
+            raise Unavailable(f"{path} can't be read: {error}") from error
         rows += [RunRow.model_validate(record) for record in records]
     return tuple(rows)
 
@@ -85,7 +85,7 @@ def remove_parts(folder: Path) -> None:
         for number in _part_numbers(folder):
             os.unlink(_part_path(folder, number))
     except OSError as error:
-        raise Unavailable(f"{folder / PARTS}: can't be changed: {error.strerror}") from error
+        raise Unavailable(f"{folder / PARTS} can't be changed: {error.strerror}") from error
 
 
 def _part_path(folder: Path, number: int) -> Path:
@@ -98,7 +98,7 @@ def _part_numbers(folder: Path) -> list[int]:
     except FileNotFoundError:
         return []
     except OSError as error:
-        raise Unavailable(f"{folder / PARTS}: can't be read: {error.strerror}") from error
+        raise Unavailable(f"{folder / PARTS} can't be read: {error.strerror}") from error
     return sorted(int(match[1]) for name in names if (match := _PART_NAME.fullmatch(name)))
 
 

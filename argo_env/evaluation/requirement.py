@@ -62,7 +62,7 @@ def parse_requirement(text: str) -> RateRequirement:
     try:
         share = float(number) / (100.0 if percent else 1.0)
     except ValueError:
-        raise Invalid(f"requirement `{text}`: `{number}` is no number") from None
+        raise Invalid(f"requirement `{text}`: `{number}` is not a number") from None
     if not 0 < share < 1:
         raise Invalid(
             f"requirement `{text}`: give a share above 0 and below 1; no number of runs can show "

@@ -157,7 +157,7 @@ def read_rows(folder: Path) -> tuple[RunRow, ...]:
     missing.
     """
     if not (os.path.exists(folder / LOG) or has_parts(folder)):
-        raise NotFound(f"{folder}: has no rows of an evaluation")
+        raise NotFound(f"{folder} has no rows of an evaluation")
     # The log comes first: rows that are moved meanwhile are then read twice, and not missed.
     logged = read_log(folder).rows
     by_key = {row.key: row for row in read_parts(folder)}
@@ -199,7 +199,7 @@ def _line(row: RunRow) -> bytes:
 
 
 def _not_writable(folder: Path, error: OSError) -> Unavailable:
-    return Unavailable(f"{error.filename or folder}: can't be written: {error.strerror}")
+    return Unavailable(f"{error.filename or folder} can't be written: {error.strerror}")
 
 
 def _acquire_lock(folder: Path) -> int:

@@ -21,9 +21,9 @@ def check_folder(path: Path) -> None:
         above = above.parent
     if not os.path.isdir(above):
         problem = "is" if above == path.absolute() else f"can't be made a folder: {above} is"
-        raise Conflict(f"{path}: {problem} a file, but a folder is needed; choose another path")
+        raise Conflict(f"{path} {problem} a file, but a folder is needed; choose another path")
     if not (os.path.isdir(path) or os.access(above, os.W_OK | os.X_OK)):
-        raise Unavailable(f"{path}: can't be made a folder: {os.strerror(errno.EACCES)}")
+        raise Unavailable(f"{path} can't be made a folder: {os.strerror(errno.EACCES)}")
 
 
 def make_folder(path: Path) -> None:
@@ -35,7 +35,7 @@ def make_folder(path: Path) -> None:
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise Unavailable(f"{path}: can't be made a folder: {error.strerror}") from error
+        raise Unavailable(f"{path} can't be made a folder: {error.strerror}") from error
 
 
 @contextmanager
@@ -47,8 +47,8 @@ def reporting_write_errors(path: Path, content: str = "", remedy: str = "") -> I
     try:
         yield
     except OSError as error:
-        subject = f"{content} " if content else ""
-        raise Unavailable(f"{path}: {subject}can't be written: {error.strerror}{remedy}") from error
+        subject = f": {content}" if content else ""
+        raise Unavailable(f"{path}{subject} can't be written: {error.strerror}{remedy}") from error
 
 
 CHOOSE_ANOTHER_PLACE = "; choose another place"

@@ -107,12 +107,14 @@ def _compose(text: str) -> tuple[yaml.Node | None, list[_Flaw], Any]:
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark
         span = Span(line=mark.line + 1, column=mark.column + 1) if mark else None
-        message, hint = f"is not YAML: {error.problem}", "correct it there"
+        message, hint = f"the file is not YAML: {error.problem}", "correct it there"
         raise NotYamlError(_Flaw(message, hint, None, span)) from None
     except (ValueError, RecursionError, yaml.YAMLError) as error:
         # ValueError: impossible dates, numbers too long.
-        why = "is nested too deeply" if isinstance(error, RecursionError) else str(error)
-        raise NotYamlError(_Flaw(f"is not YAML: {why}", "check the file", None, None)) from None
+        why = "it is nested too deeply" if isinstance(error, RecursionError) else str(error)
+        raise NotYamlError(
+            _Flaw(f"the file is not YAML: {why}", "check the file", None, None)
+        ) from None
 
 
 def _error(source_name: str, text: str, diagnostics: list[Diagnostic]) -> DiagnosticError:

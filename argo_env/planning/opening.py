@@ -157,7 +157,7 @@ def open_site(reference: str = "umad", robot: RobotSpec | None = None) -> Opened
         ArgoError: The file is not valid; the message names the place in it.
     """
     if not isinstance(reference, str):
-        raise Invalid(f"{reference!r} is no text: a site is opened by its name or its file's path")
+        raise Invalid(f"{reference!r} is not text: a site is opened by its name or its file's path")
     robot = validate_robot(robot) if robot else load_robot()
     if is_family(reference):
         family = parse_family(reference)

@@ -155,7 +155,7 @@ class Recording:
         """Return the run's record; raise ArgoError if the recording has none."""
         if self.record is None:
             raise Invalid(
-                f"{self.name}: has no record of the run, which is written at its end: {self.loss}. "
+                f"{self.name} has no record of the run, which is written at its end: {self.loss}. "
                 "No report and no film can be made of it; what is there can be shown",
                 remedies=(Remedy.SHOW_REST,),
             )
@@ -187,7 +187,7 @@ def decode_recording(content: bytes, name: str) -> Recording:
     parts = _Parts()
     flaw = _read_parts(name, content, parts)
     if parts.facts is None:
-        _raise_invalid(name, f"is no recording of Argo's: {_HINT}", Remedy.RECORD)
+        _raise_invalid(name, f"is not a recording of Argo's: {_HINT}", Remedy.RECORD)
     if parts.facts.get("version") != VERSION:
         _raise_invalid(
             name,
@@ -256,7 +256,7 @@ def _read_parts(name: str, content: bytes, parts: _Parts) -> str | None:
     if not content:
         _raise_invalid(name, f"is empty: {_HINT}", Remedy.RECORD)
     if not MAGIC.startswith(content[: len(MAGIC)]):
-        _raise_invalid(name, f"is no .mcap file: {_HINT}", Remedy.RECORD)
+        _raise_invalid(name, f"is not an .mcap file: {_HINT}", Remedy.RECORD)
     stream = ContentStream(content)
     try:
         for record in read_data_section(stream):
@@ -291,4 +291,4 @@ def _load(path: Path) -> bytes:
 
 
 def _raise_invalid(name: str, message: str, *remedies: Remedy) -> NoReturn:
-    raise Invalid(f"{name}: {message}", remedies=remedies) from None
+    raise Invalid(f"{name} {message}", remedies=remedies) from None

@@ -261,7 +261,7 @@ class RunRecorder(Observer):
             reason = "it is not a file that can be read again"
         except OSError as error:
             reason = str(error.strerror)
-        self._warn(f"{source}: is not recorded with the run: {reason}")
+        self._warn(f"{source} is not recorded with the run: {reason}")
         return {}
 
     def _write_sample(self, now: float) -> None:

@@ -146,7 +146,7 @@ def fingerprints(site: OpenedSite, spec: RunSpec) -> dict[str, str]:
         try:
             digests["mission file"] = _digest(source.read_bytes())
         except OSError as error:
-            raise Unavailable(f"{source}: can't be read: {error.strerror}") from error
+            raise Unavailable(f"{source} can't be read: {error.strerror}") from error
     return digests
 
 
@@ -163,14 +163,16 @@ def require_free(path: Path, replace: bool = False) -> None:
             os.close(file)
     elif os.path.exists(path):
         raise Conflict(
-            f"{path}: already exists: resume that run, or choose another path",
+            f"{path} already exists: resume that run, or choose another path",
             remedies=(Remedy.RESUME,),
             about=str(path),
         )
     if not os.path.isdir(path.parent):
-        _refuse(path, "its folder does not exist: make it, or choose another", kind=NotFound)
+        _refuse(
+            path, "is in a folder that does not exist: make it, or choose another", kind=NotFound
+        )
     if not os.access(path.parent, os.W_OK):
-        _refuse(path, "its folder can't be written to: choose another", kind=Unavailable)
+        _refuse(path, "is in a folder that can't be written to: choose another", kind=Unavailable)
 
 
 def create_journal(path: Path, header: Header, replace: bool = False) -> Journal:
@@ -214,7 +216,7 @@ def open_journal(path: Path) -> Journal:
     Raises ArgoError if the file is no journal, is damaged, or another process has it open.
     """
     if os.path.exists(path) and not os.path.isfile(path):
-        _refuse(path, "is no file: name a journal that a run has written", Remedy.KEEP_JOURNAL)
+        _refuse(path, "is not a file: name a journal that a run has written", Remedy.KEEP_JOURNAL)
     file = _open(path)
     try:
         _lock(file, path)
@@ -244,7 +246,7 @@ def _parse(path: Path, content: bytes) -> tuple[Header, list[Entry], int]:
             "has line ends of another system (CR LF): copy it again, with its line ends unchanged",
         )
     if first is None or first.get("format") != _MARK:
-        _refuse(path, "is no journal, or its first line is damaged: no run can continue from it")
+        _refuse(path, "is not a journal, or its first line is damaged: no run can continue from it")
     if first.get("version") != VERSION:
         _refuse(
             path,
@@ -275,7 +277,8 @@ def _model(cls: type[ModelT], data: dict[str, object], path: Path, number: int) 
     except ValidationError as error:
         fault = error.errors(include_url=False)[0]
         field = ".".join(str(part) for part in fault["loc"])
-        _refuse(path, f"line {number + 1}, {field}: {error_message(fault, fault['loc'])}")
+        message = error_message(fault, fault["loc"])
+        _refuse(path, f"has an error in line {number + 1}, {field}: {message}")
 
 
 def _line(number: int, model: Model) -> bytes:
@@ -324,7 +327,7 @@ def _digest(content: str | bytes) -> str:
 def _refuse(
     path: Path, message: str, *remedies: Remedy, kind: type[ArgoError] = Invalid
 ) -> NoReturn:
-    raise kind(f"{path}: {message}", remedies=remedies) from None
+    raise kind(f"{path} {message}", remedies=remedies) from None
 
 
 def _refuse_writing(path: Path, error: OSError) -> NoReturn:

@@ -86,7 +86,7 @@ class LoggedEvent(Model):
         """Return the event as data. Raises Invalid if it is no event, or has invalid values."""
         kind = _NAMES.get(type(event))
         if kind is None:
-            raise Invalid(f"{event!r} is no event")
+            raise Invalid(f"{event!r} is not an event")
         try:
             return cls.model_validate({"kind": kind, **asdict(event)})
         except ValidationError as error:

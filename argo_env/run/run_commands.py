@@ -79,7 +79,7 @@ def check_by_hand(task: Task, mission: Mission, site: Site) -> None:
     Raises NotFound for a checkpoint that the site does not have.
     """
     if not isinstance(task, Task):
-        raise Invalid(f"{task!r} is no task: give one that drives or measures")
+        raise Invalid(f"{task!r} is not a task: give one that drives or measures")
     own = mission.task(task.name)
     if own is not None and own != task:
         raise Invalid(
@@ -153,7 +153,7 @@ def check_event(event: RunCommand, mission: Mission, site: Site) -> Event:
     does not have.
     """
     if not isinstance(event, _MACHINE_EVENTS):
-        raise Invalid(f"{event!r} is no command that a run can receive from outside")
+        raise Invalid(f"{event!r} is not a command that a run can receive from outside")
     logged = LoggedEvent.from_event(event)
     _check(logged, mission, site)
     return logged.to_event()
@@ -165,7 +165,7 @@ def check_scheduled_events(
     """Raise Invalid for scheduled events and times (s) that can't occur in a run of the mission."""
     for t, event in events:
         if not isinstance(event, LoggedEvent):
-            raise Invalid(f"{event!r} is no event as data: convert it with `logged_events`")
+            raise Invalid(f"{event!r} is not an event as data: convert it with `logged_events`")
         try:
             require_event_time(t)
             _check(event, mission, site)
@@ -248,7 +248,7 @@ def resolve_new_fault(fault: AnyFault, setup: RunSetup, seed: int, now: float) -
     its target.
     """
     if not isinstance(fault, Fault):
-        raise Invalid(f"{fault!r} is no fault")
+        raise Invalid(f"{fault!r} is not a fault")
     kind = f"a fault of kind `{fault.kind}`"
     if setup.schedule is None:
         raise Conflict(f"{kind} has no effect: no faults are simulated in this run")

@@ -269,7 +269,9 @@ class Simulation(Closing):
         match event:
             case StopRun(reason):
                 if not isinstance(reason, str):
-                    raise Invalid(f"{reason!r} is no reason: give one in words")
+                    raise Invalid(
+                        f"{reason!r} is not a text: give the reason for the stop in words"
+                    )
                 self._end_run(reason)
             case InjectFault(fault):
                 resolved = resolve_new_fault(fault, self.setup, self._spec.seed, self.now)

@@ -141,7 +141,7 @@ class RunSpec(Model):
 def read_spec(content: str | bytes, name: str = "the run's spec") -> RunSpec:
     """Return the spec in a JSON text.
 
-    Raises Invalid, with the text's `name` and the place in it, if it is no spec.
+    Raises Invalid, with the text's `name` and the place in it, if it is not a spec.
     """
     try:
         return RunSpec.model_validate_json(content)
@@ -156,7 +156,7 @@ def validate_spec(spec: RunSpec) -> RunSpec:
     of the field, if the spec is invalid.
     """
     if not isinstance(spec, RunSpec):
-        raise Invalid(f"{spec!r} is no spec of a run: make it a RunSpec")
+        raise Invalid(f"{spec!r} is not a spec of a run: make it a RunSpec")
     try:
         return RunSpec.model_validate(dict(spec))
     except ValidationError as error:

@@ -63,7 +63,7 @@ def resume_command(
 ) -> None:
     """Continue an interrupted run from its journal."""
     if os.path.isfile(journal / JOURNAL):
-        raise Invalid(f"{journal}: is a folder; name the journal in it: {journal / JOURNAL}")
+        raise Invalid(f"{journal} is a folder; name the journal in it: {journal / JOURNAL}")
     check_outputs([journal], [recording, render], (), force)
     if recording:
         check_recording(recording)

@@ -251,6 +251,6 @@ def _require_no_spec_options(context: typer.Context, source: Path) -> None:
     for name in given_options(context):
         if name in _SPEC_OPTIONS:
             raise Invalid(
-                f"{source}: is the spec of a run, which sets {option_name(name)} itself: leave the "
+                f"{source} is the spec of a run, which sets {option_name(name)} itself: leave the "
                 "option out"
             )

@@ -68,13 +68,13 @@ def read_evaluation_request(
         path = described[0]
         if len(sources) > 1:
             raise Invalid(
-                f"{path}: is an evaluation file, which names its missions itself: leave the other "
+                f"{path} is an evaluation file, which names its missions itself: leave the other "
                 "arguments out"
             )
         for option in given_options(context):
             if option in _OF_FILE:
                 raise Invalid(
-                    f"{path}: is an evaluation file: write {option_name(option)} into the file "
+                    f"{path} is an evaluation file: write {option_name(option)} into the file "
                     "instead of the command line"
                 )
         content = read_bytes(path, "evaluation", MAX_BYTES)

@@ -71,7 +71,7 @@ def check_outputs(
             check_writable(output)
         if os.path.exists(output) and not force:
             raise Conflict(
-                f"{output}: already exists: choose another path, or replace it",
+                f"{output} already exists: choose another path, or replace it",
                 remedies=(Remedy.REPLACE,),
             )
 
@@ -114,7 +114,7 @@ def write_content(path: Path, content: str | bytes | Mapping[str, bytes]) -> Non
         elif path != STANDARD_OUTPUT:
             write_atomically(path, content)
     except OSError as error:
-        raise Unavailable(f"{path}: can't be written: {error.strerror}") from error
+        raise Unavailable(f"{path} can't be written: {error.strerror}") from error
     if path == STANDARD_OUTPUT and isinstance(content, str):
         sys.stdout.write(content)
     elif path == STANDARD_OUTPUT and isinstance(content, bytes):

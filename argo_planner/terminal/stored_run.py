@@ -67,7 +67,7 @@ def require_no_unfinished_run(report: Path | None, journal: Path | None = None) 
     for path in (journal, report and report / JOURNAL):
         if path and os.path.isfile(path) and _is_unfinished(path):
             raise Conflict(
-                f"{path}: holds a run that has not ended: choose another path, replace the run "
+                f"{path} holds a run that has not ended: choose another path, replace the run "
                 f"(--force), or continue it with: {StoredRun(path).continuation_command(report)}"
             )
 

@@ -103,7 +103,7 @@ def error_diagnostics(error: ArgoError) -> tuple[Diagnostic, ...]:
         Diagnostic(
             code="script.unreadable",
             severity=Severity.ERROR,
-            message=file.message if file else str(error),
+            message=f"the file {file.message}" if file else str(error),
             hint=file.hint if file else None,
         ),
     )

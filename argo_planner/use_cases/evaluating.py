@@ -227,7 +227,7 @@ def _fault_sets(file: EvaluationFile, folder: Path) -> Iterator[FaultSet]:
         path = folder / fault_file
         found = _files(path) if os.path.isdir(path) else [path]
         if not found:
-            raise NotFound(f"{path}: contains no files of faults (.yaml)")
+            raise NotFound(f"{path} contains no files of faults (.yaml)")
         for one in found:
             text = decode_faults(read_bytes(one, "file of faults", MAX_BYTES), str(one))
             yield FaultSet(one.stem, text.faults, text=text)

@@ -142,7 +142,7 @@ def _require_no_run(upload: Upload) -> None:
     ):
         if pattern.match(beginning):
             raise Invalid(
-                f"{upload.name}: is the {kind} of a run, not a mission",
+                f"{upload.name} is the {kind} of a run, not a mission",
                 remedies=(remedy,),
                 about=upload.name,
             )
@@ -206,6 +206,6 @@ def require_no_areas(name: str, start_area: int | None, end_area: int | None) ->
     """Raise Invalid if areas are given for a mission, which has its own."""
     if start_area is not None or end_area is not None:
         raise Invalid(
-            f"{name}: has its areas already; they can be chosen for scripts only",
+            f"{name} has its areas already; they can be chosen for scripts only",
             remedies=(Remedy.CHOOSE_AREAS,),
         )

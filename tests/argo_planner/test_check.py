@@ -131,8 +131,8 @@ def test_schemas_are_printed(name):
 
 def test_a_file_that_is_not_there_is_named_once(tmp_path: Path):
     path = tmp_path / "none.txt"
-    said = f"{path}: error: can't be read: it does not exist (no such file) [script.unreadable]"
-    assert said in argo("check", path, status=2).output
+    said = "the file can't be read: it does not exist (no such file) [script.unreadable]"
+    assert f"{path}: error: {said}" in argo("check", path, status=2).output
 
 
 def test_a_mission_to_very_many_places_is_checked_without_its_times(catalog, tmp_path: Path):

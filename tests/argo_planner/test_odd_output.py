@@ -18,7 +18,7 @@ def test_characters_that_a_terminal_lacks_are_escaped(tmp_path: Path):
     name = "V\u00e4lve \u2603.txt"
     result = run_python(*ARGO, "check", name, cwd=tmp_path, env=environment, check=False)
     assert result.returncode == 2
-    assert result.stdout.startswith(r"V\xe4lve \u2603.txt: error: can't be read")
+    assert result.stdout.startswith(r"V\xe4lve \u2603.txt: error: the file can't be read")
     assert not result.stderr
 
 

@@ -131,4 +131,4 @@ def test_a_script_comes_whole_through_a_pipe(name: str):
 
 
 def test_an_endless_file_that_is_no_recording_is_refused():
-    assert "is no .mcap file" in refusal("replay {}", "/dev/zero")
+    assert "is not an .mcap file" in refusal("replay {}", "/dev/zero")

@@ -125,7 +125,7 @@ def test_the_message_names_the_remedy() -> None:
     assert isinstance(error, ArgoError)
     assert error.remedies == (Remedy.REPLACE,)
     assert error_text(error) == (
-        "new.dot: already exists: choose another path, or replace it (--force)"
+        "new.dot already exists: choose another path, or replace it (--force)"
     )
 
 

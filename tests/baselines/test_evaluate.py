@@ -82,7 +82,7 @@ def test_equal_arguments_give_equal_results(results, tmp_path):
     [
         (["--family", "random-21"], "no test set `random-21`; choose one of: random-20-v1"),
         (["--policy", "best"], "no policy `best`"),
-        (["--instances", "101"], "--instances is 101: give a number from 1 to 100"),
+        (["--instances", "101"], "--instances is 101: give a number of instances from 1 to 100"),
         (["--instances", "0"], "--instances is 0"),
         (["--seed", "-1"], "--seed is -1"),
     ],

@@ -206,13 +206,13 @@ def test_files_of_others_are_not_overwritten(argo, file, tmp_path):
     out = tmp_path / "out"
     out.mkdir()
     (out / "report.html").write_text("somebody's own")
-    assert "report.html: already exists" in require_refusal(argo("evaluate", file, "--out", out))
+    assert "report.html already exists" in require_refusal(argo("evaluate", file, "--out", out))
     assert (out / "report.html").read_text() == "somebody's own"
     assert argo("evaluate", file, "--out", out, "--force").returncode == 0
     assert argo("evaluate", file, "--out", out).returncode == 0
     assert argo("evaluate", "--compare", out, out).returncode == 0
     again = require_refusal(argo("evaluate", "--compare", out, out))
-    assert "comparison.html: already exists" in again
+    assert "comparison.html already exists" in again
     assert argo("evaluate", "--compare", out, out, "--out", tmp_path / "other").returncode == 0
     assert (tmp_path / "other" / "comparison.html").exists()
 

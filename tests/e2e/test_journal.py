@@ -195,7 +195,7 @@ def test_the_command_resumes_a_killed_run(
     [
         (["run", "plan.json", "--event", "60=flood"], "no event `flood`; there are: gas_leak"),
         (["run", "plan.json", "--journal", "plan.json"], "is the input"),
-        (["resume", "plan.json"], "is no journal"),
+        (["resume", "plan.json"], "is not a journal"),
     ],
 )
 def test_wrong_events_and_journals_are_refused(argo, folder: Path, arguments, message) -> None:

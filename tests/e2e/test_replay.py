@@ -55,9 +55,7 @@ def test_replay_makes_the_output_report_and_film_of_the_run_again(argo, folder: 
     )
     assert "Warning: run.mcap has a missing or damaged index; the record" in noticed.stderr
     (elsewhere / "run.mcap").write_bytes(content[: len(content) // 2] + b"?" + content)
-    assert "run.mcap: is damaged after" in require_refusal(
-        argo("replay", "run.mcap", cwd=elsewhere)
-    )
+    assert "run.mcap is damaged after" in require_refusal(argo("replay", "run.mcap", cwd=elsewhere))
 
 
 def test_a_killed_run_can_be_replayed_up_to_the_kill(argo, folder: Path) -> None:
@@ -89,7 +87,7 @@ def test_a_killed_run_can_be_replayed_up_to_the_kill(argo, folder: Path) -> None
     ("arguments", "message"),
     [
         (("run", "short.json", "--record", "run.bag"), "name it so"),
-        (("replay", "short.json"), "is no .mcap file"),
+        (("replay", "short.json"), "is not an .mcap file"),
         (("replay", "short.json", "--render", "film.avi"), "a film is an .mp4 or a .gif"),
     ],
 )

@@ -8,11 +8,11 @@ ANALYSIS = {
         "Measure the checkpoint again before the condition, or allow a greater age.",
     ),
     "analysis.battery-exceeded": error(
-        "Even the path that needs the least energy needs more than the battery gives.",
+        "Even the execution path that needs the least energy needs more than the battery gives.",
         "Leave out tasks or rounds, or charge in between.",
     ),
     "analysis.battery-maybe-exceeded": warning(
-        "Some path needs more energy than the battery gives.",
+        "Some execution path needs more energy than the battery gives.",
         "Limit repetitions, or react to `low_battery`.",
     ),
     "analysis.cut-short": warning(
@@ -21,8 +21,8 @@ ANALYSIS = {
         "Leave out tasks, shorten groups, or allow more time.",
     ),
     "analysis.end-elsewhere": warning(
-        "The mission has to end at the dock, but some path ends elsewhere.",
-        "Let each path end with a WAYPOINT task at the dock.",
+        "The mission has to end at the dock, but some execution path ends elsewhere.",
+        "Let each execution path end with a WAYPOINT task at the dock.",
     ),
     "analysis.endless-loop": error(
         "Tasks repeat for ever once they are reached.",
@@ -33,23 +33,26 @@ ANALYSIS = {
         "Measure the checkpoint in the loop, or make it a group with a limit.",
     ),
     "analysis.maybe-too-long": warning(
-        "Some path takes longer than the mission's maximum duration.",
+        "Some execution path takes longer than the mission's maximum duration.",
         "Limit repetitions, or define by a reaction to `time_up` what happens then.",
     ),
     "analysis.maybe-unmeasured": warning(
-        "A condition compares a checkpoint that has no value yet on some paths, where it is false.",
-        "Measure the checkpoint on every path to the task.",
+        "A condition compares a checkpoint that has no value yet on some execution paths; "
+        "on them the condition is false.",
+        "Measure the checkpoint on every execution path to the task.",
     ),
     "analysis.never-measured": warning(
-        "A condition compares a checkpoint that no path to it has measured, so it is never true.",
+        "A condition compares a checkpoint that no execution path to it has measured, so it is "
+        "never true.",
         "Measure the checkpoint earlier, or compare another one.",
     ),
     "analysis.no-end": error(
-        "No path leads to the end of the mission.",
+        "No execution path leads to the end of the mission.",
         "Remove an unconditional transition where the mission is to end, or leave the loop.",
     ),
     "analysis.no-way-back": warning(
-        "On some path the battery may not suffice for the drive back to the dock with a reserve.",
+        "On some execution path the battery may not suffice for the drive back to the dock with a "
+        "reserve.",
         "Leave out tasks or rounds, charge in between, or react to `low_battery`.",
     ),
     "analysis.time-limit": warning(
@@ -57,7 +60,7 @@ ANALYSIS = {
         "Give it more time.",
     ),
     "analysis.too-long": error(
-        "Even the shortest path takes longer than the mission's maximum duration.",
+        "Even the shortest execution path takes longer than the mission's maximum duration.",
         "Leave out tasks, shorten groups, or allow more time.",
     ),
     "analysis.too-many-places": warning(
@@ -65,8 +68,8 @@ ANALYSIS = {
         "Divide it into several missions.",
     ),
     "analysis.transition-always": warning(
-        "A condition is true for every value that can be measured, so the transitions after it are "
-        "never taken.",
+        "A condition is true for every value that can be measured, so the later transitions of "
+        "its task are never taken.",
         "Correct its bounds, or remove the condition.",
     ),
     "analysis.transition-never": warning(
@@ -82,19 +85,19 @@ ANALYSIS = {
         "Choose another pose or checkpoint, or remove the task.",
     ),
     "analysis.unreachable-task": warning(
-        "No path leads to a task.",
+        "No execution path leads to a task, so it is never done.",
         "Add a transition to it that can be taken, or remove the task.",
     ),
     "analysis.window-late": warning(
-        "No path reaches a task within its window; the task is done nevertheless.",
+        "No execution path reaches a task within its window; the task is done nevertheless.",
         "Do it earlier, or let its window end later.",
     ),
     "analysis.window-maybe-missed": warning(
-        "Some path may be too late for the window of a task.",
+        "Some execution path may be too late for the window of a task.",
         "Do it earlier, or let its window end later.",
     ),
     "analysis.window-missed": error(
-        "No path without failures reaches a task within its window.",
+        "No execution path without failures reaches a task within its window.",
         "Do it earlier, or let its window end later.",
     ),
 }

@@ -1,11 +1,11 @@
-"""Codes of diagnostics about continuing a mission with a plan that was edited meanwhile."""
+"""Codes of diagnostics about continuing a mission with a mission plan that was edited meanwhile."""
 
 from argo_compiler.diagnostics.codes.code import error, warning
 
 HANDOVER = {
     "handover.by-hand-gone": warning(
-        "A task that was done by hand is not in the plan.",
-        "Put it back into the plan if it is to count.",
+        "A task that was done by hand is not in the edited mission plan.",
+        "Add it to the mission plan again if it is to count.",
     ),
     "handover.by-hand-value": warning(
         "A value was given for a task that measures nothing.",
@@ -20,15 +20,16 @@ HANDOVER = {
         "Set its round in the progress to start in another one.",
     ),
     "handover.no-return": error(
-        "The robot is on its way back after a failure, but no task of the plan returns.",
+        "The robot is on its way back after a failure, but no task of the mission plan returns.",
         "Give a task `on_failure` return, or cancel the mission.",
     ),
     "handover.reaction-gone": warning(
-        "The plan no longer has a reaction to an event that interrupted the mission or is waiting.",
+        "The mission plan no longer has a reaction to an event that interrupted the mission or is "
+        "waiting.",
         "Put the reaction back, or resume the mission when it is safe to continue.",
     ),
     "handover.task-gone": error(
-        "The plan does not have the task that the mission has reached.",
+        "The mission plan does not have the task that the mission has reached.",
         "Put a task of that name back, or set in the progress the task to continue with.",
     ),
 }

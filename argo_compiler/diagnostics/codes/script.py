@@ -46,7 +46,7 @@ SCRIPT = {
         "Write its units, as in `10 min 30 s`, or a separate sentence that names the part.",
     ),
     "script.ambiguous-edit": error(
-        "An edit fits more than one step of the plan.", "Name one of the steps."
+        "An edit fits more than one step of the mission.", "Name one of the steps."
     ),
     "script.ambiguous-event": error(
         "An obstacle may be a thing on the path, or a hole in the path.",
@@ -258,7 +258,7 @@ SCRIPT = {
         "Write the last order below the others.",
     ),
     "script.not-planned": error(
-        "An edit names a step that is not in the plan at this point.",
+        "An edit names a step that is not in the mission at this point.",
         "Add the step before the edit, or correct the name.",
     ),
     "script.not-understood": error(

@@ -129,7 +129,7 @@ def _speeds(lowered: Lowered, names: Sequence[str], diagnostics: Diagnostics) ->
     left = {j for froms in sources for j in froms}
     for i, item in enumerate(items):
         if item.do.leaving is not None and i not in left:
-            message = "no path leads on from here, so this speed has no effect"
+            message = "the mission ends here, so this speed of the drive away has no effect"
             hint = "write `at 0.3 m/s` for the path to a task"
             diagnostics.warning("speed-unused", message, item.do.source, hint)
         if item.do.action is Action.WAIT:

@@ -133,7 +133,7 @@ class Manners:
     def furnish_each(self, manner: Manner, span: Span, tasks: Sequence[Do]) -> None:
         """Applies it to each of the tasks; what is said twice and differs is an error."""
         if manner.priority is not None and not 1 <= manner.priority <= _MOST_PRIORITY:
-            message = f"a task can't have priority {manner.priority}"
+            message = f"{manner.priority} is not a valid priority of a task"
             hint = f"write a number from 1 to {_MOST_PRIORITY}"
             self.diagnostics.refuse("number", message, span, hint)
         if manner.priority == 1:

@@ -191,7 +191,7 @@ class NounResolver:
         first, last = noun.label, noun.last
         if not isinstance(first, int) or not isinstance(last, int):
             message = "a range needs two numbers"
-            self.diagnostics.refuse("range", message, noun.span, "name each of them")
+            self.diagnostics.refuse("range", message, noun.span, "name each checkpoint")
         if first > last:
             message = "this range of checkpoints is empty"
             hint = "write the lower number first"

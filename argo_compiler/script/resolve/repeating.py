@@ -208,7 +208,8 @@ class Repeating:
             return
         follows = _leads_to(found[-1], round_)
         if tail and (not follows or round_ in found):
-            message = "a condition after a repetition is evaluated after its last round"
+            message = "this repetition is not directly after the steps that it repeats, so the "
+            message += "condition after it can't be evaluated after its last round"
             hint = "write the repetition after the steps that it repeats"
             self.diagnostics.refuse("not-planned", message, order.span, hint)
         for node in (round_, *tail):

@@ -59,7 +59,7 @@ def require_listener(address: str, cluster: str) -> None:
     except ValueError:
         host = port = None
     if host is None or port is None:
-        raise Invalid(f"`{address}` is no address of a {cluster} cluster: give host:port")
+        raise Invalid(f"`{address}` is not an address of a {cluster} cluster: give host:port")
     try:
         socket.create_connection((host, port), timeout=_CONNECT_TIMEOUT).close()
     except OSError as error:

@@ -95,7 +95,7 @@ class EvaluationFolder:
             shutil.rmtree(self.evaluation_path(id))
         except OSError as error:
             raise Unavailable(
-                f"{self.evaluation_path(id)}: can't be deleted: {error.strerror}"
+                f"{self.evaluation_path(id)} can't be deleted: {error.strerror}"
             ) from error
 
     def load_evaluation(self, id: str) -> StoredEvaluation:
@@ -177,7 +177,7 @@ class Evaluations:
         """Return an evaluation; raises NotFound if there is no such job or it is no evaluation."""
         job = self._jobs.job(id)
         if not isinstance(job, EvaluationJob):
-            raise NotFound(f"job {id} is no evaluation")
+            raise NotFound(f"job {id} is not an evaluation")
         return job
 
     async def cancel_for_mission(self, plan: str) -> None:

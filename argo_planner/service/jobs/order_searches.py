@@ -57,7 +57,7 @@ class OrderSearches:
         """
         job = self._jobs.job(id)
         if not isinstance(job, OrderJob):
-            raise NotFound(f"job {id} is no search for an order")
+            raise NotFound(f"job {id} is not a search for an order")
         if job.found is None or job.found.mission is None:
             raise Conflict(f"job {id} is {job.state}, and has found no order")
         return job, job.found.mission

@@ -77,7 +77,7 @@ class RequestFile:
                 sync_folder(self._path.parent)
         except OSError as error:
             raise Unavailable(
-                f"{self._path}: can't be written: {error.strerror}; nothing was passed on to the "
+                f"{self._path} can't be written: {error.strerror}; nothing was passed on to the "
                 "run: try again when the disk has room"
             ) from error
 
@@ -91,7 +91,7 @@ class RequestFile:
         except FileNotFoundError:
             return []
         except OSError as error:
-            raise Unavailable(f"{self._path}: can't be read: {error.strerror}") from error
+            raise Unavailable(f"{self._path} can't be read: {error.strerror}") from error
         requests: dict[str, RequestState] = {}
         for line in content.split(b"\n"):
             if (data := checked_object(line)) is not None:
@@ -116,7 +116,7 @@ class RunFolder:
             folder.mkdir(parents=True)
             sync_folder(self._path)
         except OSError as error:
-            raise Unavailable(f"{folder}: can't be created: {error.strerror}") from error
+            raise Unavailable(f"{folder} can't be created: {error.strerror}") from error
         self.store(stored)
         return folder
 
@@ -127,7 +127,7 @@ class RunFolder:
             write_atomically(path, stored.model_dump_json())
             sync_folder(path.parent)
         except OSError as error:
-            raise Unavailable(f"{path}: can't be written: {error.strerror}") from error
+            raise Unavailable(f"{path} can't be written: {error.strerror}") from error
 
     def load_runs(self) -> list[StoredRun]:
         """Return the stored runs, the newest first; damaged ones are left out."""
@@ -179,7 +179,7 @@ class RunFolder:
         except FileNotFoundError:
             return None
         except OSError as error:
-            raise Unavailable(f"{path}: can't be read: {error.strerror}") from error
+            raise Unavailable(f"{path} can't be read: {error.strerror}") from error
 
     def last_journal(self, id: str) -> Path | None:
         """Return the newest journal of a run; None if it ended before there was one."""

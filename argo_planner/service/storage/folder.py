@@ -57,7 +57,7 @@ class PlanFolder(Closing):
             )
         except OSError as error:
             raise Unavailable(
-                f"{path}: can't be used as a folder of missions: {error.strerror}; choose another"
+                f"{path} can't be used as a folder of missions: {error.strerror}; choose another"
             ) from error
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -39,7 +39,7 @@ def read_outline(path: Path) -> PlanSummary:
     except ArgoError as error:
         return PlanSummary(id=path.stem, name=path.stem, problem=str(error))
     if summary is None:
-        problem = f"{path.name}: is damaged from its first line on"
+        problem = f"{path.name} is damaged from its first line on"
         return PlanSummary(id=path.stem, name=path.stem, problem=problem)
     return summary
 

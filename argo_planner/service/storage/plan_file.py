@@ -169,7 +169,7 @@ def open_plan_file(path: Path) -> PlanFile:
             return _recover(path, parsed_previous, lost)
     if parsed is None:
         raise Invalid(
-            f"{path.name}: is damaged from its first line on, and nothing in it can be read: "
+            f"{path.name} is damaged from its first line on, and nothing in it can be read: "
             "restore it from a copy"
         )
     if parsed.lost:
@@ -339,7 +339,7 @@ def _open(path: Path, flags: int = _FLAGS) -> int:
     except FileNotFoundError:
         raise NotFound(f"{path.name}: there is no such mission") from None
     except OSError as error:
-        raise Unavailable(f"{path.name}: can't be opened: {error.strerror}") from error
+        raise Unavailable(f"{path.name} can't be opened: {error.strerror}") from error
 
 
 def read_plan_bytes(path: Path) -> bytes:
@@ -351,13 +351,13 @@ def read_plan_bytes(path: Path) -> bytes:
     try:
         if os.fstat(file).st_size > MAX_BYTES:
             raise Invalid(
-                f"{path.name}: is larger than {MAX_BYTES // 1_000_000} MB, the limit for a mission"
+                f"{path.name} is larger than {MAX_BYTES // 1_000_000} MB, the limit for a mission"
             )
         parts = []
         while part := os.read(file, 1 << 20):
             parts.append(part)
     except OSError as error:
-        raise Unavailable(f"{path.name}: can't be read: {error.strerror}") from error
+        raise Unavailable(f"{path.name} can't be read: {error.strerror}") from error
     finally:
         os.close(file)
     return b"".join(parts)
@@ -365,6 +365,6 @@ def read_plan_bytes(path: Path) -> bytes:
 
 def _write_error(path: Path, error: OSError) -> Unavailable:
     return Unavailable(
-        f"{path.name}: can't be written: {error.strerror}; nothing was changed. Free disk "
+        f"{path.name} can't be written: {error.strerror}; nothing was changed. Free disk "
         "space, or choose another folder"
     )

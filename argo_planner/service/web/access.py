@@ -131,7 +131,7 @@ def read_tokens(path: Path) -> tuple[AccessToken, ...]:
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        raise Unavailable(f"{path}: can't be read as a token file: {error}") from None
+        raise Unavailable(f"{path} can't be read as a token file: {error}") from None
     tokens = []
     for number, line in enumerate(text.splitlines(), start=1):
         words = line.partition("#")[0].split(maxsplit=2)
@@ -148,9 +148,9 @@ def read_tokens(path: Path) -> tuple[AccessToken, ...]:
             require_name(name, f"the owner of the token in {where}")
         tokens.append(AccessToken(validate_secret(words[0], where), AccessRole(role), name))
     if not tokens:
-        raise Invalid(f"{path}: has no tokens: write one per line, such as `SECRET plan Ann`")
+        raise Invalid(f"{path} has no tokens: write one per line, such as `SECRET plan Ann`")
     if len({token.secret for token in tokens}) < len(tokens):
-        raise Invalid(f"{path}: has a token twice: write each token once")
+        raise Invalid(f"{path} has a token twice: write each token once")
     return tuple(tokens)
 
 
@@ -170,7 +170,7 @@ def load_or_make_secret(folder: Path) -> str:
     """Return the token of a folder of missions; store a new one if it has none.
 
     A restarted service thus has the same token, and open pages stay connected. Raises Unavailable
-    if the token can't be read or stored, Invalid if the stored one is no valid token.
+    if the token can't be read or stored, Invalid if the stored one is not a valid token.
     """
     path = folder / _SECRET_FILE
     try:

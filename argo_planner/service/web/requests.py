@@ -129,7 +129,7 @@ def _parse_if_match(
     if if_match.strip() == "*":
         return None
     if not (match := re.fullmatch(r'\s*"(\d{1,12})"\s*', if_match, re.ASCII)):
-        raise Invalid(f'`If-Match: {if_match[:40]}` is no revision: write it as `"12"`')
+        raise Invalid(f'`If-Match: {if_match[:40]}` is not a revision: write it as `"12"`')
     return int(match[1])
 
 

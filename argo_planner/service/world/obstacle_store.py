@@ -65,6 +65,6 @@ class ObstacleStore:
             draft.replace(self._path)
             sync_folder(self._path.parent)
         except OSError as error:
-            raise Unavailable(f"{self._path}: can't be written: {error.strerror}") from error
+            raise Unavailable(f"{self._path} can't be written: {error.strerror}") from error
         self.present = changed
         return changed

@@ -127,7 +127,7 @@ def read_standing_map(content: bytes) -> StandingMap:
             np.frombuffer(body, "<i2", count, count).reshape(shape),
         )
     except (ValueError, KeyError, TypeError, IndexError, zlib.error) as error:
-        raise Invalid(f"the content is no map of where a robot can stand: {error}") from error
+        raise Invalid(f"the content is not a map of where a robot can stand: {error}") from error
 
 
 def standing_map(

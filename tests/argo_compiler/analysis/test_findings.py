@@ -201,7 +201,7 @@ def test_windows_that_every_path_misses(latest, hard, expected):
     found = findings(mission("A", late, "C"), ConstantTravel())
     assert set(found) == ({expected} if expected else set())
     if expected:
-        assert "no path is in time for task 'B'" in found[expected].message
+        assert "no execution path is in time for task 'B'" in found[expected].message
 
 
 def test_a_window_that_some_path_misses():

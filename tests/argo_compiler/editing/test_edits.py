@@ -398,7 +398,7 @@ def test_fields_of_a_task_are_set_and_cleared():
         ({"on_failure": OnFailure.BRANCH}, EditInvalid, "has no target for that"),
         ({"window": TimeWindow(earliest=9, latest=5)}, EditInvalid, "no time"),
         ({"on_failure": OnFailure.RETURN}, EditConflict, "dock"),
-        ({"group": "z"}, EditInvalid, "`group` is no field"),
+        ({"group": "z"}, EditInvalid, "`group` is not a field"),
     ],
 )
 def test_fields_that_a_task_cannot_have_are_refused(fields, error, message):

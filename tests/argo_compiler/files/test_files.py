@@ -171,7 +171,7 @@ def test_missing_file_and_directory(tmp_path):
 def test_a_file_that_is_too_large_is_not_parsed(tmp_path, monkeypatch):
     monkeypatch.setattr(files, "MAX_BYTES", 1_000_000)
     (diagnostic,) = diagnostics_of(write(tmp_path, b" " * 1_000_001))
-    assert diagnostic.message == "is larger than 1 MB"
+    assert diagnostic.message == "the file is larger than 1 MB"
 
 
 def test_a_file_that_cannot_be_written_is_an_error(tmp_path, mission):

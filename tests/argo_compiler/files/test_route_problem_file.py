@@ -53,15 +53,15 @@ def test_files(tmp_path: Path) -> None:
     assert_equal(PROBLEM, read_route_problem(path))
     with pytest.raises(ArgoError, match="does not exist"):
         read_route_problem(tmp_path / "none.json")
-    with pytest.raises(ArgoError, match=r"x\.json: can't be written"):
+    with pytest.raises(ArgoError, match=r"x\.json can't be written"):
         write_route_problem(PROBLEM, tmp_path / "none" / "x.json")
 
 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("{", r"^p:1:2: is not JSON"),
-        ("[" * 100_000, "^p: is not JSON: it is nested too deeply"),
+        ("{", r"^p:1:2: the text is not JSON"),
+        ("[" * 100_000, "^p: the text is not JSON: it is nested too deeply"),
         ("[]", "not a route problem of version 1"),
         ('{"version": 2}', "not a route problem of version 1"),
         ('{"version": 1, "visits": []}', "travel: field required"),
@@ -73,7 +73,7 @@ def test_files(tmp_path: Path) -> None:
         (TEXT.replace("[0, 1, 2]", "[0, 1]"), "travel: its rows do not have the same length"),
         (TEXT.replace("[0, 1, 2]", f"[{10**30}, 1, 2]"), "too large|valid int"),
         (TEXT.replace("[0, 1, 2]", "[-1, 1, 2]"), "its travel times are not from 0"),
-        (TEXT.replace('"members": [0, 1]', '"members": [0, 9]'), "one that is no visit"),
+        (TEXT.replace('"members": [0, 1]', '"members": [0, 9]'), "one that is not a visit"),
     ],
 )
 def test_an_error_names_its_place(text: str, message: str) -> None:

@@ -276,7 +276,7 @@ def test_a_warning_reports_each_ignored_field():
     robot = definition()["tasks"][0]["pose"] | {"frame_name": "robot"}
     data = definition(pose=robot, zoom={"objectWidth": 1, "objectHeight": 1}, analysis=["x"])
     imported = from_isar(data | {"start_pose": robot}, "isar", CATALOG)
-    assert [(f.severity, f.message.split(":")[0]) for f in imported.diagnostics] == [
+    assert [(f.severity, f.message.split(" is ignored")[0]) for f in imported.diagnostics] == [
         (Severity.WARNING, "start_pose"),
         (Severity.WARNING, "tasks[0].analysis"),
         (Severity.WARNING, "tasks[0].pose"),
@@ -298,8 +298,8 @@ def test_a_pose_with_an_orientation_of_zeros_is_ignored():
 @pytest.mark.parametrize(
     ("data", "code", "message"),
     [
-        (definition(tag=None), "tag", "tasks[0]: has no tag"),
-        (definition(inspection=None), "inspection", "tasks[0]: has no inspection"),
+        (definition(tag=None), "tag", "tasks[0] has no tag"),
+        (definition(inspection=None), "inspection", "tasks[0] has no inspection"),
         (
             definition(
                 inspection={
@@ -309,7 +309,7 @@ def test_a_pose_with_an_orientation_of_zeros_is_ignored():
                 }
             ),
             "inspection-type",
-            "tasks[0]: is an inspection of type Audio",
+            "tasks[0] is an inspection of type Audio",
         ),
         (definition(type="fly"), "wrong-field", "tasks[0].type: "),
         (definition(pose={}), "wrong-field", "tasks[0].pose.position: "),

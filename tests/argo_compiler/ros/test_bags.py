@@ -139,9 +139,9 @@ def encoded(mission):
 
 def test_bags_without_a_mission_are_refused(tmp_path):
     other = ros1_bag(tmp_path / "1.bag", [encoded(PLAN)], topic="/plan")
-    assert read_error(other).message == "has no topic /mission, only /plan"
+    assert read_error(other).message == "the bag has no topic /mission, only /plan"
     empty = ros1_bag(tmp_path / "2.bag", [])
-    assert read_error(empty).message == "has no message on /mission"
+    assert read_error(empty).message == "the bag has no message on /mission"
     typed = ros1_bag(tmp_path / "3.bag", [b""], msgtype="std_msgs/msg/Empty")
     assert "type std_msgs/msg/Empty on /mission" in read_error(typed).message
 

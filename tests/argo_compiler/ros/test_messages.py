@@ -178,21 +178,21 @@ def plan():
 @pytest.mark.parametrize(
     ("change", "message_start"),
     [
-        (lambda m: setattr(m, "version", 0), "has version 0 of the messages"),
-        (lambda m: setattr(m, "version", 2), "has version 2 of the messages"),
-        (lambda m: setattr(m, "mode", 7), "mode: is 7"),
+        (lambda m: setattr(m, "version", 0), "the message has version 0 of the messages"),
+        (lambda m: setattr(m, "version", 2), "the message has version 2 of the messages"),
+        (lambda m: setattr(m, "mode", 7), "mode is 7"),
         (lambda m: setattr(m, "max_duration", -1.0), "max_duration: "),
         (lambda m: setattr(m, "max_duration", math.inf), "max_duration: "),
-        (lambda m: setattr(m.tasks[0], "action", 0), "tasks[0].action: is 0"),
+        (lambda m: setattr(m.tasks[0], "action", 0), "tasks[0].action is 0"),
         (lambda m: setattr(m.tasks[0], "name", ""), "tasks[0].name: "),
         (lambda m: setattr(m.tasks[0], "velocity", math.nan), "tasks[0].velocity: "),
-        (lambda m: setattr(m.tasks[0], "on_failure", 9), "tasks[0].on_failure: is 9"),
-        (lambda m: setattr(m.tasks[0].window, "kind", 2), "tasks[0].window.kind: is 2"),
-        (lambda m: setattr(m.tasks[0].wait, "event", 99), "tasks[0].wait.event: is 99"),
+        (lambda m: setattr(m.tasks[0], "on_failure", 9), "tasks[0].on_failure is 9"),
+        (lambda m: setattr(m.tasks[0].window, "kind", 2), "tasks[0].window.kind is 2"),
+        (lambda m: setattr(m.tasks[0].wait, "event", 99), "tasks[0].wait.event is 99"),
         (lambda m: setattr(m.tasks[0], "time_limit", -1.0), "tasks[0].time_limit: "),
-        (lambda m: setattr(m.groups[0], "stop", 2), "groups[0].stop: is 2"),
-        (lambda m: setattr(m.reactions[0], "event", 0), "reactions[0].event: is 0"),
-        (lambda m: setattr(m.reactions[0], "until", 99), "reactions[0].until: is 99"),
+        (lambda m: setattr(m.groups[0], "stop", 2), "groups[0].stop is 2"),
+        (lambda m: setattr(m.reactions[0], "event", 0), "reactions[0].event is 0"),
+        (lambda m: setattr(m.reactions[0], "until", 99), "reactions[0].until is 99"),
     ],
 )
 def test_the_error_names_a_value_that_a_mission_cannot_have(change, message_start):
@@ -220,7 +220,7 @@ def test_a_field_is_ignored_if_its_flag_is_false():
             Task(name="A", action=Action.START, source=Span(line=2**63, column=1, length=1)),
             "tasks['A'].source.line: 9223372",
         ),
-        (Task(name="A", action=Action.START, group="\ud800"), "tasks['A'].group: is not text"),
+        (Task(name="A", action=Action.START, group="\ud800"), "tasks['A'].group is not text"),
     ],
 )
 def test_the_error_names_a_value_that_a_message_cannot_have(task, message_start):

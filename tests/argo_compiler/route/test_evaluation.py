@@ -123,7 +123,7 @@ def test_a_round_must_not_be_interrupted() -> None:
 )
 def test_parts_that_do_not_fit_are_refused(wrong: dict, words: str) -> None:  # type: ignore[type-arg]
     parts = {"visits": (A, B), "travel": np.zeros((3, 3), np.int64), **wrong}
-    with pytest.raises(ArgoError, match="this is no route problem") as raised:
+    with pytest.raises(ArgoError, match="this is not a route problem") as raised:
         RouteProblem(**parts)
     assert words in str(raised.value)
     assert NEVER > 0

@@ -150,7 +150,7 @@ def bounds(mission: Mission, name: str) -> list[Bounds]:
         (
             "Drive at 0.2 m/s on the second floor. Check #5.",
             "ambiguous-place",
-            ["where this speed applies"],
+            ["where the speed applies"],
         ),
         ("Fahre im zweiten Stock mit 0,2 m/s.", "ambiguous-place", ["the destination"]),
         (

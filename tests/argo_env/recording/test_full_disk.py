@@ -84,7 +84,7 @@ def test_a_run_is_recorded_without_a_source_that_can_not_be_read(yard, tmp_path,
         record = simulate(SHORT, opened(yard), observers=[recorder])
     assert read_recording(tmp_path / "run.mcap").record == record
     (warning,) = warnings
-    assert re.match(r".*plan\.txt: is not recorded with the run: ", warning)
+    assert re.match(r".*plan\.txt is not recorded with the run: ", warning)
 
 
 def test_all_files_of_a_folder_are_recorded_as_the_source(yard, tmp_path) -> None:

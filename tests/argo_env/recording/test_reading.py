@@ -202,7 +202,7 @@ def test_another_tools_recording_is_refused(tmp_path: Path) -> None:
         channel = writer.register_channel("/readings", "json", 0)
         writer.add_message(channel, 0, b"{}", 0)
         writer.finish()
-    with pytest.raises(ArgoError, match="is no recording of Argo's"):
+    with pytest.raises(ArgoError, match="is not a recording of Argo's"):
         read_recording(path)
     with pytest.raises(ArgoError, match="there is no such recording"):
         read_recording(tmp_path / "none.mcap")

@@ -178,7 +178,7 @@ class TestRefusals:
     @pytest.mark.parametrize(
         ("task", "kind", "says"),
         [
-            (None, Invalid, "None is no task"),
+            (None, Invalid, "None is not a task"),
             (Task(name="W", action=Action.START), Invalid, "does nothing"),
             (Task(name="W", action=Action.WAYPOINT), Invalid, "does not state where"),
             (Task(name="M", action=Action.MEASURE, object_id="9"), NotFound, "no checkpoint 9"),

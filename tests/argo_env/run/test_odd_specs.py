@@ -63,13 +63,13 @@ def test_what_pydantic_has_not_looked_at_is_refused_with_the_name_of_the_field(f
 
 @pytest.mark.parametrize("spec", [None, {}, "umad", ONE])
 def test_what_is_no_spec(spec):
-    with pytest.raises(Invalid, match="is no spec of a run: make it a RunSpec"):
+    with pytest.raises(Invalid, match="is not a spec of a run: make it a RunSpec"):
         run(spec)
 
 
 @pytest.mark.parametrize("reference", [None, 3, b"umad", Path("site.yaml"), ["umad"]])
 def test_what_names_no_site(reference):
-    with pytest.raises(Invalid, match="is no text: a site is opened by its name"):
+    with pytest.raises(Invalid, match="is not text: a site is opened by its name"):
         open_site(reference)
 
 

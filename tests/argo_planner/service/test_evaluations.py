@@ -265,10 +265,10 @@ def test_a_search_is_not_an_evaluation(service: Served, id: str) -> None:
         service.client.get(f"/api/jobs/{order}/report"),
         service.client.get(f"/api/jobs/{order}/runs/{'0' * 24}"),
     ):
-        assert "is no evaluation" in problem(answer, 404, "not-found")["detail"]
+        assert "is not an evaluation" in problem(answer, 404, "not-found")["detail"]
     evaluation = start_evaluation(service, id, worlds=1)
     assert wait_for_end(service, evaluation)["state"] == "done"
     refused = service.client.get(f"/api/jobs/{evaluation}/preview")
-    assert "is no search" in problem(refused, 404, "not-found")["detail"]
+    assert "is not a search" in problem(refused, 404, "not-found")["detail"]
     unknown = service.client.get(f"/api/jobs/{evaluation}/runs/{'0' * 24}")
     assert "has no run" in problem(unknown, 404, "not-found")["detail"]

@@ -143,7 +143,7 @@ def test_sites(site, tmp_path):
     assert again.site.checkpoints == site.site.checkpoints
     with pytest.raises(DiagnosticError, match=r"mine.yaml:1:1: error: titel"):
         uploaded(b"titel: Mine\n")
-    with pytest.raises(Invalid, match=r"mine.yaml: is not UTF-8"):
+    with pytest.raises(Invalid, match=r"mine.yaml is not UTF-8"):
         uploaded(b"\xff")
     with pytest.raises(Conflict, match="would be called umad"):
         describe_site(site, "umad")

@@ -65,7 +65,7 @@ def _go(part: RulePart) -> ScriptOrder:
     order = _towards(part, where_to)
     driven = order.manner is not None and order.manner.speed is not None
     if isinstance(where_to, FloorName) and driven and pattern(_WHEREABOUTS).search(part.said):
-        message = "this can be the destination, or the floor where this speed applies"
+        message = "this floor can be the destination, or where the speed applies"
         hint = "write `go to floor 2` for the first, the speed after each command for the second"
         part.error("ambiguous-place", message, hint)
     return order
@@ -112,8 +112,8 @@ def _home(part: RulePart) -> ScriptOrder:
 def _start(part: RulePart) -> ScriptOrder:
     place = where(part)
     if isinstance(place, FloorName):
-        hint = "name a starting area or a place: `start in starting area 1`"
-        part.error("start", "a mission must start at a place", hint)
+        hint = "name a starting area or a position: `start in starting area 1`"
+        part.error("start", "a mission can't start anywhere on a floor", hint)
         return orders.Start(span=part.span, where=None)
     ends = part.has("END")
     return orders.Start(span=part.span, manner=_manner(part), where=place, ends_there=ends)

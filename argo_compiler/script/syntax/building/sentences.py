@@ -54,7 +54,8 @@ def _case(part: RulePart) -> Case:
         behind = part.children[part.children.index(condition) + 1]
         if not isinstance(behind, Word):
             message = "this time can belong to the condition, or be a wait before the command"
-            hint = "write `if ..., wait 5 minutes and check ...`, or `wait 5 minutes` before it"
+            hint = "write `wait 5 minutes` as a sentence before the `if` for the first, "
+            hint += "`if ..., wait 5 minutes and check ...` for the second"
             part.diagnostics.error("ambiguous-case", message, orders[0].span, hint)
     conditions.require_moment(part)
     if condition is not None and orders and isinstance(orders[0], Amend):

@@ -17,8 +17,8 @@ from argo_env.robot.spec import load_robot
 from argo_planner.terminal.conclusion import Conclusion
 from argo_planner.terminal.files import check_outputs
 from argo_planner.terminal.options import Force, Render, Report
+from argo_planner.terminal.run_storage import RunStorage, require_no_unfinished_run
 from argo_planner.terminal.signals import defer_first_signal
-from argo_planner.terminal.stored_run import StoredRun, require_no_unfinished_run
 from argo_planner.terminal.verbosity import is_quiet
 from argo_planner.use_cases.reporting import REPORT_FILES
 
@@ -57,7 +57,7 @@ def replay_command(
     took = f"Reading {count} messages took {time.monotonic() - begun:.1f} s."
     with defer_first_signal() as interruption:
         Conclusion(
-            report, render, StoredRun(recording=recording, force=force), interruption
+            report, render, RunStorage(recording=recording, force=force), interruption
         ).conclude(record, found.site, load_robot(record.robot), took)
 
 

@@ -21,13 +21,13 @@ from argo_planner.terminal.events import KINDS, READING_FORM, parse_events
 from argo_planner.terminal.files import check_outputs
 from argo_planner.terminal.options import Force, Report
 from argo_planner.terminal.run_display import run_with_display
-from argo_planner.terminal.signals import defer_first_signal
-from argo_planner.terminal.stored_run import (
+from argo_planner.terminal.run_storage import (
     JOURNAL,
-    StoredRun,
+    RunStorage,
     is_report_of,
     require_no_unfinished_run,
 )
+from argo_planner.terminal.signals import defer_first_signal
 from argo_planner.terminal.verbosity import is_quiet
 from argo_planner.use_cases.reporting import REPORT_FILES
 
@@ -92,7 +92,7 @@ def resume_command(
             site.prepare()
             console.print(f"The run continues at {at:g} s.")
         with defer_first_signal() as interruption:
-            conclusion = Conclusion(report, render, StoredRun(journal, force=force), interruption)
+            conclusion = Conclusion(report, render, RunStorage(journal, force=force), interruption)
             begun = time.monotonic()
             with conclusion.hint_on_interruption():
                 record, recorded = run_with_display(

@@ -39,8 +39,8 @@ from argo_planner.terminal.options import (
     option_name,
 )
 from argo_planner.terminal.run_display import run_with_display
+from argo_planner.terminal.run_storage import JOURNAL, RunStorage, require_no_unfinished_run
 from argo_planner.terminal.signals import defer_first_signal
-from argo_planner.terminal.stored_run import JOURNAL, StoredRun, require_no_unfinished_run
 from argo_planner.use_cases.reporting import REPORT_FILES
 from argo_planner.use_cases.running import (
     NO_MISSION,
@@ -215,7 +215,7 @@ def run_command(
     loaded = time.monotonic()
     with defer_first_signal() as interruption:
         conclusion = Conclusion(
-            report, render, StoredRun(outputs.journal_path, recording, force), interruption
+            report, render, RunStorage(outputs.journal_path, recording, force), interruption
         )
         with conclusion.hint_on_interruption():
             record, recorded = run_with_display(

@@ -19,8 +19,8 @@ from argo_env.site import Site
 from argo_planner.terminal.files import write_content
 from argo_planner.terminal.record_tables import show_record
 from argo_planner.terminal.run_display import progress_bar
+from argo_planner.terminal.run_storage import RunStorage
 from argo_planner.terminal.signals import Interrupted, SignalWatch
-from argo_planner.terminal.stored_run import StoredRun
 from argo_planner.terminal.verbosity import is_quiet
 from argo_planner.terminal.words import error_text
 from argo_planner.use_cases.reporting import report_files
@@ -32,7 +32,7 @@ class Conclusion:
 
     report: Path | None
     render: Path | None
-    stored: StoredRun
+    stored: RunStorage
     interruption: SignalWatch
     """signals of the process; the first one lets the run stop in good order"""
 

@@ -7,8 +7,8 @@ import typer
 
 from argo_env.pictures import write_film
 from argo_planner.terminal.conclusion import Conclusion
+from argo_planner.terminal.run_storage import RunStorage
 from argo_planner.terminal.signals import Interrupted, SignalWatch
-from argo_planner.terminal.stored_run import StoredRun
 from argo_planner.use_cases.reporting import REPORT_FILES
 from tests.yard import fast_setup, measure, mission, run_with
 
@@ -26,7 +26,7 @@ def conclude(record, yard_site, tmp_path, monkeypatch, capsys):
     files = dict.fromkeys(REPORT_FILES, b"in short")
     monkeypatch.setattr("argo_planner.terminal.conclusion.report_files", lambda *_: files)
 
-    def end(report=None, render=None, kept=StoredRun(Path("run.journal")), came=None):  # noqa: B008
+    def end(report=None, render=None, kept=RunStorage(Path("run.journal")), came=None):  # noqa: B008
         interruption = SignalWatch()
         interruption.received = came
         status = 0
@@ -64,7 +64,7 @@ def test_a_report_that_cannot_be_written(conclude):
 
 def test_an_unwritable_report_of_a_run_that_is_not_stored(conclude):
     Path("report/report.html").mkdir(parents=True)
-    status, _, said = conclude(report="report", kept=StoredRun())
+    status, _, said = conclude(report="report", kept=RunStorage())
     assert (status, said.splitlines()[-1]) == (
         2, "argo: not written: report; the run was not stored for another try",
     )  # fmt: skip
@@ -108,7 +108,7 @@ def test_a_film_is_interrupted_between_two_pictures(conclude, monkeypatch):
         write_film(*arguments, progress=told, **options)
 
     monkeypatch.setattr("argo_env.pictures.write_film", filming)
-    status, shown, said = conclude(render="run.gif", kept=StoredRun(recording=Path("run.journal")))
+    status, shown, said = conclude(render="run.gif", kept=RunStorage(recording=Path("run.journal")))
     assert status == 130
     assert "MEASURE 1" in shown
     assert said.endswith("to try again: argo replay run.journal --render run.gif\n")
@@ -118,8 +118,17 @@ def test_a_film_is_interrupted_between_two_pictures(conclude, monkeypatch):
 def test_the_retry_command_replaces_files_if_the_run_did(conclude):
     Path("run.gif").write_bytes(b"an older film")
     status, _, said = conclude(
-        render="run.gif", kept=StoredRun(Path("run.journal"), force=True), came=Interrupted(15)
+        render="run.gif", kept=RunStorage(Path("run.journal"), force=True), came=Interrupted(15)
     )
     assert status == 143
     assert Path("run.gif").read_bytes() == b"an older film"
     assert said.endswith("to try again: argo resume run.journal --render run.gif --force\n")
+
+
+def test_a_run_without_its_journal_can_be_replayed_but_not_continued(tmp_path):
+    recording = tmp_path / "run.mcap"
+    recording.touch()
+    storage = RunStorage(journal=tmp_path / "run.journal", recording=recording)
+    hint = storage.continuation_hint(None, None)
+    assert hint.startswith("the run can't be continued")
+    assert hint.endswith(f"to see the results so far: argo replay {recording}")

@@ -18,7 +18,7 @@ JOURNAL = "run.journal"
 
 
 @dataclass(frozen=True)
-class StoredRun:
+class RunStorage:
     """The files that store a run."""
 
     journal: Path | None = None
@@ -35,7 +35,7 @@ class StoredRun:
             report: folder of a report that the command is to write
             render: file of a film that the command is to write
         """
-        if self.journal is not None and os.path.exists(self.journal):
+        if self._has_journal:
             words = ["argo", "resume", str(self.journal)]
         elif self.recording is not None and os.path.exists(self.recording):
             words = ["argo", "replay", str(self.recording)]
@@ -48,10 +48,14 @@ class StoredRun:
             words.append("--force")
         return shlex.join(words)
 
+    @property
+    def _has_journal(self) -> bool:
+        return self.journal is not None and os.path.exists(self.journal)
+
     def continuation_hint(self, report: Path | None, render: Path | None) -> str:
         """Return a clause that says how to continue a run that has not ended."""
         command = self.continuation_command(report, render)
-        if command is not None and self.journal is not None:
+        if self._has_journal:
             return f"continue with: {command}"
         lost = "the run can't be continued, as no journal (--report or --journal) stores it"
         return f"{lost}; to see the results so far: {command}" if command else lost
@@ -68,7 +72,7 @@ def require_no_unfinished_run(report: Path | None, journal: Path | None = None) 
         if path and os.path.isfile(path) and _is_unfinished(path):
             raise Conflict(
                 f"{path} holds a run that has not ended: choose another path, replace the run "
-                f"(--force), or continue it with: {StoredRun(path).continuation_command(report)}"
+                f"(--force), or continue it with: {RunStorage(path).continuation_command(report)}"
             )
 
 

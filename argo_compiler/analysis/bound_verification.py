@@ -395,7 +395,11 @@ class LeastSteps:
 
 
 def spent_by_point(witness: LeastSpent) -> dict[ProgramPoint, float]:
-    """Return the values of a witness by point, with 0 at the mission's start."""
+    """Return a witness's lower bounds on time (s) or energy (Wh), by point of the mission.
+
+    They count from the mission's start, which has 0, and hold for the first round of each enclosing
+    group. Points that are not reached are left out.
+    """
     columns = witness.tasks, witness.missed, witness.rounds, witness.left, witness.entered
     spent: dict[ProgramPoint, float] = {BEGIN: 0.0}
     for kind, column in zip(_COLUMNS, columns, strict=True):

@@ -307,7 +307,11 @@ class StepCosts:
         self._steps[source, target] = cost if known is None else known | cost
 
     def _join_repeats(self) -> None:
-        """Add the costs of the steps from the end of a round to the next round."""
+        """Add the steps from the end of a group's round to the first leaf of its next round.
+
+        The source of such a step is `("repeat", group)`. Its cost is the range of the costs of all
+        steps that begin another round of the group, whichever leaf ended last.
+        """
         flow = self.flow
         ends: list[tuple[Source, int]] = [
             (i, leaf.unconditional)
@@ -361,9 +365,11 @@ class StepCosts:
         self._action_costs |= longest
 
     def cost_to(self, leaf: int, target: Task) -> Cost | NoPath:
-        """Return the cost to any other task from the positions of the robot after a leaf.
+        """Return the cost of the drive to a task and of its action, from the end of a leaf.
 
-        Returns NoPath if there is a position without a path.
+        The task need not be one of the mission: it may be the drive back to the dock. The most is
+        that of the worst possible position of the robot when the leaf has ended; the least is 0.
+        Returns NoPath if the robot can't execute the task from one of these positions.
         """
         assert self.travel is not None
         cost = FREE
@@ -375,9 +381,11 @@ class StepCosts:
         return cost
 
     def retreat_cost(self, leaf: int, target: Task) -> Cost | NoPath:
-        """Return the cost to any other task from all positions on the way to a leaf or after it.
+        """Return the cost of the drive to a task and of its action, from the drive to a leaf on.
 
-        Returns NoPath if there is a position after the leaf without a path.
+        The robot may be anywhere on its drive to the leaf, or the leaf may have ended. The task
+        need not be one of the mission: it may be the drive of a reaction. Returns NoPath if the
+        robot can't execute the task from one of its positions after the leaf.
         """
         assert self.travel is not None
         direct = self.cost_to(leaf, target)

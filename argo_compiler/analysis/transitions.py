@@ -201,7 +201,7 @@ class _UnmeasuredPaths:
         )
 
     def _path(self, leaf: int, object_id: str) -> str:
-        """Return the text of a path to the leaf that does not measure the object.
+        """Return the text of an execution path to a leaf on which no task measures the object.
 
         Returns an empty text if there is none, or if too many were requested already.
         """

@@ -296,10 +296,12 @@ class _Tree:
         self.xml.add(name, {"name": task.name, **ports, **velocity, **_joints(task.joint_states)})
 
     def _decide(self, task: Task, ends_group: bool) -> None:
-        """Write the script that sets `to`.
+        """Write the tree's script that sets the blackboard entry `to`: the position to continue at.
 
-        It evaluates the transitions from the last to the first, so that the first one whose
-        conditions are satisfied prevails.
+        It is that of a task or of the mission's end; 0 stands for what comes next in the tree. The
+        script evaluates the transitions from the last to the first, so that the first one whose
+        conditions are satisfied prevails. If there is none, `to` is the target of the unconditional
+        transition, or 0 if the task ends a group (`ends_group`).
         """
         if _use_ages(_conditions(task)):
             self.xml.add("Clock", {"now": "{now}"})

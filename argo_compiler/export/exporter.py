@@ -51,7 +51,10 @@ def battery_level_refusals(reactions: Iterable[Reaction]) -> Iterator[Diagnostic
 
 
 def raise_refusals(refusals: Iterable[Diagnostic]) -> None:
-    """Raise DiagnosticError if there are any refusals."""
+    """Raise DiagnosticError with all the refusals, unless there are none.
+
+    A refusal is a diagnostic for a part of the mission that the format can't express.
+    """
     diagnostics = tuple(refusals)
     if diagnostics:
         raise DiagnosticError("mission", diagnostics)

@@ -48,10 +48,10 @@ def transition_pairs(mission: Mission) -> Iterator[tuple[str, str]]:
 
 
 def with_approach_velocities(mission: Mission) -> tuple[Mission, tuple[str, ...]]:
-    """Convert velocities to the next task into velocities to the task itself.
+    """Convert velocities on the path to the next task into velocities on the path to the task.
 
-    Also returns the names of tasks that are reached at different velocities: these have the slowest
-    one that was given.
+    Also returns the names of tasks for which this loses something: transitions to them have
+    different velocities. They get the slowest one that was given.
     """
     on: Mapping[str, Velocity] = {task.name: task.velocity for task in mission.tasks}
     there: dict[str, set[Velocity]] = {}
@@ -63,11 +63,12 @@ def with_approach_velocities(mission: Mission) -> tuple[Mission, tuple[str, ...]
 
 
 def with_departure_velocities(mission: Mission) -> tuple[Mission, tuple[str, ...]]:
-    """Convert velocities to the task itself into velocities to the next task.
+    """Convert velocities on the path to the task into velocities on the path to the next task.
 
-    Also returns the names of tasks from which transitions of different velocities lead on, which
-    have the slowest one, and `MISSION_START` if the first transition has a velocity but there is no
-    START. Neither can be expressed in the other convention.
+    Also returns the names of tasks for which this loses something: transitions from them have
+    different velocities. They get the slowest one that was given. `MISSION_START` is among the
+    names if the path to the first task has a velocity, but the mission has no task with the action
+    START that could have it: that velocity is left out.
     """
     there: Mapping[str, Velocity] = {task.name: task.velocity for task in mission.tasks}
     on: dict[str, set[Velocity]] = {}

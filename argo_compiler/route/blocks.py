@@ -1,8 +1,9 @@
 """Blocks of a problem and the times between them, for checks that use none of the solvers' code.
 
-A block is a visit outside of rounds, or an outermost round with all its members: a route does not
-interrupt it. The time of a round depends on where the robot comes from and on the order of its
-members, but not on when the round begins, as its members have no time windows.
+A round (`Round`) is here a group of visits, its members, with all its repetitions. A block is a
+visit outside of rounds, or an outermost round with all its members: a route does not interrupt it.
+The time of a round depends on where the robot comes from and on the order of its members, but not
+on when the round begins, as its members have no time windows.
 """
 
 from collections.abc import Callable
@@ -100,10 +101,11 @@ class Blocks:
         return time, energy, frozenset([goal])
 
     def executions(self, block: int, origins: Locations) -> list[tuple[Arrival, tuple[int, ...]]]:
-        """Return the possible executions of a block, from the robot's possible locations before it.
+        """Return the possible executions of a block: of each, the arrival and the order of members.
 
-        Each has the arrival at the end of a round, or at a visit before its service, and the order
-        of the members.
+        `origins` are the robot's possible locations before the block. The arrival at a single visit
+        is before its service; that of a round is after all its repetitions, services included. Of
+        orders with the same arrival only one is returned. For large rounds see `exact`.
         """
         if (block, origins) not in self._executions:
             self._executions[block, origins] = self._compute_executions(block, origins)

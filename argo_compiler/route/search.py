@@ -300,7 +300,7 @@ class Search:
             self._record()
 
     def _record(self) -> None:
-        """Record the progress in the history, with its solver.
+        """Append the state of the search to its history, with the name of this view's solver.
 
         Raises Conflict if the best route contradicts a reported bound or proof.
         """

@@ -165,10 +165,10 @@ def _wrong_fields(
 
 
 def _list_hint(model: type[Model], path: JsonPath) -> str | None:
-    """Return the hint how to begin a file that holds only one list; None for other errors.
+    """Return a hint with the field that the file must begin with, or None if none applies.
 
-    The hint is for an error at the top of the file, or at the list as a whole: `path` states where
-    the error is.
+    It applies if the model has only one field, a list, and the error is at the top of the file or
+    at the list as a whole. `path` is the place of the error in the data.
     """
     names = list(model.model_fields)
     if len(names) == 1 and path in {(), (names[0],)}:

@@ -92,9 +92,10 @@ def close_states(lattice: Lattice, blockages: Sequence[Blockage]) -> Lattice:
 def _states_near(
     lattice: Lattice, positions: NDArray[np.float64], blockage: Blockage
 ) -> NDArray[np.int64]:
-    """Return the states that may touch the blockage, ascending.
+    """Return the numbers of the lattice's states that may touch the blockage, in ascending order.
 
-    `positions` are those of the cells.
+    The heading is ignored: the footprint's radius and MARGIN decide. `positions` are the centres of
+    the surface's cells in m, shape (n, 3).
     """
     cells = _within(positions, blockage, lattice.robot.footprint.radius + MARGIN)
     states = lattice.state_of[cells]

@@ -169,7 +169,10 @@ def _draw_marks(
 
 
 def _stairs(sheet: FloorSheet, site: Site) -> Iterator[tuple[Pixel, int, str]]:
-    """Yield the foot and the name of stairs, on each floor that they lead up from."""
+    """Yield the pixel, the floor's number and the name of stairs, for each floor but the highest.
+
+    The pixel is that of the foot of the lowest flight, on the panel of the floor.
+    """
     for tower in site.spec.towers:
         for floor in site.spec.floors[:-1]:
             if tower.flights:

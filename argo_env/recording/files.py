@@ -56,7 +56,10 @@ class BestEffortRecorder(Observer):
         self._try(lambda: self._recorder.on_end(record))
 
     def close(self) -> None:
-        """Write the end of the recording."""
+        """Complete the recording: write what is pending, and the index; do not close the file.
+
+        If it can't be written, no error is raised: a warning is given, and `loss` has the reason.
+        """
         self._try(self._recorder.close)
 
     def _try(self, write: Callable[[], None]) -> None:

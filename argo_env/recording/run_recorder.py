@@ -234,7 +234,7 @@ class RunRecorder(Observer):
         self._writer.attach("record.json", "application/json", to_json(record), now)
 
     def close(self) -> None:
-        """Write the end of the recording."""
+        """Complete the recording: the writer writes what is pending and, in a file, the index."""
         self._writer.close()
 
     @property

@@ -58,7 +58,7 @@ class TopicWriter:
         """Store all messages before the time t (s); by default do nothing."""
 
     def close(self) -> None:
-        """Write the end of the run; by default do nothing."""
+        """Write what is pending and what completes the recording; by default do nothing."""
 
     @abstractmethod
     def _open_channel(self, topic: str, encoding: str, name: str, schema: bytes) -> None:

@@ -121,12 +121,12 @@ class Block:
 
     @property
     def start(self) -> float:
-        """Start of the first run in s."""
+        """Start of the block's first task, in s of the run's time."""
         return self.rounds[0][0].start
 
     @property
     def end(self) -> float:
-        """End of the last run in s."""
+        """End of the block's last task, in s of the run's time."""
         return self.rounds[-1][-1].end
 
 

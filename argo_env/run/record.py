@@ -462,7 +462,11 @@ class RunRecord(Model):
     @computed_field  # type: ignore[prop-decorator]
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """Findings of the run in the order of time, each once, with the mission's answers."""
+        """Findings of the run in the order of time, each with the reaction of the mission to it.
+
+        They are the anomalies, without reports of their ends, and the readings outside the nominal
+        range that no anomaly reports.
+        """
         known = {anomaly.t for anomaly in self.anomalies if anomaly.is_reading}
         bare = [anomaly_from_reading(r) for r in self.readings if not (r.normal or r.t in known)]
         findings = [

@@ -214,14 +214,17 @@ class SimulationState:
                 self.action.arrival_path = arrival_path
 
     def task_run(self, end: ActionEnd) -> TaskRun:
-        """Return the entry for the record of the running action, which ends now."""
+        """Return the running action, which ends now, as a TaskRun for the run's record."""
         assert self.action is not None
         odometry = self._vehicle.odometry
         run = self.action.to_task_run(end, self.now, odometry.distance, odometry.climbed)
         return run.model_copy(update={"by_hand": True}) if self.supervision.acting else run
 
     def stop_action(self) -> TaskRun | None:
-        """Cancel the running action as the run ends; return its entry for the record, if any."""
+        """Cancel the running action as the run ends, and return its TaskRun for the record.
+
+        Returns None if no action is running.
+        """
         if self.action is None:
             return None
         self.action.cancel("the run was stopped", interrupted=False)

@@ -55,11 +55,13 @@ def read_evaluation_request(
 ) -> tuple[EvaluationFile, Path, bytes]:
     """Return the evaluation, the folder its paths are relative to, and the content of its file.
 
-    The content is empty if missions are given instead of a file.
+    `sources` are one evaluation file, or missions. For missions, the other arguments describe the
+    evaluation, the folder is the current one, and the content is empty.
 
     Raises:
-        Invalid: The arguments are no file and no missions, or do not go together.
-        ArgoError: The file can't be read.
+        Invalid: There are no sources, an evaluation file is combined with other sources or with
+            options that belong in it, or an option has a wrong value.
+        ArgoError: The file can't be read, or is no valid evaluation.
     """
     if not sources:
         raise Invalid("name an evaluation file or missions; see `argo evaluate --help`")

@@ -7,7 +7,7 @@ from argo_compiler.base.extras import install_line
 
 
 def check_learned() -> None:
-    """Raise ArgoError if a package is missing."""
+    """Raise Unavailable if a package that learned policies need is not installed."""
     required = {
         "torch": "torch",
         "sb3_contrib": "sb3-contrib",

@@ -114,7 +114,10 @@ def _add_origin(element: ET.Element, pose: Matrix) -> None:
 
 
 def _pose(element: ET.Element) -> Matrix:
-    """Return the origin of an element as a matrix, shape (4, 4)."""
+    """Return the pose in the `origin` of a URDF element as a matrix, shape (4, 4), lengths in m.
+
+    Without an origin it is the identity.
+    """
     origin = element.find("origin")
     pose = np.eye(4)
     pose[:3, :3] = Rotation.from_euler("xyz", _vector(origin, "rpy")).as_matrix()

@@ -26,7 +26,8 @@ _BODY = 0.22  # brightness of the bodies behind the faces
 def find_candidates(photo: Photo, instrument: Instrument, planned: FacePose) -> list[FacePose]:
     """Return poses at which the picture is similar to the face, the most similar ones first.
 
-    A round face is averaged over all rolls, so the poses have no roll.
+    They are near the planned pose, and at most `_MAX_CANDIDATES`. Their roll is 0: a round face is
+    compared as the average over all rolls, any other one upright.
     """
     import cv2
 

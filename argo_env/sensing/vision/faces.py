@@ -153,7 +153,10 @@ def face_file(kind: CheckpointKind) -> Path:
 
 
 def face_mesh(kind: CheckpointKind) -> str:
-    """Return the flat mesh that carries the face, as Wavefront OBJ; its normal is along x."""
+    """Return the flat mesh that shows an instrument's drawn face, as text in Wavefront OBJ.
+
+    The mesh lies in the plane x = 0 about the face's middle, in m; its normal is along +x.
+    """
     shape = FACES[kind]
     if shape.round:
         angles = [2 * math.pi * k / 64 for k in range(64)]

@@ -77,9 +77,10 @@ class PlanDocument:
     versions: tuple[PlanVersion, ...] = ()
 
     def apply(self, record: PlanRecord) -> "PlanDocument":
-        """Return the document after a record.
+        """Return the document after a change, of which `record` is the line in the plan's file.
 
-        Raises ValueError if the record does not follow the document's state.
+        Raises ValueError if the change is a revision that does not follow the present one, or does
+        not fit the mission.
         """
         match record:
             case RevisionMade(revision=revision):

@@ -35,13 +35,13 @@ class PlanRooms:
         self._listing = asyncio.Lock()  # separate from `_turn`: edits do not wait for lists
 
     async def list_plans(self) -> list[PlanSummary]:
-        """Return all plans, the newest ones first."""
+        """Return all plans, the last changed ones first."""
         async with self._listing:
             open_plans = {id: summarize_plan(room.document) for id, room in self._rooms.items()}
             return await asyncio.to_thread(self._folder.list_plans, open_plans)
 
     async def list_deleted(self) -> list[PlanSummary]:
-        """Return the plans in the bin, the newest ones first."""
+        """Return the deleted plans, which are in the bin, the last changed ones first."""
         async with self._listing:
             return await asyncio.to_thread(self._folder.list_deleted)
 

@@ -71,11 +71,14 @@ class PlanFolder(Closing):
         os.close(self._lock)
 
     def list_plans(self, open_plans: Mapping[str, PlanSummary] | None = None) -> list[PlanSummary]:
-        """Return all plans, the newest ones first; does not read the files of open plans."""
+        """Return all plans, the last changed ones first; does not read the files of open plans."""
         return self._summaries(self.path, open_plans or {})
 
     def list_deleted(self) -> list[PlanSummary]:
-        """Return the plans in the bin, the newest ones first."""
+        """Return the deleted plans, which are in the bin, the last changed ones first.
+
+        The time at which a plan was deleted does not count.
+        """
         return self._summaries(self.path / _BIN, {})
 
     def create(self, name: str, mission: Mission, at: datetime) -> PlanFile:

@@ -55,7 +55,10 @@ def make_service_opener(
     after_restart: AfterRestart = AfterRestart.WAIT,
     foxglove: int | None = None,
 ) -> OpenService:
-    """Return a function whose context opens the service, and at its end closes it."""
+    """Return a function that makes a context manager, which opens the service and closes it.
+
+    `after_restart` and `foxglove` are explained in `ServiceSpec`.
+    """
 
     @asynccontextmanager
     async def open_service() -> AsyncIterator[PlanningService]:

@@ -1,4 +1,9 @@
-"""Static analysis of a mission over all execution paths: reachability, duration and energy."""
+"""Static analysis of a mission over all execution paths: reachability, duration and energy.
+
+In this package, a leaf is a state of the mission's machine that executes one task, and a path is an
+execution path, unless the robot's drive is meant. Leaves, groups and nodes are given by numbers
+(see `flow`).
+"""
 
 from argo_compiler.analysis.analysing import analyse
 from argo_compiler.analysis.bound_verification import unproved_bounds

@@ -126,7 +126,11 @@ def _analyse(mission: Mission, catalog: Catalog | None, travel: Travel | None) -
 def _with_proved_bounds(
     mission: Mission, catalog: Catalog | None, travel: Travel, analysis: Analysis
 ) -> Analysis:
-    """Add a witness of the lower bounds to an analysis, and remove the claims it does not prove."""
+    """Return the analysis with a witness of its lower bounds, and without those it does not prove.
+
+    Left out are the diagnostics that claim a lower bound on time or energy which the witness does
+    not prove (see `without_bounds`).
+    """
     if not any(d.code in AT_LEAST for d in analysis.diagnostics):
         return analysis
     witnesses, steps = analysis.witnesses, None
@@ -139,7 +143,10 @@ def _with_proved_bounds(
 
 
 def without_bounds(analysis: Analysis, wrong: Sequence[Diagnostic]) -> Analysis:
-    """Return the analysis without the claims `wrong` on lower bounds; `unjudged` names them."""
+    """Return the analysis without the diagnostics `wrong`, whose lower bounds no witness proves.
+
+    `unjudged` of the result says what is therefore not known.
+    """
     if not wrong:
         return analysis
     subjects = ", ".join(dict.fromkeys(_SUBJECTS[d.code] for d in wrong))
@@ -152,9 +159,10 @@ def without_bounds(analysis: Analysis, wrong: Sequence[Diagnostic]) -> Analysis:
 
 
 def without_verdicts(analysis: Analysis, wrong: Sequence[str]) -> Analysis:
-    """Return the analysis without all results that rest on witnesses, as some are not valid.
+    """Return the analysis without all results that rest on its witnesses, as some are wrong.
 
-    Every verdict becomes POSSIBLE, and `unjudged` gets the texts in `wrong`.
+    Every verdict becomes POSSIBLE, and `unjudged` gets the texts in `wrong`, which name the results
+    that a witness should prove and does not.
     """
     tasks = tuple(
         TaskFacts(
@@ -214,9 +222,9 @@ def _conditional_verdict(study: Study, leaf: int, k: int) -> Verdict:
 
 
 def _unconditional_verdict(study: Study, leaf: int) -> Verdict:
-    """Return the verdict on a task's unconditional transition.
+    """Return the verdict on whether a task's unconditional transition can be taken.
 
-    If the task ends groups, this is the transition that follows their last rounds.
+    If groups end with the task, the transition is taken only after their last rounds.
     """
     flow = study.flow
     for reachability, verdict in (
@@ -248,9 +256,10 @@ def _unconditional_verdict(study: Study, leaf: int) -> Verdict:
 
 
 def _hard_groups_ending_with(study: Study, leaf: int) -> list[int]:
-    """Return the groups with a hard stop that end with a leaf, except those in an endless group.
+    """Return the numbers of the groups with a hard time limit whose last leaf is `leaf`.
 
-    If an endless group ends with the same leaf, its next round follows, not the transition.
+    Those within an endless group with the same last leaf are left out: when their time is up, the
+    next round of the endless group follows, not the unconditional transition of the leaf.
     """
     flow = study.flow
     groups = []

@@ -108,7 +108,11 @@ class LeastSteps:
         }
 
     def around(self, point: ProgramPoint) -> tuple[int, ...]:
-        """Return the groups that enclose a point, the outermost first."""
+        """Return the numbers of the groups that enclose a point of the mission, outermost first.
+
+        The end of a group's round lies within the group; the points at which the group is entered
+        or left lie outside of it.
+        """
         kind, at = point
         if kind in ("task", "missed"):
             inside = self.layout.innermost[at]
@@ -118,7 +122,11 @@ class LeastSteps:
         return self._chains[at][:-1] if kind in ("left", "entered") else ()
 
     def is_always_missed(self, point: ProgramPoint, time: Spent) -> bool:
-        """Return True if a task never ends, as its hard window always closes before."""
+        """Return True if a task can't end before its hard window closes, by lower bounds on time.
+
+        `point` is the end of the task; `time` has the least s from the mission's start to each
+        point.
+        """
         deadline = self._deadline(point[1])
         return deadline is not None and time.get(point, 0.0) > deadline + _TOLERANCE
 
@@ -129,11 +137,13 @@ class LeastSteps:
     def successors(
         self, point: ProgramPoint, spent: Spent, periods: tuple[float, ...], *, of_time: bool
     ) -> Iterator[tuple[ProgramPoint, float]]:
-        """Yield the points that can follow a point, with the least time or energy spent there.
+        """Yield the points that can follow a point, with the least time or energy until each.
+
+        All times and energies count from the mission's start.
 
         Args:
             point: The point.
-            spent: Claimed least time or energy at each point.
+            spent: Claimed least time or energy until each point.
             periods: Claimed least time or energy from one round of each group to the next.
             of_time: True for time in s, False for energy in Wh.
         """
@@ -188,9 +198,10 @@ class LeastSteps:
     def _earliest_end(
         self, g: int, here: float, spent: Spent, periods: tuple[float, ...], of_time: bool
     ) -> float | None:
-        """Return the least time or energy at which no further round is wanted (G8).
+        """Return the least time (s) or energy (Wh) at which a group's last round can end (G8).
 
-        Returns None if a further round is always wanted.
+        It counts from the mission's start, like `here`, the value at the end of the first round of
+        group `g`. Returns None if a further round always follows.
         """
         group = self.mission.groups[g]
         ends = []
@@ -215,7 +226,11 @@ class LeastSteps:
         return _VisitCost(visit, inside[shared:], *self._cost(source, visit.task))
 
     def _cost(self, source: ProgramPoint, i: int) -> tuple[float, float]:
-        """Return the least s and Wh from a point to a task, with its action, or of its wait."""
+        """Return the least time (s) and energy (Wh) of the drive to task `i` and of its action.
+
+        It is the least over all positions that the robot may have at the point `source`. A WAIT has
+        no drive: it takes its duration, if that is given, and no energy.
+        """
         task = self.mission.tasks[i]
         if task.wait is not None:
             return task.wait.duration or 0.0, 0.0
@@ -229,7 +244,7 @@ class LeastSteps:
         return max(time, 0.0), max(energy, 0.0)
 
     def _least_action_costs(self) -> dict[int, tuple[float, float]]:
-        """Return the least s and Wh of each task's action, wherever the robot comes from."""
+        """Return the least time (s) and energy (Wh) of each task's action, without the drive."""
         costs: dict[int, tuple[float, float]] = {}
         for (_, i), leg in self._legs.items():
             time, energy = costs.get(i, (math.inf, math.inf))
@@ -263,7 +278,7 @@ class LeastSteps:
         return None if window is None or not window.hard else window.latest
 
     def _explore(self) -> None:
-        """Compute the robot's positions, the visits and the immediate successors of all points."""
+        """Compute for each point the robot's possible positions, and what can follow the point."""
         pending = [(BEGIN, _RobotPosition(self.travel.start_pose(self.mission), True))]
         while pending:
             point, robot = pending.pop()
@@ -355,12 +370,15 @@ class LeastSteps:
         return task.on_failure in (OnFailure.RETURN, OnFailure.ABORT)
 
     def _continues(self, task: Task) -> bool:
-        """Return True if a failure counts like any other end (T8)."""
+        """Return True if the mission goes on after a task's failure as after its success (T8)."""
         branches = task.on_failure is OnFailure.BRANCH and task.failure_target is not None
         return not branches and not self._ends_mission(task)
 
     def _visits_by_transition(self, i: int) -> Iterator[_Visit]:
-        """Yield the visits by a task's transitions (T2, T3), except those at a round's end."""
+        """Yield the visits that the transitions of task `i` can lead to (T2, T3).
+
+        If a group's round ends with the task, its unconditional transition is left out.
+        """
         for k, transition in enumerate(self.mission.tasks[i].transitions):
             if transition.conditions and (i, k) in self._proved.transitions:
                 yield self._visit_of(transition.target)
@@ -377,7 +395,7 @@ class LeastSteps:
             yield END
 
     def _certain(self, i: int) -> bool:
-        """Return True if one of the transitions with conditions is always taken."""
+        """Return True if one of a task's conditional transitions is proved to be always taken."""
         transitions = self.mission.tasks[i].transitions
         return any((i, k) in self._proved.certain for k in range(len(transitions)))
 
@@ -410,7 +428,11 @@ def spent_by_point(witness: LeastSpent) -> dict[ProgramPoint, float]:
 
 
 def is_valid(steps: LeastSteps, witness: LeastWitness) -> bool:
-    """Return True if no step of the mission costs less than a witness claims."""
+    """Return True if no step of the mission costs less than a witness claims.
+
+    It claims the difference between the values of the step's two points, both for time and for
+    energy.
+    """
     if not all(_has_form(steps.mission, spent) for spent in (witness.time, witness.energy)):
         return False
     late = steps.always_missed_tasks(spent_by_point(witness.time))
@@ -454,9 +476,10 @@ def unproved_bounds(
 def least_steps(
     mission: Mission, catalog: Catalog | None, travel: Travel, nominal: Invariant
 ) -> LeastSteps | None:
-    """Return the steps over the transitions that an invariant leaves possible.
+    """Return the steps of a mission with their least costs, if an invariant leaves them possible.
 
-    Returns None if the invariant is wrong, or if there are too many positions or nested groups.
+    Returns None if the invariant is wrong or includes failures, or if there are too many positions
+    of the robot or nested groups.
     """
     proved = Verifier(mission, catalog).check_invariant(nominal)
     if proved is None or nominal.failures:
@@ -501,7 +524,10 @@ class _ProvedBounds:
 
 
 def _exceeds(spent: Spent, claimed: Bounds | None, limit: float | None) -> bool:
-    """Return True if the mission's end costs as much as claimed, and more than a limit."""
+    """Return True if the proved least cost of the mission confirms the claim and exceeds a limit.
+
+    `spent` has the proved lower bounds; all are times in s or energies in Wh.
+    """
     least = None if claimed is None else claimed.least.value
     if least is None or limit is None or END not in spent:
         return False

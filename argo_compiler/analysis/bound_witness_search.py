@@ -17,7 +17,10 @@ _ROUNDING = 1e-9  # share of a round, so that rounding makes no round cheaper th
 
 
 def make_least_witness(steps: LeastSteps) -> LeastWitness | None:
-    """Return a witness from the shortest paths to all points; None if the search takes too long."""
+    """Return a witness with the least time and energy from the mission's start to each point.
+
+    Returns None if the search would take too many steps.
+    """
     search = _Search(steps)
     for planned in (True, False):
         time = search.shortest(of_time=True, planned=planned)
@@ -47,10 +50,11 @@ class _Search:
         self._steps_left = 0
 
     def shortest(self, *, of_time: bool, planned: bool) -> _SpentAndPeriods | None:
-        """Return the least time or energy at each point, with the periods of all groups.
+        """Return the least time (s) or energy (Wh) until each point, and the period of each group.
 
-        If `planned`, a round of a group with `every` takes at least that time. Returns None if the
-        search takes too long.
+        The values until points count from the mission's start. A group's period is the least from
+        the end of one of its rounds to the end of the next; if `planned`, it is at least the
+        group's `every`. Returns None if the search takes too long.
         """
         groups = self.steps.mission.groups
         self._steps_left = _MOST_STEPS * (100 + len(self.steps.mission.tasks) + len(groups))
@@ -73,9 +77,11 @@ class _Search:
         of_time: bool,
         group: int | None = None,
     ) -> tuple[dict[ProgramPoint, float], float] | None:
-        """Return the least cost from a point to all others, and back to it, within a group.
+        """Return the least time (s) or energy (Wh) from a point to each other, and back to itself.
 
-        Without a group, the search covers the mission. Returns None if it takes too long.
+        With a `group`, only points within it are visited; without one, those of the whole mission.
+        The second member is infinite if no path leads back. Returns None if the search takes too
+        long.
         """
         steps = self.steps
         spent: dict[ProgramPoint, float] = {first: 0.0}

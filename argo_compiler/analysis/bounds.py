@@ -34,7 +34,11 @@ class MissionBounds:
 
 
 def has_too_many_cuts(flow: Flow) -> bool:
-    """Return True if groups nest too deeply to handle each task that a time-out may cancel."""
+    """Return True if there are too many pairs of a task and a time limit that may cancel it.
+
+    Bounds are not computed then. The time limits are the hard ones of the groups around the task;
+    up to `_MOST_CUTS` pairs are allowed.
+    """
     pairs = 0
     hard: list[int] = []
     for group in flow.groups:
@@ -47,10 +51,10 @@ def has_too_many_cuts(flow: Flow) -> bool:
 def compute_bounds(
     flow: Flow, reachability: Reachability, costs: StepCosts, endless: bool
 ) -> MissionBounds:
-    """Return the bounds of a mission and its loops.
+    """Return the bounds of a mission on duration and energy, and its loops without limit.
 
-    There is no upper bound if some path is `endless` or has a loop that no time limits, also if no
-    transition leads out of that loop to an end.
+    There is no upper bound if `endless` (some execution path never ends), or if a loop may be
+    repeated without limit, even if no transition leads from that loop to the mission's end.
 
     Raises:
         BoundsTooLargeError: The computation would take too long.
@@ -68,7 +72,9 @@ def compute_bounds(
 
 
 def longest_duration(flow: Flow, reachability: Reachability, costs: StepCosts) -> float:
-    """Return the longest time in s from the mission's start to its end; infinite if unbounded.
+    """Return an upper bound on the time in s from a mission's start to its end; infinite if none.
+
+    It holds for all execution paths of `reachability`; reactions are not included.
 
     Raises:
         BoundsTooLargeError: The computation would take too long.
@@ -88,9 +94,10 @@ def longest_duration(flow: Flow, reachability: Reachability, costs: StepCosts) -
 def _bounds(
     flow: Flow, costs: StepCosts, level: LevelGraph, quantity: str, endless: bool
 ) -> Bounds | None:
-    """Return the bounds of one quantity, `time` or `energy`, over all ends of the level.
+    """Return the bounds on the `time` (s) or `energy` (Wh) of a mission, over all paths to its end.
 
-    Returns None if no path reaches an end: rounds that take no time never fill a duration.
+    `level` is the graph of the whole mission; if `endless`, there is no upper bound. Returns None
+    if no path reaches the end: rounds that take no time never use up a group's time limit.
     """
     least = min(
         (level.least[quantity][node] + getattr(cost, quantity).least, k)
@@ -118,7 +125,10 @@ def _bounds(
 def _path(
     flow: Flow, level: LevelGraph, quantity: str, end: int, shortest: bool
 ) -> tuple[Stretch, ...]:
-    """Return the path to one exit of a level; a very long path lacks its middle."""
+    """Return the execution path of the least or greatest time or energy to one exit of a level.
+
+    `end` is the index of the exit in the level's list. A very long path lacks its middle.
+    """
     predecessors = (level.least_predecessors if shortest else level.most_predecessors)[quantity]
     distance = (level.least if shortest else level.most)[quantity]
     node, _, _, group_exit = level.exits[end]

@@ -26,9 +26,10 @@ class TaskEnd:
 
 
 def completion_times(lengths: PathLengths, mission: LevelGraph) -> tuple[TaskEnd, ...]:
-    """Return the bounds on the end of each leaf.
+    """Return for each leaf the bounds on the time of its end and on the energy used until then.
 
-    Visits in later rounds of a group are bounded by the cost of all rounds of the group.
+    `mission` is the graph of the mission's level. For a leaf in a group, the upper bounds are those
+    for the end of all rounds of the outermost group around it.
     """
     ends = [TaskEnd() for _ in lengths.flow.leaves]
     # A level, the soonest time at which it is entered, and the bounds on all that happens in it;

@@ -21,10 +21,10 @@ _MOST_LEAVES = 2_000
 
 
 def longest_duration_with_failures(study: Study) -> Bound | None:
-    """Return a bound on the duration (s) of all runs; None if it can't be computed.
+    """Return an upper bound on the duration (s) of a mission, failures and reactions included.
 
-    That is so without travel times, if the mission is too large, and if the robot can't get to
-    some task.
+    Its value is None if there is no limit. Returns None if it can't be computed: without travel
+    times, if the mission is too large, or if the robot can't get to some task.
     """
     if study.travel is None or len(study.flow.leaves) > _MOST_LEAVES:
         return None
@@ -62,7 +62,7 @@ class _ReactionTimes:
         self.reactions = [r for r in study.mission.reactions if r.response is not Response.REPORT]
 
     def time_added(self) -> float:
-        """Return the greatest time in s that reactions add to the mission.
+        """Return the greatest time in s that all reactions together can add to one run.
 
         It is infinite if a reaction does not always end the mission, as it may then interrupt it
         again and again, or if the mission starts supervised.
@@ -72,9 +72,10 @@ class _ReactionTimes:
         return sum(map(self._time_to_end, self.reactions))
 
     def end_by_time_up(self) -> float:
-        """Return the greatest time in s until the reaction to TIME_UP has ended the mission.
+        """Return the latest time in s at which the reaction to TIME_UP has ended the mission.
 
-        It is infinite if there is no such reaction, or if the mission may continue.
+        It counts from the mission's start. It is infinite if there is no such reaction, or if the
+        mission may continue.
         """
         limit = self.mission.max_duration
         last = next((r for r in self.reactions if r.event is EventKind.TIME_UP), None)
@@ -103,7 +104,10 @@ class _ReactionTimes:
         return self.clean_up + self._drive_time(reaction) + held
 
     def _drive_time(self, reaction: Reaction) -> float:
-        """Return the greatest time in s to the reaction's target pose, wherever the robot is."""
+        """Return the greatest time in s of a reaction's drive to its pose, from anywhere.
+
+        The robot may be on the mission's planned paths, or driving for another reaction.
+        """
         target = self._drive_task(reaction)
         others = [self._drive_task(r) for r in self.reactions if r.response.drives]
         times = [self._longest_drive(target)]
@@ -122,7 +126,10 @@ class _ReactionTimes:
         return Task(name="drive", action=Action.WAYPOINT, pose=pose)
 
     def _longest_drive(self, target: Task) -> float:
-        """Return the greatest time in s to a task from all positions on the planned paths."""
+        """Return the greatest time in s of a drive to a task from anywhere on the planned paths.
+
+        The planned paths are those to the tasks of the mission.
+        """
         longest = self._leg_time(self._start, target)
         for leaf, positions in enumerate(self.costs.positions):
             if positions:
@@ -131,10 +138,10 @@ class _ReactionTimes:
         return longest
 
     def _longest_drive_past_leaves(self, other: Task, target: Task) -> float:
-        """Return the greatest time in s to a task while the robot returns from another reaction.
+        """Return the greatest time in s of a drive that interrupts the return from another one.
 
-        The robot may then be anywhere between the pose of the task `other` and the next task of the
-        mission.
+        Both are drives of reactions. The robot has been at the pose of `other`, may be anywhere
+        between it and the next task of the mission, and now drives to `target`.
         """
         longest = 0.0
         pose = self._pose_after(other)

@@ -97,7 +97,11 @@ def _tasks(study: Study, leaves: tuple[int, ...]) -> str:
 
 
 def _unbounded_loops(study: Study, trapped: set[int]) -> Iterator[Diagnostic]:
-    """Yield diagnostics on loops that may be repeated without limit."""
+    """Yield diagnostics on loops that may be repeated without limit.
+
+    Loops that begin with one of the leaves `trapped` are left out: these can't be left at all and
+    have a diagnostic already.
+    """
     bounds = study.bounds
     if bounds is None:
         return
@@ -128,7 +132,10 @@ def _unbounded_loops(study: Study, trapped: set[int]) -> Iterator[Diagnostic]:
 
 
 def _ends_elsewhere(study: Study) -> Iterator[Diagnostic]:
-    """Yield diagnostics on paths that do not end at the dock of the mission's end area."""
+    """Yield a diagnostic for each task after which the mission may end away from its dock.
+
+    The dock is that of the mission's end area; without one, there are no diagnostics.
+    """
     area = study.mission.end_area
     if area is None:
         return
@@ -182,7 +189,7 @@ def _leads_to_end(study: Study, node: int) -> bool:
 
 
 def _is_docked_after(study: Study, leaf: int, dock: Pose) -> bool:
-    """Return True if the robot is at the dock after a task; a WAIT leaves it where it was."""
+    """Return True if the robot is certainly at the dock after a leaf; a WAIT does not move it."""
     seen = {leaf}
     pending = [leaf]
     while pending:

@@ -1,8 +1,9 @@
 """Control-flow graph of a state machine: which node can follow which.
 
-Nodes are numbers. The number of a leaf is its index among the machine's leaves. Each group has two
-nodes: the end of a round, where the group decides about another one, and the moment when its time
-is up, whatever was under way. The last node is the end of the mission.
+Nodes are numbers. A leaf is a state that executes one task; its number is its index among the
+machine's leaves. Each group has two nodes: the end of a round, where the group decides about
+another one, and the moment when its time is up, whatever was under way. The last node is the end of
+the mission.
 """
 
 from dataclasses import dataclass, field

@@ -37,9 +37,9 @@ _SHOWN = 8  # parts of a path that a message lists
 def diagnose_limits(
     study: Study, travel: Travel, longest: Bound | None = None
 ) -> Iterator[Diagnostic]:
-    """Yield diagnostics on travel times, energy and locations.
+    """Yield diagnostics on poses without a path, time limits, windows, duration and battery.
 
-    `longest` bounds the duration whatever fails and whatever events occur.
+    `longest` is the upper bound on the duration whatever fails and whatever events occur.
     """
     yield from _blocked_tasks(study)
     yield from _blocked_retreats(study, travel)
@@ -69,7 +69,11 @@ def _blocked_tasks(study: Study) -> Iterator[Diagnostic]:
 
 
 def _blocked_retreats(study: Study, travel: Travel) -> Iterator[Diagnostic]:
-    """Yield a diagnostic for each pose to which a reaction or a failure sends the robot in vain."""
+    """Yield a diagnostic for each pose of a reaction, and the dock, that the robot can't drive to.
+
+    The dock counts only if a reaction or a failure sends the robot there. The drive begins where
+    the mission starts.
+    """
     mission = study.mission
     retreats: list[tuple[Pose, str, str]] = []
     back = any(r.response is Response.RETURN and r.pose is None for r in mission.reactions) or any(
@@ -180,7 +184,7 @@ def _battery_exceeded(study: Study, energy: Bounds, battery: float) -> Iterator[
 
 
 def _may_need_less_energy(study: Study) -> bool:
-    """Return True if a run may need less energy than the nominal least.
+    """Return True if a run may take less from the battery than the least energy of the analysis.
 
     The robot may stand at a dock for a while, which charges it, or the mission may end early
     because its time is up.
@@ -198,9 +202,10 @@ def _may_need_less_energy(study: Study) -> bool:
 
 
 def _no_way_back(study: Study, energy: Bounds, travel: Travel) -> Iterator[Diagnostic]:
-    """Yield a diagnostic on the first task after which the way back may exceed the battery.
+    """Yield a diagnostic on the first task after which the battery may not suffice to return.
 
-    Only the path that needs the most energy is considered.
+    The drive leads to the mission's dock, where RESERVE_SHARE of the battery must remain. Only the
+    execution path that needs the most energy is considered.
     """
     dock, battery, most = study.mission.dock, travel.battery, energy.most.value
     if dock is None or battery is None or most is None or most > battery:
@@ -292,7 +297,12 @@ def _stale_conditions(
 def _youngest_ages(
     sources: list[int], steps: dict[object, list[tuple[object, float]]]
 ) -> dict[object, float]:
-    """Return the least time from the end of one of the sources to the end of each later leaf."""
+    """Return by leaf or time-out the least age in s that a value has at its end.
+
+    A leaf in `sources` measures the value, which has the age 0 when that leaf ends. `steps` has
+    what can follow each leaf or time-out, with the least time in s. Ends that follow no source are
+    left out.
+    """
     age: dict[object, float] = {}
     heap: list[tuple[float, int, object]] = [(0.0, k, s) for k, s in enumerate(sources)]
     count = len(heap)
@@ -313,9 +323,10 @@ def _youngest_ages(
 
 
 def path_words(bound: Bound, quantity_words: Callable[[float], str]) -> str:
-    """Return the text of the path to a bound, with the time or energy at the end of each part.
+    """Return the text of the execution path that attains a bound, such as `A (5 s) > B (2 min)`.
 
-    The middle of a long path is left out.
+    Each part has the time or energy from the mission's start to its end. The middle of a long path
+    is left out.
     """
 
     def stretch_words(stretch: Stretch) -> str:

@@ -34,7 +34,12 @@ class NonTerminatingLoop:
 
 
 def find_non_terminating_loops(study: Study) -> Iterator[NonTerminatingLoop]:
-    """Yield the shortest loops that some readings keep going, in the order of their tasks."""
+    """Yield the loops that some readings of a checkpoint keep going for ever.
+
+    They come in the order of the leaves that compare the checkpoint. A loop is left out if it
+    contains another one that the same readings keep going, or if no reading leaves it (see
+    `Study.traps`). Some loops are missing if the search takes too long.
+    """
     trapped = {node for nodes in study.trap_nodes for node in nodes}
     search = _Search(study)
     loops: list[NonTerminatingLoop] = []
@@ -68,7 +73,10 @@ def _is_within(inner: NonTerminatingLoop, outer: NonTerminatingLoop) -> bool:
 
 
 def make_trap(study: Study, nodes: Sequence[int], kept: KeptReading | None = None) -> Trap:
-    """Return the witness of a loop: nodes that no step leads out of, with the readings `kept`."""
+    """Return the witness of a loop, given by `nodes` that no step leads out of.
+
+    `kept` are the readings with which the loop is entered; None if it goes on with any readings.
+    """
     flow = study.flow
     groups = len(flow.groups)
     beyond = [node - len(flow.leaves) for node in nodes if not flow.is_leaf(node)]
@@ -102,7 +110,11 @@ class _Search:
                 self.guard_nodes.setdefault(condition.object_id, set()).add(study.flow.round_end(g))
 
     def old_comparisons(self) -> Iterator[tuple[int, str]]:
-        """Yield each leaf with a checkpoint that it compares but does not measure itself."""
+        """Yield each leaf with the id of a checkpoint that it compares but does not measure itself.
+
+        Left out are leaves that can't be reached, and checkpoints that are not tracked or whose
+        values others than the mission's tasks may report.
+        """
         study = self.study
         for i, leaf in enumerate(study.flow.leaves):
             if not study.nominal.is_reached(i):
@@ -125,10 +137,10 @@ class _Search:
             possible ^= lowest
 
     def closure(self, leaf: int, object_id: str, reading: int) -> frozenset[int] | None:
-        """Return all nodes that follow while the checkpoint keeps the reading.
+        """Return a leaf and all nodes that can follow it while the checkpoint keeps the reading.
 
-        Returns None if some path leads to the mission's end or may change the reading, or if the
-        search takes too long.
+        `reading` is one bit. Returns None if some path leads to the mission's end or may change the
+        reading, or if the search takes too long.
         """
         study, search = self.study, self.search
         flow, nominal = study.flow, study.nominal

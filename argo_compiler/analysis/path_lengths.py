@@ -1,9 +1,11 @@
-"""Shortest and longest paths through a control-flow graph, level by level.
+"""Least and greatest time and energy through a control-flow graph, level by level.
 
 A level is the mission or one round of a group. Its nodes are the leaves that lie in it directly,
-and the groups that lie in it, each group once for each leaf and source of its entry. The cost of
-all rounds of a group is computed once for each entry, so that rounds need not be enumerated. A loop
-that no count and no time limits is then a cycle within one level.
+and the groups that lie in it, each group once for each leaf and source of its entry: the leaf at
+which the group is entered, and what ended before. The cost of all rounds of a group is computed
+once for each entry, so that rounds need not be enumerated. A loop that no count and no time limits
+is then a cycle within one level. The distance of a node is the time or energy from the start of its
+level.
 """
 
 import heapq
@@ -112,7 +114,7 @@ class PathLengths:
             self._children[group.parent].append(number)
 
     def mission_level(self) -> LevelGraph:
-        """Return the graph of the mission's level.
+        """Return the graph of the mission's level, with the distances from the mission's start.
 
         Raises:
             BoundsTooLargeError: The computation would take too long.
@@ -139,7 +141,10 @@ class PathLengths:
                 keys.append(wanted)
 
     def graphs_for(self, entry: Entry) -> Iterator[LevelGraph]:
-        """Yield the graphs of a group's first round, for one entry, and of its later rounds."""
+        """Yield the graph of a group's first round for one entry, and that of its later rounds.
+
+        An entry is the group, the leaf at which it is entered, and what ended before.
+        """
         yield self._graphs[entry]
         if entry[0] in self._later_graphs:
             yield self._later_graphs[entry[0]]
@@ -147,7 +152,10 @@ class PathLengths:
     def _group_rounds(
         self, group: int, entry: int, source: Source
     ) -> Generator[Entry, Rounds, Rounds]:
-        """Return the cost of all rounds of a group that is entered at a leaf from a source."""
+        """Return the cost of all rounds of a group that is entered at a leaf from a source.
+
+        The generator yields the entries of inner groups, and is sent the costs of all their rounds.
+        """
         graph = yield from self._build_level(group, entry, source)
         self._graphs[group, entry, source] = graph
         first = self._group_round(group, graph)
@@ -188,7 +196,10 @@ class PathLengths:
     def _build_level(
         self, level: int, entry: int, source: Source
     ) -> Generator[Entry, Rounds, LevelGraph]:
-        """Return the graph of a level that is entered at a leaf from a source, with distances."""
+        """Return the graph of a level that is entered at a leaf from a source, with distances.
+
+        The generator yields the entries of inner groups, and is sent the costs of all their rounds.
+        """
         graph = LevelGraph()
         number: dict[Key, int] = {}
 
@@ -276,7 +287,7 @@ class PathLengths:
         return child, leaf, source
 
     def _compute_lengths(self, graph: LevelGraph, level: int) -> None:
-        """Compute the distances to all nodes of a level, and record its loops."""
+        """Compute least and greatest time and energy to each node of a level; record its loops."""
         successors = [[hop.target for hop in hops] for hops in graph.hops]
         parts = components(successors)
         looping = [False] * len(graph.keys)
@@ -310,7 +321,7 @@ class PathLengths:
 
 
 def _cost_to(level: LevelGraph, node: int) -> Cost:
-    """Return the cost to reach a node of a level."""
+    """Return the range of the cost from a level's start to one of its nodes, over all paths."""
     return Cost(
         QuantityRange(level.least["time"][node], level.most["time"][node]),
         QuantityRange(level.least["energy"][node], level.most["energy"][node]),
@@ -324,7 +335,11 @@ class _Clock:
         self.costs = costs
 
     def soonest(self, hop: Hop, key: Key, here: float, latest_here: float) -> float:
-        """Return the soonest end of a step in s; infinite if it can't be taken."""
+        """Return the soonest end of a step to node `key` in s; infinite if it can't be taken.
+
+        It counts from the mission's start, as do `here` and `latest_here`, the soonest and the
+        latest time at the node where the step begins.
+        """
         started = here + hop.before_target.time.least
         leaf = self._window(key)
         if leaf is None:
@@ -343,7 +358,11 @@ class _Clock:
         return max(started, flow.deadline) if ended >= flow.deadline - _TOLERANCE else math.inf
 
     def latest(self, hop: Hop, key: Key, here: float) -> float:
-        """Return the latest end of a step in s; minus infinity if it can't be taken."""
+        """Return the latest end of a step to node `key` in s; -inf if it can't be taken.
+
+        It counts from the mission's start, as does `here`, the latest time at the node where the
+        step begins.
+        """
         started = here + hop.before_target.time.most
         leaf = self._window(key)
         if leaf is None:
@@ -358,7 +377,10 @@ class _Clock:
         return max(started, flow.deadline) if ended >= flow.deadline - _TOLERANCE else -math.inf
 
     def _window(self, key: Key) -> int | None:
-        """Return the leaf of a step if it has a window; None otherwise."""
+        """Return the leaf of a node if its task has a time window.
+
+        Returns None for other nodes, and for all nodes if travel times are unknown.
+        """
         if is_entry(key):
             return None
         leaf = key if isinstance(key, int) else key[1]
@@ -373,9 +395,10 @@ def is_entry(key: Key) -> TypeGuard[Entry]:
 
 
 def _find_shortest(graph: LevelGraph, quantity: str, clock: _Clock | None) -> None:
-    """Compute the shortest paths with Dijkstra's algorithm.
+    """Compute the least time or energy to each node of a level with Dijkstra's algorithm.
 
-    With a clock, the distances are times since the mission's start.
+    With a clock, the distances are times since the mission's start. The results are stored in
+    `graph`.
     """
     of_time = quantity == "time"
     distance = [math.inf] * len(graph.keys)
@@ -407,7 +430,11 @@ def _find_shortest(graph: LevelGraph, quantity: str, clock: _Clock | None) -> No
 def _find_longest(
     graph: LevelGraph, quantity: str, order: list[int], looping: list[bool], clock: _Clock | None
 ) -> None:
-    """Compute the longest paths; they are infinite in loops and after them."""
+    """Compute the greatest time or energy to each node of a level; infinite in and after loops.
+
+    `order` has all nodes, each after its predecessors except in loops; `looping` states for each
+    node if it is in a loop. The results are stored in `graph`.
+    """
     of_time = quantity == "time"
     distance = [-math.inf] * len(graph.keys)
     predecessors: list[tuple[int, GroupExit | None] | None] = [None] * len(graph.keys)

@@ -92,10 +92,11 @@ class Reachability:
 
 
 def make_fields(flow: Flow, catalog: Catalog | None, bits: int = TRACKED_BITS) -> Fields:
-    """Return the scales of all compared objects, and a layout with as many as `bits` allows.
+    """Return the layout of a state: the bit sets of the readings of all objects that are compared.
 
-    Objects that are compared at a task that does not measure them are tracked first, as they need
-    it most.
+    An object is a checkpoint. As many are tracked as `bits` allows for the states of all nodes
+    together; the others may have any reading anywhere. Objects that are compared at a task that
+    does not measure them are tracked first, as they need it most.
     """
     known = (
         {} if catalog is None else {str(c.id): (c.range, c.nominal) for c in catalog.checkpoints}
@@ -122,15 +123,16 @@ def make_fields(flow: Flow, catalog: Catalog | None, bits: int = TRACKED_BITS) -
 
 
 def compute_reachability(flow: Flow, fields: Fields, failures: bool) -> Reachability:
-    """Return the fixed point.
+    """Return the nodes that can be reached, and the readings that are possible there.
 
-    With `failures`, any action may fail and any measurement may lack its value.
+    It covers all execution paths. With `failures`, any action may fail and any measurement may lack
+    its value.
     """
     return ReachabilitySearch(flow, fields, failures).run()
 
 
 def reported_by_others(flow: Flow) -> frozenset[str]:
-    """Return the objects whose values others may report.
+    """Return the ids of the objects whose values others than the mission's tasks may report.
 
     These are the objects that a WAIT waits for, and those that are compared but that no task
     measures.
@@ -262,7 +264,10 @@ class ReachabilitySearch:
         return joined
 
     def successors(self, node: int, state: int) -> Iterator[tuple[int, int]]:
-        """Yield the nodes that can follow a node in a state, each with the state there."""
+        """Yield the nodes that can follow a node, each with the readings that are possible there.
+
+        `state` has the readings that are possible at the node, before its action.
+        """
         return self._successors(node, state, self._evaluate_guards(node, state))
 
     def _successors(
@@ -300,7 +305,7 @@ class ReachabilitySearch:
             yield flow.time_up(group.parent), state
 
     def _successors_of_round(self, number: int, state: int) -> Iterator[tuple[int, int]]:
-        """Yield the nodes that can follow the end of a round, each with the state there."""
+        """Yield the nodes that can follow a round's end, each with the readings possible there."""
         group = self.flow.groups[number]
         guard, ended, repeated = self._evaluate(group.until, state, None)
         by_value = bool(group.until)
@@ -322,9 +327,9 @@ class ReachabilitySearch:
         return 0 if shift is None else self.fields.scales[object_id].possible << shift
 
     def _late_readings(self, object_id: str) -> int:
-        """Return the readings that a cancelled measurement may still report: it may succeed.
+        """Return the state bits of the readings that a cancelled measurement may still report.
 
-        With failures, the success may have no value.
+        It may succeed before it is cancelled. With failures, the success may have no value.
         """
         shift = self.fields.shift.get(object_id)
         if shift is None or not self.failures:
@@ -356,7 +361,10 @@ class ReachabilitySearch:
         return scale.without_value if self.failures else scale.failed
 
     def _effect_of(self, leaf: LeafFlow) -> _Effect | None:
-        """Return the change of the state at the end of a leaf, with or without a value."""
+        """Return the change of the possible readings when a leaf has ended; None if there is none.
+
+        A value is missing only if failures or a missed window allow it.
+        """
         object_id = leaf.measures
         if object_id is None or object_id not in self.fields.scales:
             return None
@@ -372,18 +380,20 @@ class ReachabilitySearch:
         return self._effects[key]
 
     def _after_leaf(self, node: int, state: int) -> int:
-        """Return the state when a leaf has ended."""
+        """Return the possible readings after a leaf, from those before its action."""
         effect = self.effects[node]
         return state if effect is None else state & effect.mask | effect.added
 
     def _may_go_on_unmeasured(self, leaf: LeafFlow) -> bool:
-        """Return True if a missed window counts as a usual end of the task."""
+        """Return True if the mission goes on after a leaf's missed window as after its success."""
         return leaf.deadline is not None and leaf.missed is None and leaf.failure is None
 
     def _evaluate_guards(self, node: int, state: int) -> list[_GuardResult]:
-        """Return the results of the transitions of a leaf that may be evaluated, in order.
+        """Return status, target and readings of each transition of a leaf that may be evaluated.
 
-        The unconditional transition comes last, if it can be taken. Other nodes have no results.
+        `state` has the readings that are possible before the leaf's action. The order is that of
+        the transitions; the unconditional one comes last, if it can be taken. Other nodes have no
+        results.
         """
         if not self.flow.is_leaf(node):
             return []
@@ -405,7 +415,10 @@ class ReachabilitySearch:
     def _evaluate(
         self, conditions: tuple[Condition, ...], state: int, fresh: str | None
     ) -> tuple[GuardStatus, int, int]:
-        """Return the status of conditions, and the states if they are satisfied and if not."""
+        """Return the status of conditions, and the possible readings if all hold and if not.
+
+        `fresh` is an object that has certainly just been measured; None if there is none.
+        """
         fields = self.fields
         taken = state
         possible = True

@@ -107,7 +107,7 @@ class Analysis(Model):
 
     @property
     def reachable(self) -> frozenset[str]:
-        """Names of all tasks that can be reached."""
+        """Names of all tasks that can be reached, also of those that only a failure leads to."""
         return frozenset(t.task for t in self.tasks if t.verdict is not Verdict.NEVER)
 
     def task_facts(self, name: str) -> TaskFacts:

@@ -1,4 +1,7 @@
-"""Cost of all rounds of a group, computed from the cost of one round."""
+"""Cost of all rounds of a group, computed from the cost of one round.
+
+All costs count from the moment at which the group is entered, unless they are those of one round.
+"""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -124,7 +127,7 @@ class _Combination:
         )
 
     def _range(self) -> tuple[float, float]:
-        """Return the fewest rounds completed if a round ends the group, and the most started."""
+        """Return the fewest rounds until a round's end ends the group, and the most that start."""
         end, period = self.first_end, self.period
         if end is None:
             return 0, 1
@@ -155,7 +158,7 @@ class _Combination:
         return min(fewest, self.count), min(most, self.count)
 
     def _end_after(self, rounds: float) -> Cost | None:
-        """Return the cost until `rounds` rounds have been completed; None if they can't be."""
+        """Return the cost until `rounds` rounds have been completed; None if so many can't be."""
         if self.first_end is None or rounds < 1:
             return None
         if rounds == 1:
@@ -173,7 +176,11 @@ class _Combination:
         return Cost(time, cost.energy + self._idle_energy(rounds))
 
     def _end_if_waited(self, rounds: float, period: float) -> float:
-        """Return the time until `rounds` rounds have ended if the robot had to wait for one."""
+        """Return the time in s until `rounds` rounds have ended, if the robot waited before one.
+
+        Rounds are due each `every` s. The robot waited for the second round or for the last one,
+        whichever gives the later end. `period` is the duration of a later round in s.
+        """
         if math.isinf(rounds):
             return math.inf
         return max(self.every + (rounds - 1) * period, (rounds - 1) * self.every + period)
@@ -192,13 +199,16 @@ class _Combination:
         return Cost(time, previous_end.energy + self._idle_energy(rounds))
 
     def _idle_energy(self, rounds: float) -> QuantityRange:
-        """Return the energy in Wh drawn while the robot waits for rounds that are not yet due."""
+        """Return the range of the energy in Wh drawn while the robot waits for rounds to be due.
+
+        It may not wait at all, or nearly all the time until the last of `rounds` rounds is due.
+        """
         if not self.standing_power:
             return NOTHING
         return QuantityRange(0.0, self.standing_power * (rounds - 1) * self.every / 3600)
 
     def _leave_within(self) -> None:
-        """Add the exits by transitions of tasks within a round."""
+        """Add to `exits` the costs of leaving the group by a task's transition within a round."""
         for exit_key, cost in self.first.exits.items():
             self._add(exit_key, cost, 1, 1)
         if self.later is None or self.first_end is None or self.most < 2:
@@ -217,7 +227,7 @@ class _Combination:
             self._add(exit_key, later, 2, self.most)
 
     def _leave_at_end(self) -> None:
-        """Add the exits by the unconditional transition, after the last round."""
+        """Add to `exits` the costs of leaving the group by the transition after the last round."""
         cost, fewest, most = self._end_of_last()
         if cost is None:
             return
@@ -251,7 +261,7 @@ class _Combination:
         return Cost(QuantityRange(min(least, most), most), energy), self.fewest, self.most
 
     def _end_by_value(self) -> tuple[Cost, float, float]:
-        """Return cost, fewest and most rounds if `until` may end the group after any round."""
+        """Return cost, fewest and most rounds of a group that `until` may end after any round."""
         assert self.first_end is not None
         last = self._end_after(self.most)
         if last is None:
@@ -261,7 +271,11 @@ class _Combination:
         return Cost(QuantityRange(ends.time.least, most), ends.energy), 1, self.most
 
     def _longest(self, last: Cost | None) -> float:
-        """Return the latest time in s at which the last round can end, at or after the limit."""
+        """Return the latest time in s at which the group's last round can end, from its entry on.
+
+        No round starts after the time limit. `last` is the cost until the greatest number of rounds
+        has been completed; None if it can't be.
+        """
         assert self.first_end is not None
         round_most = 0.0 if self.period is None else self.period.time.most
         most = max(self.first_end.time.most, self.limit + round_most)
@@ -339,13 +353,17 @@ def _due_before(limit: float, every: float) -> float:
 def _periods_started(time: float, period: float, side: int) -> float:
     """Return how many periods start within a time, one that starts at its very end included.
 
-    `side` is 1 or -1: the direction in which rounding may err.
+    If rounding leaves doubt, `side` decides: 1 for the greater number, -1 for the smaller one.
     """
     return 1 + math.floor(time / period + side * _TOLERANCE)
 
 
 def _periods_to_fill(time: float, period: float, side: int) -> float:
-    """Return how many periods fill a time; `side`, 1 or -1, is the sign of a rounding error."""
+    """Return the least number of periods that together last at least a time.
+
+    It is infinite if a period takes no time. If rounding leaves doubt, `side` decides: 1 for the
+    greater number, -1 for the smaller one.
+    """
     if period == 0:
         return math.inf
     if math.isinf(period):

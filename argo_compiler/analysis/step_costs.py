@@ -130,7 +130,7 @@ class StepCosts:
     def step_cost(self, source: Source, target: int) -> Cost:
         """Return the cost of a step: the drive from a source to a leaf, and the leaf's action.
 
-        The robot may have to wait there until the leaf's `earliest` time.
+        It includes the time that the robot may have to wait there until the leaf's `earliest` time.
         """
         cost = self.cost_without_wait(source, target)
         if self.travel is None or not self.flow.is_leaf(target):
@@ -151,7 +151,10 @@ class StepCosts:
         return self._steps.get((source, target), FREE)
 
     def cost_until_missed(self, source: Source, target: int) -> Cost:
-        """Return the cost from a source until the hard window of a leaf has closed."""
+        """Return the cost of a step to a leaf that is cancelled as the leaf's hard window closes.
+
+        It may have closed before the step begins, so the least is 0.
+        """
         cost = self.step_cost(source, target)
         deadline = self.flow.leaves[target].deadline
         assert deadline is not None
@@ -160,11 +163,11 @@ class StepCosts:
         )
 
     def action_cost(self, leaf: int) -> Cost:
-        """Return the cost of a leaf's action, without the drive to it."""
+        """Return the range of the cost of a leaf's action, without the drive to it."""
         return self._action_costs.get(leaf, FREE)
 
     def successor_times(self) -> dict[object, list[tuple[object, float]]]:
-        """Return what can follow each leaf and each time-out, with the least time in s."""
+        """Return what can follow each leaf and time-out, with the least s from end to end."""
         following: dict[object, list[tuple[object, float]]] = {}
         for (source, target), cost in self._steps.items():
             if isinstance(source, str) or (not isinstance(source, int) and source[0] == "repeat"):
@@ -176,7 +179,10 @@ class StepCosts:
         return following
 
     def last_clean_up(self, source: Source) -> float:
-        """Return the longest clean-up in s before the mission's end, if it ends after a source."""
+        """Return the longest time in s to clean up a cancelled action if the mission then ends.
+
+        The mission ends after `source`. The time is 0 if no action can have been cancelled before.
+        """
         if self.travel is None or isinstance(source, str):
             return 0.0
         if isinstance(source, int):
@@ -192,7 +198,10 @@ class StepCosts:
         yield from self._successors_when_cut(leaf)
 
     def _successors_when_cut(self, leaf: int) -> Iterator[tuple[Source, int]]:
-        """Yield the source and leaf of each step that follows a time-out or missed window."""
+        """Yield the source and leaf of each step that can follow if time cancels a leaf.
+
+        That is when the time of a group is up or the hard window of the leaf has closed.
+        """
         flow = self.flow
         group = flow.leaves[leaf].parent
         while group >= 0 and flow.timed[group]:
@@ -205,7 +214,7 @@ class StepCosts:
                 yield ("missed", leaf), t
 
     def _resolve(self, node: int) -> tuple[int, ...]:
-        """Return the leaves that follow a node without another leaf in between."""
+        """Return the leaves that can follow a node directly; for a leaf, the leaf itself."""
         flow = self.flow
         leaves = []
         group = flow.group_of_round_end(node)
@@ -221,7 +230,7 @@ class StepCosts:
         return tuple(leaves)
 
     def _explore(self, travel: Travel, mission: Mission) -> None:
-        """Add the positions of the robot after each leaf, and the costs of the steps between."""
+        """Add the positions of the robot after each leaf, and the costs of the steps to leaves."""
         flow = self.flow
         if not flow.is_leaf(flow.initial):
             return
@@ -280,7 +289,11 @@ class StepCosts:
     def _record_position(
         self, known: list[RobotPosition], position: RobotPosition, leaf: int, *, before: bool
     ) -> bool:
-        """Add a position to `known` and to the pending ones; return True if it is new."""
+        """Add a position to `known` and to the pending ones; return True if it was added.
+
+        It is not added if it is known, or if there are too many. `before` states if the robot is
+        there when the leaf begins, not when it has ended.
+        """
         if position in known:
             return False
         if len(known) >= (_MOST_WAIT_POSITIONS if before else _MOST_POSES):
@@ -439,7 +452,11 @@ class _CutCosts:
         """leaves with detours that lead back to them"""
 
     def allow_chains(self, cuts: dict[Source, dict[tuple[int, int], None]]) -> None:
-        """Allow several cancelled actions in a row from now on."""
+        """Include from now on that several actions in a row are cancelled.
+
+        `cuts` has, for each source, pairs of the leaf that the robot was driving to and the next
+        one.
+        """
         self.detours = [[] for _ in self.flow.leaves]
         for pairs in cuts.values():
             for x, target in pairs:
@@ -450,13 +467,20 @@ class _CutCosts:
             self._endless.update(part if len(part) > 1 else ())
 
     def longest_to(self, x: int, target: int) -> Cost:
-        """Return the longest drive to a leaf from any position on the way to leaf `x`."""
+        """Return the cost of the drive to `target` and its action, from the worst position.
+
+        The positions are those on the drive to leaf `x`, which the robot first completes.
+        """
         velocity = self.flow.leaves[target].leaf.task.velocity
         cost = self.remainder(x, velocity)
         return cost if x == target else cost + self._cost_between(x, target, velocity)
 
     def remainder(self, x: int, velocity: float | None) -> Cost:
-        """Return the longest rest of the drive to leaf `x` at a speed."""
+        """Return the cost of the rest of the drive to leaf `x` and of its action, at a speed.
+
+        It is that of the worst position at which the action was cancelled. The speed is in m/s;
+        None is the robot's planning speed.
+        """
         if (x, velocity) not in self._remainders:
             if self.detours:
                 self._compute_remainder(x, velocity)
@@ -465,9 +489,10 @@ class _CutCosts:
         return self._remainders[x, velocity]
 
     def _compute_remainder(self, leaf: int, velocity: float | None) -> None:
-        """Compute the longest drive to a leaf at a speed, from all positions before it.
+        """Compute the greatest cost of the drive to a leaf and of its action, at a speed.
 
-        The same is computed for the leaves that the robot may have been driving to before.
+        It covers all positions before the leaf; the speed is in m/s. The same is computed for the
+        leaves that the robot may have been driving to before.
         """
         needed: set[int] = set()
         pending = [leaf]

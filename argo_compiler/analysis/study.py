@@ -123,7 +123,7 @@ class Study:
         return "" if path is None else self.words(path)
 
     def words(self, path: tuple[int, ...]) -> str:
-        """Return the text of a path: its tasks, without the middle ones if there are many."""
+        """Return the names of the tasks on a path of nodes; a long path lacks its middle."""
         leaves = [n for n in path if n < len(self.flow.leaves)]
         if len(leaves) <= _MOST_NAMES + 1:
             return " > ".join(map(self.name, leaves))

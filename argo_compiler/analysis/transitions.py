@@ -15,7 +15,10 @@ _MOST_PATHS = 200  # diagnostics that show a path
 
 
 def diagnose_transitions(study: Study) -> Iterator[Diagnostic]:
-    """Yield diagnostics on the transitions of all tasks that can be reached."""
+    """Yield diagnostics on transitions that are never or always taken, or lack a measured value.
+
+    Tasks that can't be reached are left out.
+    """
     measured = {t.object_id for t in study.mission.tasks if t.action is Action.MEASURE}
     unmeasured = _UnmeasuredPaths(study)
     for leaf, flow in enumerate(study.flow.leaves):
@@ -40,7 +43,10 @@ def diagnose_transitions(study: Study) -> Iterator[Diagnostic]:
 
 
 def why_never(study: Study, leaf: int, k: int) -> str:
-    """Return the reason why conditional transition `k` of a reached leaf is never taken."""
+    """Return the text why conditional transition `k` of a reached leaf is never taken.
+
+    `k` counts the leaf's conditional transitions from 0.
+    """
     guards = study.with_failures.conditional_guards(study.flow, leaf)
     if k >= len(guards):
         return "a transition before it is always taken"
@@ -90,7 +96,7 @@ def _possible_readings(study: Study, condition: Condition, state: int) -> tuple[
 
 
 def _first_state(study: Study, leaf: int) -> int | None:
-    """Return the readings when the first transition of a leaf is evaluated; None if none is."""
+    """Return the possible readings when a leaf's first transition is evaluated; None if none is."""
     guards: tuple[GuardStatus, ...] = study.with_failures.guards[leaf]
     return guards[0].state if guards else None
 
@@ -172,9 +178,10 @@ class _UnmeasuredPaths:
         self.count = 0
 
     def diagnostic(self, leaf: int, k: int, index: int, object_id: str) -> Diagnostic | None:
-        """Return a diagnostic if a path without failures reaches a transition without the value.
+        """Return a diagnostic if a transition may compare an object that is not measured yet.
 
-        Returns None if every path has measured the object.
+        The path to it has no failures. `k` counts the leaf's conditional transitions, `index` all
+        of them. Returns None if every path measures the object, or if that is not known.
         """
         study = self.study
         fields = study.nominal.fields

@@ -45,9 +45,9 @@ class Verifier:
         return proved
 
     def check_trap(self, witness: Trap, invariant: Invariant) -> bool:
-        """Return True if no step leads out of a trap, with the readings of a valid invariant.
+        """Return True if no step leads out of a trap while the readings are those of an invariant.
 
-        The invariant must have passed `check_invariant`.
+        The invariant must be without failures and have passed `check_invariant`.
         """
         states = self._states(invariant)
         points = self._points_of(witness)

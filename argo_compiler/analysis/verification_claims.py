@@ -14,9 +14,9 @@ from argo_compiler.il import Mission
 
 
 def unproved(mission: Mission, catalog: Catalog | None, analysis: Analysis) -> tuple[str, ...]:
-    """Return texts for the claims of an analysis that its witnesses do not prove.
+    """Return texts that name the claims of an analysis which its witnesses do not prove.
 
-    There are none if all claims are proved.
+    There are none if all claims are proved. For claims of lower bounds, see `unproved_bounds`.
     """
     witnesses = analysis.witnesses
     if witnesses is None:
@@ -46,7 +46,8 @@ def unproved(mission: Mission, catalog: Catalog | None, analysis: Analysis) -> t
 def _is_proved(verdict: Verdict, with_failures: bool, nominal: bool) -> bool:
     """Return True if what a verdict excludes is proved impossible.
 
-    `with_failures` and `nominal` say whether it is possible with failures and without.
+    `with_failures` and `nominal` state whether the proofs leave it possible with failures and
+    without.
     """
     if verdict is Verdict.NEVER:
         return not with_failures

@@ -49,21 +49,24 @@ class ClaimedScale:
         return (1 << self.width) - 1
 
     def reaching(self, low: float, high: float) -> int:
-        """Return the values from `low` to `high`, both included, and those in the same regions."""
+        """Return the bits of the regions with values from `low` to `high`, both included."""
         first, last = bisect_left(self.bounds, low), bisect_left(self.bounds, high)
         first_bit = 2 * first + (low in self.bounds[first : first + 1])
         last_bit = 2 * last + (high in self.bounds[last : last + 1])
         return (1 << (last_bit + 1)) - (1 << first_bit)
 
     def at_most(self, bound: float, inclusive: bool) -> int | None:
-        """Return the values below a bound, or up to it; None if it is not one of the bounds."""
+        """Return the bits of the values below a bound, and of the bound itself if `inclusive`.
+
+        Returns None if it is not one of the scale's bounds.
+        """
         k = bisect_left(self.bounds, bound)
         if k == len(self.bounds) or self.bounds[k] != bound:
             return None
         return (1 << (2 * k + 1 + inclusive)) - 1
 
     def satisfying(self, condition: Condition) -> int:
-        """Return the readings that may satisfy a condition, whatever their age."""
+        """Return the bits of the readings that may satisfy a condition, whatever their age."""
         all_values = self.missing - 1
         match condition.type:
             case ConditionType.UNREADABLE:
@@ -136,15 +139,19 @@ class ClaimedStates:
         return True
 
     def late_readings(self, object_id: str, failures: bool) -> int:
-        """Return the readings that a cancelled measurement may still report.
+        """Return the bits of the readings that a cancelled measurement may still report.
 
-        With failures, it may succeed without a value.
+        It may succeed before it is cancelled; with failures, also without a value.
         """
         scale = self.scales[object_id]
         return (scale.values | (scale.unreadable if failures else 0)) << scale.shift
 
     def contains(self, point: ProgramPoint, state: int, late: int) -> bool:
-        """Return True if a step to a point, with its late readings, stays in the claimed ones."""
+        """Return True if the readings after a step to a point are among those claimed for it.
+
+        `state` has the possible readings, `late` those that a cancelled action may still report
+        there.
+        """
         known = self.readings.get(point)
         if known is None or late & ~self.late.get(point, 0):
             return False

@@ -162,7 +162,7 @@ class MissionWalk:
         return self.states.set(state, o, scale.failed | others) | self._reported
 
     def _may_fail(self, task: Task) -> bool:
-        """Return True if a task may finally fail; without failures, only by time (W3, W5)."""
+        """Return True if a task may finally fail; without failures, only by its time (W3, W5)."""
         waits = task.wait is not None and task.wait.limit is not None
         return self._can_miss_window(task) or waits or (self.failures and task.action is not _WAIT)
 
@@ -183,14 +183,14 @@ class MissionWalk:
         return None if task.window is None else task.window.missed_target
 
     def _failure_may_continue(self, task: Task) -> bool:
-        """Return True if some final failure counts like any other end (T8)."""
+        """Return True if the mission may go on after a task's failure as after its success (T8)."""
         continues = task.on_failure is _CONTINUE or (
             task.on_failure is _BRANCH and task.failure_target is None
         )
         return continues and (self._may_fail_otherwise(task) or self._missed_target(task) is None)
 
     def _failure_points(self, task: Task) -> Iterator[ProgramPoint]:
-        """Yield the points after a final failure that are not those after any end (T8, W5)."""
+        """Yield the points that a task's final failure leads to, but not its success (T8, W5)."""
         missed = self._missed_target(task)
         if self._can_miss_window(task) and missed is not None:
             yield self.layout.task_point(missed)
@@ -268,9 +268,9 @@ class MissionWalk:
         return taken if possible else None, rest, possible and not unsure
 
     def _in_range(self, condition: Condition) -> tuple[bool, bool]:
-        """Return whether a condition can hold for some value in range, and for every one.
+        """Return whether a condition can hold for a value in the checkpoint's range, and for all.
 
-        For checkpoints without a scale.
+        For checkpoints without a scale. Without a known range, a condition may hold or not.
         """
         known = self.ranges.get(condition.object_id)
         if known is None or not condition.type.compares:
@@ -280,7 +280,7 @@ class MissionWalk:
         return values & holding != 0, not values & ~holding
 
     def _exact(self, condition: Condition, fresh: str | None) -> bool:
-        """Return True if each set of readings decides whether a condition holds."""
+        """Return True if a reading alone decides whether a condition holds, whatever its age."""
         scale = self.states.scales.get(condition.object_id)
         timely = condition.max_age is None or condition.object_id == fresh
         exact = timely and condition.type not in _AGED

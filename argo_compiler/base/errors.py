@@ -100,7 +100,10 @@ class Unavailable(ArgoError):
 
 
 def located(error: ArgoError, name: str) -> ArgoError:
-    """Return an error of the same kind whose message begins with `name`, the thing it is about."""
+    """Return an error of the same kind whose message begins with `name` and a colon.
+
+    `name` is the thing that the error is about, such as a file.
+    """
     kinds = (NotFound, Invalid, Unreachable, Conflict, Unavailable)
     kind = next((kind for kind in kinds if isinstance(error, kind)), ArgoError)
     return kind(f"{name}: {error}", remedies=error.remedies, about=error.about)

@@ -7,10 +7,10 @@ PROJECT = "argo-mission"
 
 
 def install_line(extra: str) -> str:
-    """Return the command that adds an extra to Argo.
+    """Return the `pip install` command that adds an extra to Argo, for messages.
 
-    It installs from the source from which Argo itself was installed: an index may not have Argo, or
-    may have something else under its name.
+    The command installs from the source from which Argo itself was installed: an index may not have
+    Argo, or may have something else under its name.
     """
     import shlex
 
@@ -18,7 +18,7 @@ def install_line(extra: str) -> str:
 
 
 def _source(extra: str) -> tuple[str, ...]:
-    """Return the arguments of `pip install`."""
+    """Return the arguments with which `pip install` installs Argo and the extra."""
     # Imported late: they take long to import, and are rarely needed.
     from importlib.metadata import PackageNotFoundError, distribution
     from urllib.parse import urlsplit

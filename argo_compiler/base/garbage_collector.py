@@ -16,10 +16,10 @@ _holding = Lock()
 def collector_held() -> Iterator[None]:
     """Pause the garbage collector; a large mission is built in half the time.
 
-    The collector examines all live objects each time that enough were added, and finds nothing
-    while the new data is still in use. There is one collector for the whole process, so only one
-    thread at a time pauses it; data that other threads build meanwhile may see it run again before
-    they are done.
+    The collector examines all live objects each time that many new ones have been created, and
+    finds nothing to free while the new data is still in use. There is one collector for the whole
+    process, so only one thread at a time pauses it; data that other threads build meanwhile may see
+    it run again before they are done.
     """
     if not _holding.acquire(blocking=False):
         yield
@@ -38,11 +38,11 @@ def collector_held() -> Iterator[None]:
 
 
 def collect_again(seldom: bool = False) -> None:
-    """Turn the collector on if it was turned off; it never examines objects that live now.
+    """Turn the collector on if it was turned off; it skips objects that exist already.
 
-    With `seldom`, which is for commands that end soon, it hardly ever runs: the tables for parsing
-    scripts are 150,000 containers that stay, and examining them takes a twentieth of the time of
-    `argo check`.
+    With `seldom`, which is for commands that end soon, the collector hardly ever runs: the tables
+    for parsing scripts are 150,000 containers that stay, and examining them takes a twentieth of
+    the time of `argo check`.
     """
     if not gc.isenabled():
         gc.freeze()

@@ -8,7 +8,7 @@ Successors = Sequence[Sequence[int]]
 
 
 def components(successors: Successors) -> list[list[int]]:
-    """Return the strongly connected components, each one after those that it leads to.
+    """Return the strongly connected components, each one after all that can be reached from it.
 
     Linear time. Tarjan, Depth-first search and linear graph algorithms, 1972, with an explicit
     stack.
@@ -83,10 +83,10 @@ def reachable_from(successors: Successors, sources: Iterable[int]) -> list[bool]
 def shortest_path_predecessors(
     successors: Successors, source: int, passable: Callable[[int, int], bool]
 ) -> list[int | None]:
-    """Return, for each node, its predecessor on a path of fewest steps from `source`.
+    """Return, for each node, its predecessor on a path of fewest edges from `source`.
 
-    Only steps are used for which `passable` is True. The predecessor is None for nodes without such
-    a path, and for the source itself.
+    Only edges are used for which `passable(node, next node)` is True. The predecessor is None for
+    nodes without such a path, and for the source itself.
     """
     before: list[int | None] = [None] * len(successors)
     seen = [False] * len(successors)
@@ -105,7 +105,8 @@ def shortest_path_predecessors(
 def path_to(before: Sequence[int | None], source: int, target: int) -> tuple[int, ...] | None:
     """Return the nodes from `source` to `target`, both included, or None if there is no path.
 
-    `before` has the predecessor of each node, from `shortest_path_predecessors`.
+    `before` has the predecessor of each node on a shortest path from `source`, as
+    `shortest_path_predecessors` returns it.
     """
     path = [target]
     while path[-1] != source:

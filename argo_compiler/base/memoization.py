@@ -14,8 +14,8 @@ _CACHE_SIZE = 4
 def memoized(function: Callable[[Key], Value]) -> Callable[[Key], Value]:
     """Return the function with a cache of its last results, by the identity of its argument.
 
-    An edit, the check of its result and those who report it ask the same of one mission. The cache
-    does not keep the objects alive.
+    It serves functions that are called several times with one mission: by an edit, by the check of
+    its result, and by the report on it. The cache does not keep the arguments alive.
     """
     cache: deque[tuple[ref[Key], Value]] = deque(maxlen=_CACHE_SIZE)
 

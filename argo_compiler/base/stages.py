@@ -36,7 +36,7 @@ _active_stage: ContextVar[str | None] = ContextVar("stage", default=None)
 
 @contextmanager
 def listen_to_stages(listener: StageListener | None) -> Iterator[None]:
-    """Call the listener with all stages within this context; None: with no stages."""
+    """Report all stages within the `with` block to the listener; with None, to nobody."""
     token = _listener.set(listener)
     try:
         yield
@@ -48,7 +48,8 @@ def listen_to_stages(listener: StageListener | None) -> Iterator[None]:
 def stage(name: str) -> Iterator[ProgressReporter]:
     """Report a computation that may take seconds, such as `finding the walkable surface`.
 
-    The name of a stage within another one follows that of the outer stage.
+    The `with` block is the computation; it may report its progress by the yielded function. The
+    listener gets the name of a stage within another one as `outer: inner`.
     """
     listener = _listener.get()
     if listener is None:
@@ -70,7 +71,7 @@ def stage(name: str) -> Iterator[ProgressReporter]:
 
 
 def stage_items(name: str, items: Sequence[T]) -> Iterator[T]:
-    """Yield the items, one after the other, as a stage."""
+    """Yield the items, and report a stage whose progress is the share of items yielded so far."""
     with stage(name) as report:
         for k, item in enumerate(items):
             report(k / len(items))

@@ -47,7 +47,7 @@ def check(mission: Mission, catalog: Catalog | None = None) -> tuple[Diagnostic,
 
 @memoized
 def _check_structure(mission: Mission) -> tuple[Diagnostic, ...]:
-    """Return the diagnostics that need no catalogue; they are cached, as they take longest."""
+    """Return the diagnostics that need no catalogue, with a cache, as these checks take longest."""
     return (
         *check_instant_loops(mission),
         *check_groups(mission),

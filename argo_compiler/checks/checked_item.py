@@ -14,5 +14,5 @@ class CheckedItem:
     """where a script asked for it"""
 
     def diagnostic(self, code: str, message: str, hint: str, field: str = "") -> Diagnostic:
-        """Return a diagnostic of the item, or of one of its fields."""
+        """Return a diagnostic of the item, or of its field at a path such as `.name`."""
         return diagnostic_of(code, message, hint, self.subject + field, self.source)

@@ -20,7 +20,10 @@ class ConditionChecks:
     def diagnostics(
         self, item: CheckedItem, part: Task | Group, condition: Condition, field: str
     ) -> Iterator[Diagnostic]:
-        """Yield the diagnostics of a condition of the part, in that field."""
+        """Yield the diagnostics of a condition of a task or group.
+
+        `field` is the path from the task or group to the condition, such as `.until[0]`.
+        """
         which = f"a {condition.type} condition of {_name(part)}"
         yield from _check_bounds(item, condition, field, which)
         if self.known is not None and condition.object_id not in self.known:
@@ -86,7 +89,10 @@ def _check_bounds(
 def _check_state(
     item: CheckedItem, condition: Condition, field: str, which: str
 ) -> Iterator[Diagnostic]:
-    """Yield the missing and unused fields of a condition on the kind or age of a reading."""
+    """Yield diagnostics of missing and unused fields of a condition that has no bounds.
+
+    It tests the kind or the age of a reading. `which` names the condition in messages.
+    """
     if condition.type is ConditionType.STALE and condition.max_age is None:
         yield item.diagnostic(
             "il.stale-without-age",

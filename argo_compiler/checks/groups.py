@@ -191,9 +191,10 @@ def _check_unused(groups: tuple[Group, ...], subjects: Subjects) -> Iterator[Dia
 def _check_leaving_rounds(
     mission: Mission, nesting: GroupNesting, subjects: Subjects
 ) -> Iterator[Diagnostic]:
-    """Yield each transition that leaves a repeated group before the end of its round (G14).
+    """Yield a diagnostic for each transition that leaves a repeated group amid a round (G14).
 
-    Endless groups can't be left in another way, and groups of one round lose no rounds.
+    Endless groups are exempt, as they can't be left in another way, and so are groups of one round,
+    as no further rounds are lost.
     """
     position = task_positions(mission)
     for i, task in enumerate(mission.tasks):
@@ -223,9 +224,9 @@ def _check_leaving_rounds(
 
 
 def _stays_inside(task: Task, around: GroupRange, position: Mapping[str, int]) -> bool:
-    """Return True if the task's only transition stays in the range around it.
+    """Return True if the only transition of a task leads to a task in the range `around`.
 
-    It is a quick test: it returns False for any task with more than one transition.
+    This is a quick test: it returns False for any task with more than one transition.
     """
     if len(task.transitions) != 1 or has_timing_or_branch(task):
         return False
@@ -234,7 +235,10 @@ def _stays_inside(task: Task, around: GroupRange, position: Mapping[str, int]) -
 
 
 def _targets_by_field(task: Task) -> Iterator[tuple[str | None, str]]:
-    """Yield field and target of each transition; the field is None for the unconditional one."""
+    """Yield the field and the target of each transition, also of those after failures.
+
+    The field is a path within the task, or None for the unconditional transition.
+    """
     for k, transition in enumerate(task.transitions):
         yield f".transitions[{k}].target" if transition.conditions else None, transition.target
     for field, target in failure_targets(task).items():
@@ -248,10 +252,11 @@ def _is_endless(group: Group) -> bool:
 def _check_endless(
     mission: Mission, nesting: GroupNesting, subjects: Subjects
 ) -> Iterator[Diagnostic]:
-    """Yield endless groups that no transition leaves, and no time-out of a group around them.
+    """Yield a diagnostic for each endless group that no transition or outer time-out can end.
 
-    A transition leaves a group if its target lies outside the group's range. So the lowest and the
-    highest target of all members decide; they are collected from the innermost groups outward.
+    A transition leaves a group if the position of its target lies outside the group's range. So the
+    lowest and the highest target position of all tasks of the group decide; they are collected from
+    the innermost groups outward. An outer time-out is that of a group around the endless one.
     """
     if not any(_is_endless(r.group) for r in nesting.ranges):
         return
@@ -278,10 +283,11 @@ def _check_endless(
 
 
 def _target_bounds(mission: Mission, nesting: GroupNesting) -> tuple[list[int], list[int]]:
-    """Return, for each group, the lowest and the highest target of its own tasks.
+    """Return, for each group, the lowest and the highest target position of its own tasks.
 
-    Own tasks are those of which it is the innermost group. The end of the mission counts as a
-    target behind the last task.
+    A group's own tasks are those of which it is the innermost group. The first list has the lowest
+    positions, the second the highest ones; without own tasks they are the end and -1. The end of
+    the mission counts as a target behind the last task.
     """
     position = task_positions(mission)
     end = len(mission.tasks)
@@ -304,8 +310,8 @@ def _target_bounds(mission: Mission, nesting: GroupNesting) -> tuple[list[int], 
 def _can_continue(nesting: GroupNesting, task: int) -> bool:
     """Return True if the unconditional transition of a task can ever be taken.
 
-    It can't if an endless group ends with the task, unless a group further out that ends there too
-    has a time-out.
+    `task` is a position. The transition can't be taken if an endless group ends with the task,
+    unless a group around that one ends with the task too and has a time-out.
     """
     for i in reversed(nesting.ending[task]):
         if nesting.ranges[i].group.ends_at_once:

@@ -19,7 +19,7 @@ _SHOWN = 8  # tasks of a cycle that a message names
 
 
 def check_instant_loops(mission: Mission) -> Iterator[Diagnostic]:
-    """Yield a diagnostic for a cycle of tasks each of which may end as soon as it is entered."""
+    """Yield one diagnostic if there is a cycle of tasks that may all end as soon as entered."""
     instant = {
         task.name
         for task in mission.tasks
@@ -67,7 +67,7 @@ def _may_be_missed(task: Task) -> bool:
 
 
 def _instant_successors(task: Task) -> Iterator[str]:
-    """Yield the tasks that may follow one that took no time."""
+    """Yield the names of the tasks that may follow `task` if it took no time."""
     continues = _ends_at_once(task)
     fails = _fails_at_once(task)
     if _may_be_missed(task) and task.window is not None:
@@ -84,7 +84,11 @@ def _instant_successors(task: Task) -> Iterator[str]:
 
 
 def _unlimited_groups(mission: Mission) -> Iterator[GroupRange]:
-    """Yield the groups whose rounds may follow each other at once, without limit or too often."""
+    """Yield the groups whose rounds may follow each other at once too often.
+
+    Too often is without limit, or more than MOST_ROUNDS times, multiplied by the rounds of the
+    groups around.
+    """
     around: list[tuple[GroupRange, int]] = []
     for inner in group_ranges(mission):
         while around and around[-1][0].last < inner.first:

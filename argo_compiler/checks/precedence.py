@@ -16,7 +16,11 @@ _BATCH_SIZE = 4096
 
 
 def check_precedence(mission: Mission) -> Iterator[Diagnostic]:
-    """Yield the diagnostics of the pairs, and of the order of the tasks by them."""
+    """Yield the diagnostics of a mission's precedences, the pairs in `before`.
+
+    They name unknown tasks, pairs that contradict each other, and pairs that an execution path may
+    violate.
+    """
     if not mission.before:
         return
     names = {task.name for task in mission.tasks}
@@ -45,7 +49,7 @@ def check_precedence(mission: Mission) -> Iterator[Diagnostic]:
 def _find_cycle(pairs: Iterable[tuple[str, str]]) -> list[str]:
     """Return a cycle of tasks, each of which must come before the next, or an empty list.
 
-    The first task is repeated at the end.
+    The first task of the cycle is repeated at its end.
     """
     before: dict[str, list[str]] = {}
     for first, second in pairs:
@@ -101,7 +105,11 @@ class _TaskGraph:
                 self.component_of[node] = number
 
     def violated(self, pairs: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
-        """Yield the pairs whose second task can be reached while the first one is still ahead."""
+        """Yield the pairs whose second task can be reached before the first one.
+
+        A pair is violated if the first task can follow the second one, unless both lie on a cycle
+        and the second one can be reached only through the first.
+        """
         nodes = [(self.position[first], self.position[second]) for first, second in pairs]
         nodes = [(a, b) for a, b in nodes if self.reached[a] and self.reached[b]]
         apart = [(a, b) for a, b in nodes if self.component_of[a] != self.component_of[b]]
@@ -124,16 +132,16 @@ class _TaskGraph:
             )
 
     def always_passes(self, passed: str, before: str) -> bool:
-        """Return True if all paths from the start to the task `before` pass the task `passed`."""
+        """Return True if all paths from the mission's start to task `before` pass task `passed`."""
         return self.position[before] not in self._reached_without(
             self.position[passed], everywhere=True
         )
 
     def _reached_without(self, left_out: int, everywhere: bool = False) -> set[int]:
-        """Return the nodes that a path reaches without passing `left_out`.
+        """Return the nodes that can be reached from the mission's start without `left_out`.
 
-        It searches the whole graph if `everywhere` is set, and otherwise only the strongly
-        connected component of `left_out`.
+        The method searches the whole graph if `everywhere` is set, and otherwise only the strongly
+        connected component of `left_out`, from the nodes at which it is entered.
         """
         own = self.component_of[left_out]
         inside = set(range(len(self.names))) if everywhere else set(self.components[own])
@@ -149,7 +157,7 @@ class _TaskGraph:
 
     @cached_property
     def _entries(self) -> list[list[int]]:
-        """The nodes of each component to which transitions from other components lead."""
+        """For each component, its nodes to which transitions from other components lead."""
         entries: list[list[int]] = [[] for _ in self.components]
         for node, following in enumerate(self.following):
             if self.reached[node]:
@@ -159,9 +167,10 @@ class _TaskGraph:
         return entries
 
     def _ahead(self, bit: dict[int, int]) -> list[int]:
-        """Return, for each component, the bits of the nodes that can be reached from it.
+        """Return, for each component, a bit set of the nodes that can be reached from it.
 
-        The nodes of the component itself are included.
+        `bit` has the bit of each node of interest; other nodes have none. The nodes of the
+        component itself are included.
         """
         ahead = [0] * len(self.components)
         for number, component in enumerate(self.components):  # successors come first

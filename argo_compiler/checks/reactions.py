@@ -63,9 +63,9 @@ def _check_poses(item: CheckedItem, reaction: Reaction, mission: Mission) -> Ite
 def _check_rank(
     item: CheckedItem, reaction: Reaction, ranked: dict[tuple[int, int], Reaction]
 ) -> Iterator[Diagnostic]:
-    """Yield a reaction of the same rank as a previous one, as one would wait for the other.
+    """Yield a diagnostic if a previous reaction has the same rank: one would wait for the other.
 
-    `ranked` has the first reaction of each rank among the previous ones.
+    `ranked` has, by rank, the first of the previous reactions in the mission's list.
     """
     other = ranked.get(reaction.rank)
     if (

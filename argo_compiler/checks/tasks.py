@@ -125,7 +125,10 @@ class TaskChecks:
                 yield self._target_diagnostic(item, task, target, f".{field}")
 
     def _check_branching(self, item: CheckedItem, task: Task) -> Iterator[Diagnostic]:
-        """Yield the diagnostics of a task's transitions, unless there is one unconditional one."""
+        """Yield the diagnostics of a task's transitions.
+
+        The caller itself checks the usual case, a single unconditional transition.
+        """
         unconditional = 0
         for k, transition in enumerate(task.transitions):
             if transition.target not in self.targets:

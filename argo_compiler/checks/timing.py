@@ -28,7 +28,10 @@ _DEFAULTS = {field: getattr(_PLAIN, field) for field in _USED_BY}
 
 
 def has_timing_or_branch(task: Task) -> bool:
-    """Return True if a task has a field that this module checks; most tasks have none."""
+    """Return True if a task has a wait, window or reading limit, or a branch after its failure.
+
+    Most tasks have none of these, and need fewer checks.
+    """
     return (
         task.wait is not None
         or task.window is not None
@@ -39,7 +42,7 @@ def has_timing_or_branch(task: Task) -> bool:
 
 
 def check_unused_fields(item: CheckedItem, task: Task) -> Iterator[Diagnostic]:
-    """Yield the fields of a task that have no effect on its action."""
+    """Yield a diagnostic for each set field that has no effect on the action of the task."""
     for field, actions in _USED_BY.items():
         if task.action not in actions and getattr(task, field) != _DEFAULTS[field]:
             yield item.diagnostic(
@@ -51,7 +54,7 @@ def check_unused_fields(item: CheckedItem, task: Task) -> Iterator[Diagnostic]:
 
 
 def check_wait(item: CheckedItem, task: Task) -> Iterator[Diagnostic]:
-    """Yield the diagnostics of a WAIT's duration, apart from its conditions."""
+    """Yield the diagnostics of the wait rule of a WAIT task, apart from its conditions."""
     rule = task.wait
     waits_for_something = rule is not None and (rule.event is not None or bool(rule.conditions))
     if rule is None or (rule.duration is None) == (not waits_for_something):
@@ -87,7 +90,7 @@ def check_wait(item: CheckedItem, task: Task) -> Iterator[Diagnostic]:
 def check_failure(item: CheckedItem, task: Task) -> Iterator[Diagnostic]:
     """Yield a diagnostic if failure policy and failure target do not fit together.
 
-    Whether the target exists is checked elsewhere.
+    Whether a task of the target's name exists is checked in `tasks.py`.
     """
     branches = task.on_failure is OnFailure.BRANCH
     if branches and task.failure_target is None:

@@ -65,7 +65,7 @@ def diagnostic_of(
     severity: Severity | None = None,
     choice: RemedyChoice | None = None,
 ) -> Diagnostic:
-    """Return a diagnostic; without `severity` it has that of its code."""
+    """Return a diagnostic; without `severity` it has the severity of its code in `CODES`."""
     return Diagnostic(
         code=code,
         severity=severity or CODES[code].severity,
@@ -105,7 +105,10 @@ def _sort_key(diagnostic: Diagnostic) -> tuple[bool, int, int, int, str]:
 def with_excerpts(
     diagnostics: Iterable[Diagnostic], lines: Sequence[str]
 ) -> tuple[Diagnostic, ...]:
-    """Return the diagnostics with the source lines of their spans as excerpts."""
+    """Return the diagnostics with the source lines of their spans as excerpts.
+
+    `lines` are all lines of the source. A line longer than MAX_EXCERPT gives no excerpt.
+    """
 
     def with_excerpt(diagnostic: Diagnostic) -> Diagnostic:
         span = diagnostic.span
@@ -124,7 +127,7 @@ def count(diagnostics: Iterable[Diagnostic], severity: Severity) -> int:
 
 
 def severity_counts_text(diagnostics: Iterable[Diagnostic]) -> str:
-    """Return the numbers of diagnostics by severity, such as `2 errors, 5 warnings`."""
+    """Return the numbers of diagnostics by severity as text, such as `2 errors, 5 warnings`."""
     diagnostics = tuple(diagnostics)
     counts = ((count(diagnostics, severity), severity) for severity in Severity)
     parts = (f"{number} {severity}{'' if number == 1 else 's'}" for number, severity in counts)

@@ -16,7 +16,7 @@ SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 
 
 def to_sarif(diagnostics: Sequence[Diagnostic], source_name: str) -> str:
-    """Return a SARIF log of one run with the diagnostics about one file, as JSON text."""
+    """Return a SARIF log with the diagnostics about one file, as JSON text."""
     codes = sorted({diagnostic.code for diagnostic in diagnostics})
     log = {
         "$schema": SCHEMA,
@@ -98,7 +98,10 @@ def _location(diagnostic: Diagnostic, uri: str) -> dict[str, Any]:
 
 
 def _fingerprint(diagnostic: Diagnostic) -> str:
-    """Return a hash that does not change when lines before the diagnostic are added or removed."""
+    """Return a hash by which a code host recognises the diagnostic after other lines changed.
+
+    It depends on the code and the source line, or on the message if there is no excerpt.
+    """
     line = " ".join((diagnostic.excerpt or diagnostic.message).split())
     return hashlib.sha256(f"{diagnostic.code}\n{line}".encode("utf-8", "replace")).hexdigest()[:16]
 

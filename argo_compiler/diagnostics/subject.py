@@ -29,7 +29,7 @@ SubjectPath = tuple[str | int | NamedItem, ...]
 
 
 def subject_of(field: str, name: str, rest: str = "") -> str:
-    """Return the path of the item of this name in a list, `tasks['A']`, followed by `rest`."""
+    """Return the path of a named item in the list `field`, `tasks['A']`, followed by `rest`."""
     return f"{field}['{_CONTROL.sub(_escaped, name)}']{rest}"
 
 

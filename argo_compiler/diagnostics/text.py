@@ -10,7 +10,7 @@ _INDENT = "    "
 
 
 def to_text(diagnostics: Sequence[Diagnostic], source_name: str) -> str:
-    """Return all diagnostics with marked source lines, and their numbers.
+    """Return all diagnostics as text with marked source lines, and their numbers by severity.
 
     If there are errors, a warning takes only one line, so that the errors are seen first. A note
     always takes one line.
@@ -60,7 +60,7 @@ def _printable(text: str) -> str:
 
 
 def _width(text: str) -> int:
-    """Return the terminal columns of the text: two for wide characters, none for marks."""
+    """Return the terminal columns of a text: 2 for a wide character, 0 for a combining mark."""
     return sum(
         0
         if unicodedata.category(c) in {"Mn", "Me"}

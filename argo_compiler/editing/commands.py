@@ -47,9 +47,10 @@ class EditCommand(Model):
     kind: str
 
     def given_fields(self) -> dict[str, Any]:
-        """Return the fields that the edit sets.
+        """Return the fields that the edit sets, by name.
 
-        For each other field the function's default applies, or the mission's value stays.
+        For each other field the default of the function's parameter applies, or the mission's value
+        stays.
         """
         return {name: getattr(self, name) for name in self.model_fields_set if name != "kind"}
 

@@ -63,10 +63,11 @@ def edit_result(
     renamed_tasks: Mapping[str, str] | None = None,
     renamed_groups: Mapping[str, str] | None = None,
 ) -> Edited:
-    """Return `after` with all differences from `before` that were not requested.
+    """Return the mission `after` an edit, and its consequences: what else differs from `before`.
 
-    `requested` are the subjects whose change was requested, with all their parts; `renamed_tasks`
-    and `renamed_groups` map former names to new names. Takes linear time.
+    `requested` are the subjects (paths of parts of the mission) whose change was requested, with
+    all their parts: such a change is no consequence. `renamed_tasks` and `renamed_groups` map
+    former names to new names. Takes linear time.
 
     Raises EditConflict or EditInvalid if `check` finds errors in `after` that `before` does not
     have: EditInvalid if all of them are errors in every mission.
@@ -89,7 +90,8 @@ def edit_result(
 def new_errors(before: Mission, after: Mission) -> list[Diagnostic]:
     """Return the errors of `after` whose codes occur there more often than in `before`.
 
-    If some of them have a subject that had no error of this code before, only these are returned.
+    If the subject (part of the mission) of some of them had no error of the same code before, only
+    these are returned.
     """
     if not before.tasks:
         # `check` examines nothing else in a mission without tasks.

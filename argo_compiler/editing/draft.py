@@ -125,13 +125,13 @@ class MissionDraft:
         self.tasks.remove(entry)
 
     def move(self, entry: DraftTask, anchor: DraftTask | None, into: str | None) -> None:
-        """Move a task behind the anchor, or to the start if it is None.
+        """Move a task behind another one, the anchor; to the start of the list if that is None.
 
-        The effects on groups are those of `remove` and `insert`. If the task was the last one of a
-        group, the group's new last task takes over its target; if the task then follows the group
-        directly, it keeps the target itself.
-        Raises EditNotFound, or EditConflict if the task can't be inserted there or a group that it
-        ends can't end with its neighbour.
+        The effects on groups are those of `remove` and `insert`; `into` is as there. If the task
+        was the last one of a group, the group's new last task takes over the target of its
+        unconditional transition; but if the task then follows the group directly, the task keeps
+        that target. Raises EditNotFound, or EditConflict if the task can't be inserted there or a
+        group that it ends can't end with its neighbour.
         """
         if into is not None and _is_only_task(entry, self.find_group(into)):
             raise conflict(
@@ -158,20 +158,20 @@ class MissionDraft:
         self.insert(entry, anchor, into)
 
     def insert(self, entry: DraftTask, anchor: DraftTask | None, into: str | None) -> None:
-        """Insert a task behind the anchor, or at the start if it is None.
+        """Insert a task behind another one, the anchor; at the start of the list if that is None.
 
-        At a group's border the task is outside of the group; with `into` it is in that group. If it
+        At a group's border the task is outside of the group, or inside if `into` names it. If it
         becomes the group's last task, it takes over the target of the former last task, unless it
-        leads elsewhere itself; in both cases the former last task then leads to it.
-        Raises EditNotFound if there is no such group, EditConflict if the group does not extend to
-        this position.
+        leads elsewhere itself; in both cases the former last task then leads to the new one. Raises
+        EditNotFound if there is no such group, EditConflict if the group does not extend to this
+        position.
         """
         self.tasks.insert_after(anchor, entry)
         if into is not None:
             self._add_to_groups(entry, into)
 
     def rename(self, entry: DraftTask, name: str) -> None:
-        """Rename a task wherever it is named."""
+        """Rename a task; `mission` then renames it wherever the mission names it."""
         self.new_names[entry.task.name] = name
         entry.task = entry.task.model_copy(update={"name": name})
 
@@ -227,7 +227,10 @@ class MissionDraft:
         return self._show_groups(mission, entries) if self.names_match_nesting else mission
 
     def _precedences(self, names: set[str]) -> tuple[tuple[str, str], ...]:
-        """Return the mission's precedences with new names and without removed tasks."""
+        """Return the precedences of the mission with new names and without removed tasks.
+
+        `names` are the names of the tasks that the edited mission has.
+        """
         pairs = [(self._new_name(a), self._new_name(b)) for a, b in self.original.before]
         removed = {task.name for task in self.original.tasks} - names - set(self.new_names)
         return tuple(pair for pair in pairs if not removed.intersection(pair))
@@ -243,7 +246,10 @@ class MissionDraft:
         return g.group.model_copy(update={"start": start, "end": end})
 
     def _show_groups(self, mission: Mission, entries: list[DraftTask]) -> Mission:
-        """Return the mission with each task displayed in the group that is around it now."""
+        """Return the mission with the `group` field of each task set to the group around it now.
+
+        Only tasks that were displayed in the group around them before are changed.
+        """
         tasks = [
             task.model_copy(update={"group": group})
             if entry.shown_in_group and task.group != group
@@ -268,7 +274,7 @@ def _is_only_task(entry: DraftTask, g: DraftGroup) -> bool:
 
 
 def _replace_group_end(last: DraftTask, entry: DraftTask) -> None:
-    """Make `entry`, which follows the last task of a group, its new last task."""
+    """Make `entry`, which follows `last`, the last task of a group, the group's new last task."""
     leads_there = default_target(last.task) == entry.task.name
     if not last.leads_to_next and entry.leads_to_next and not leads_there:
         _take_over_target(last, entry)
@@ -276,7 +282,7 @@ def _replace_group_end(last: DraftTask, entry: DraftTask) -> None:
 
 
 def _take_over_target(last: DraftTask, entry: DraftTask) -> None:
-    """Give `entry`, the new last task of a group, the target of the former last task."""
+    """Give `entry`, a group's new last task, the unconditional target of the former one, `last`."""
     entry.task = with_default_target(entry.task, default_target(last.task))
     entry.leads_to_next = False
     last.leads_to_next = True
@@ -300,7 +306,7 @@ def _group_end_conflict(
 
 
 def following_names(tasks: tuple[Task, ...]) -> list[str | None]:
-    """Return, for each task, the name of the next task in the list that is not START."""
+    """Return, for each task, the name of the next task in the list that is not START, or None."""
     following: list[str | None] = []
     name = None
     for task in reversed(tasks):

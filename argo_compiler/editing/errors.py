@@ -39,7 +39,10 @@ class EditConflict(EditError, Conflict):
 
 
 def unknown(kind: str, name: str, known: Collection[str]) -> EditNotFound:
-    """Return the error of an edit that names a task or group that does not exist."""
+    """Return the error of an edit that names a task or group that does not exist.
+
+    `kind` is `task` or `group`; `known` are the names that exist, for the hint.
+    """
     near = nearest_name(name, known)
     return EditNotFound(
         [
@@ -73,7 +76,10 @@ def require_unique(name: str, positions: Sequence[int], known: Collection[str]) 
 
 
 def name_taken(kind: str, name: str, subject: str) -> EditConflict:
-    """Return the error of a name that another task or group already has."""
+    """Return the error of a name that another task or group already has.
+
+    `kind` is `task` or `group`; `subject` is the path of the one that has the name.
+    """
     hint = f"choose another name, or rename the {kind} that has it"
     message = f"a {kind} '{name}' already exists"
     return conflict("edit.name-taken", message, hint, subject)
@@ -90,14 +96,14 @@ def invalid(code: str, message: str, hint: str) -> EditInvalid:
 
 
 def require_kind(value: object, kind: type, what: str) -> None:
-    """Raise EditInvalid if a value is not of the given type."""
+    """Raise EditInvalid if a value is not of the type `kind`; messages call the value `what`."""
     if not isinstance(value, kind):
         message = f"{what} must be a {kind.__name__}, not {reprlib.repr(value)}"
         raise invalid("edit.value", message, f"pass a {kind.__name__} instead")
 
 
 def require_name(thing: str, name: object) -> None:
-    """Raise EditInvalid if a value can't be the name of a task or group."""
+    """Raise EditInvalid if a value can't be the name of a task or group, called `thing`."""
     if not isinstance(name, str):
         message, hint = (
             f"{thing} needs a text as its name, not {reprlib.repr(name)}",

@@ -40,11 +40,11 @@ class GroupFields(TypedDict, total=False):
 
 
 def wrap_tasks(mission: Mission, group: Group) -> Edited:
-    """Add a group around the tasks from its start to its end.
+    """Add a group around the tasks from the group's start to its end.
 
-    Groups inside it get its name as a prefix; if it is inside another group, it gets that group's
-    name as a prefix. If a group has the same tasks, the new group becomes the outer one, unless its
-    name starts with that group's name.
+    Groups inside the new group get its name as a prefix; if it is inside another group, it gets
+    that group's name as a prefix. If a group has the same tasks, the new group becomes the outer
+    one, unless its name starts with the other group's name.
 
     Raises:
         EditNotFound: its start or end is not a task.
@@ -166,7 +166,7 @@ class _TaskRanges:
         self.position = draft.entry_positions()
 
     def relation(self, g: DraftGroup, new: DraftGroup) -> str:
-        """Return how `g` relates to `new`: "inside", "around", "apart" or "same" (the same tasks).
+        """Return how group `g` lies to `new`: "inside", "around", "apart" or "same" (same tasks).
 
         Raises EditConflict if they overlap in part.
         """
@@ -183,7 +183,11 @@ class _TaskRanges:
         raise _overlap(g.group, new.group)
 
     def require_end_is_reached(self, former_end: DraftTask, changed: DraftGroup) -> None:
-        """Raise EditConflict if the former last task leads out of the group before its new end."""
+        """Raise EditConflict if a round would not get from the former last task to the new end.
+
+        That is so if the unconditional transition of `former_end` does not lead to a later task of
+        the changed group.
+        """
         first, last = self._range(changed)
         at = self.position[id(former_end)]
         if not first <= at < last:
@@ -219,7 +223,10 @@ def _overlap(other: Group, group: Group) -> Exception:
 
 
 def _require_nesting_stays(g: DraftGroup, changed: DraftGroup, relation: str) -> None:
-    """Raise EditConflict if the relation of the two groups contradicts their names."""
+    """Raise EditConflict if the position of `g` to `changed` contradicts their names.
+
+    `relation` is the result of `_TaskRanges.relation`. A group's name says which group it is in.
+    """
     name, own = g.group.name, changed.group.name
     wanted: tuple[str, ...]
     if name.startswith(f"{own}/"):
@@ -270,7 +277,11 @@ def _require_free(mission: Mission, names: Iterable[str], without: Iterable[str]
 
 
 def _with_renamed_groups(draft: MissionDraft, renamed: Mapping[str, str], requested: str) -> Edited:
-    """Return the result of an edit with the groups' new names wherever groups are named."""
+    """Return the result of an edit after groups are renamed wherever the draft names them.
+
+    `renamed` maps former names to new names; `requested` is the name of the group that the edit is
+    about, whose change is no consequence.
+    """
     for g in draft.groups:
         name = renamed.get(g.group.name)
         if name is not None:

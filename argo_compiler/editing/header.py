@@ -52,7 +52,10 @@ def set_header(mission: Mission, **fields: Unpack[HeaderFields]) -> Edited:
 
 
 def require_known_fields(given: Iterable[str], known: Collection[str], owner: str) -> None:
-    """Raise EditInvalid if a given field is not one of the fields that an edit can change."""
+    """Raise EditInvalid if a given field is not a `known` one, which the edit can change.
+
+    `owner` is what has the fields, for the message.
+    """
     unknown_names = [name for name in given if name not in known]
     if unknown_names:
         hint = f"the fields that can be changed: {', '.join(known)}"
@@ -65,7 +68,7 @@ def require_known_fields(given: Iterable[str], known: Collection[str], owner: st
 
 
 def invalid_value_diagnostics(error: ValidationError) -> list[Diagnostic]:
-    """Return the diagnostics of values that the model rejected."""
+    """Return a diagnostic for each value that pydantic's model of the data has rejected."""
     return [
         diagnostic_of(
             "edit.value",

@@ -18,11 +18,11 @@ _NAMES = 3
 
 
 def remove_task(mission: Mission, name: str) -> Edited:
-    """Remove a task and lead what led to it to its successor.
+    """Remove a task and lead what led to the task to its successor.
 
-    The successor is the target of its unconditional transition; its other transitions are removed
-    with it. A group that started or ended with it now starts or ends with its neighbour; a group of
-    this task alone is removed.
+    The successor is the target of the task's unconditional transition; its other transitions are
+    removed with it. A group that started or ended with it now starts or ends with its neighbour; a
+    group of this task alone is removed.
 
     Raises:
         EditNotFound: there is no such task.
@@ -92,7 +92,8 @@ class _Removal:
     def redirect(self) -> str | None:
         """Redirect all that leads to the task to its successor, and return the successor's name.
 
-        Returns None if the mission ends after the task. Raises EditConflict.
+        Returns None if the mission ends after the task. Raises EditConflict if a run of the mission
+        would differ by more than the task.
         """
         self._require_round_ends()
         self._require_round_starts()
@@ -125,7 +126,11 @@ class _Removal:
         return None if following is None else following.task.name
 
     def _end_mission_after(self, other: DraftTask) -> None:
-        """Let the mission end after a task that led to the removed one. Raises EditConflict."""
+        """Let the mission end after `other`, which led to the removed task.
+
+        Raises EditConflict if a condition or a failure of `other` would have to end the mission,
+        which is not possible.
+        """
         task = other.task
         conditional = [transition for transition in task.transitions if transition.conditions]
         while conditional and conditional[-1].target == self.name:
@@ -210,7 +215,7 @@ class _Removal:
                 )
 
     def _require_same_groups(self) -> None:
-        """Raise EditConflict if a task leaves a group and enters it again through this task."""
+        """Raise EditConflict if a task leaves a group and, by the removed task, enters it again."""
         target = None if self.successor is None else self.draft.find(self.successor)
         if target is None:
             return
@@ -229,7 +234,10 @@ class _Removal:
                     )
 
     def _is_jump_in_round(self, other: DraftTask, g: DraftGroup) -> bool:
-        """Return True if a transition to the task can be taken without ending the group's round."""
+        """Return True if `other` leads to the removed task other than by ending the group's round.
+
+        That is, by a condition or a failure, or because `other` is not the last task of the group.
+        """
         return self._branches_to_it(other.task) or any(
             transition.target == self.name and (transition.conditions or g.last is not other)
             for transition in other.task.transitions

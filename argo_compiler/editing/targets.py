@@ -6,12 +6,12 @@ from argo_compiler.il import Task, Transition
 
 
 def default_targets(task: Task) -> list[str]:
-    """Return the targets of the unconditional transitions: one, or none if the mission ends."""
+    """Return the targets of a task's unconditional transitions: a valid task has one or none."""
     return [transition.target for transition in task.transitions if not transition.conditions]
 
 
 def with_default_target(task: Task, target: str | None) -> Task:
-    """Return the task with an unconditional transition to the target; without one if it is None.
+    """Return the task with an unconditional transition to `target`, or without one for None.
 
     The transition keeps its position among the transitions; a new one comes last.
     """
@@ -30,7 +30,7 @@ def with_default_target(task: Task, target: str | None) -> Task:
 
 
 def retargeted(task: Task, new_names: Mapping[str, str]) -> Task:
-    """Return the task with each target replaced in its transitions and branches.
+    """Return the task with new names in the targets of its transitions and after failures.
 
     `new_names` maps former names to new names.
     """

@@ -98,7 +98,7 @@ class _Tree:
         self.objects.setdefault(object_id, len(self.objects) + 1)
 
     def text(self) -> str:
-        """Return the XML. Raises DiagnosticError if a behaviour tree can't express the mission."""
+        """Return the tree as XML. Raises DiagnosticError if a tree can't express the mission."""
         raise_refusals(self._refusals())
         with self.xml.nest_in("root", {"BTCPP_format": "4", "main_tree_to_execute": "Mission"}):
             with self.xml.nest_in("BehaviorTree", {"ID": "Mission"}):
@@ -170,7 +170,7 @@ class _Tree:
                 )
 
     def _mission(self) -> None:
-        """Write the nodes of the mission."""
+        """Write the nodes of the whole mission: groups, tasks, and the drive back to the dock."""
         xml = self.xml
         with xml.nest_in("Sequence", {"name": self.mission.designation or None}):
             self._script(self._initial_script())
@@ -234,7 +234,7 @@ class _Tree:
             self.xml.add("Sleep", {"name": task.name, "msec": _msec(task.wait.duration)})
 
     def _failure_statements(self, task: Task) -> list[str]:
-        """Return the changes of the blackboard when the task has failed with all retries."""
+        """Return the assignments to the blackboard after the task's last attempt has failed."""
         statements = [] if task.optional else ["outcome := 7"]
         if task.action is Action.MEASURE:
             k = self.objects[task.object_id or ""]
@@ -250,7 +250,7 @@ class _Tree:
         return [f"to := {self.end}", "outcome := 5"]
 
     def _attempts(self, task: Task) -> None:
-        """Write attempts until one succeeds; after a MEASURE, its reading is stored."""
+        """Write the attempts at a task until one succeeds; after a MEASURE, store its reading."""
         with self.xml.nest_in("Sequence"):
             if task.window is not None and task.window.earliest:
                 earliest = number_text(task.window.earliest)
@@ -298,10 +298,10 @@ class _Tree:
     def _decide(self, task: Task, ends_group: bool) -> None:
         """Write the tree's script that sets the blackboard entry `to`: the position to continue at.
 
-        It is that of a task or of the mission's end; 0 stands for what comes next in the tree. The
-        script evaluates the transitions from the last to the first, so that the first one whose
-        conditions are satisfied prevails. If there is none, `to` is the target of the unconditional
-        transition, or 0 if the task ends a group (`ends_group`).
+        The position is that of a task or of the mission's end; 0 stands for what comes next in the
+        tree. The script evaluates the transitions from the last to the first, so that the first one
+        whose conditions are satisfied prevails. If there is none, `to` is the target of the
+        unconditional transition, or 0 if the task ends a group (`ends_group`).
         """
         if _use_ages(_conditions(task)):
             self.xml.add("Clock", {"now": "{now}"})
@@ -363,10 +363,10 @@ class _Tree:
         self.group_numbers[group.name] = n
 
     def _close_group(self, r: GroupRange, end: Task | None) -> None:
-        """Write the end of a group's round.
+        """Write the nodes that end a group's round: another round, or what follows the group.
 
-        `end` is the task that ends the group if this is the outermost group that ends with that
-        task, else None.
+        `end` is the last task of the group if no group around it ends with that task too, and None
+        otherwise: what follows is decided only once, after the outermost of these groups.
         """
         xml, group = self.xml, r.group
         n = self.group_numbers[group.name]
@@ -419,7 +419,7 @@ def _conditions(task: Task) -> Iterator[Condition]:
 
 
 def _time_refusals(task: Task) -> Iterator[Diagnostic]:
-    """Yield a diagnostic for each time of a task that a behaviour tree can't express."""
+    """Yield a diagnostic for each wait, window or limit of a task that a tree can't express."""
     window, wait = task.window, task.wait
     if wait is not None and wait.duration is None:
         yield refusal(
@@ -491,5 +491,8 @@ def _is_timed(r: GroupRange) -> bool:
 
 
 def _is_interpreted(text: str) -> bool:
-    """Return True if a port would interpret the text instead of reading it as plain text."""
+    """Return True if a port of a tree's node would not read the text as plain text.
+
+    It takes `{x}` for an entry of the blackboard, `;` for a list, and `json:` for data.
+    """
     return text.startswith("json:") or any(character in text for character in "{};")

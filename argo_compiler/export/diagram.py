@@ -47,18 +47,21 @@ class Diagram:
         self.ids |= {c.id: f"g{i}" for i, c in enumerate(hfsm.composites)}
 
     def choice_id(self, id: str) -> str:
-        """Return the id of the choice at the end of a group's round: `r1` for `g1`."""
+        """Return the diagram's id of the choice at the end of a group's round: `r1` for `g1`.
+
+        `id` is the machine's id of the group.
+        """
         return self.ids[id].replace("g", "r")
 
     def target_id(self, id: str) -> str | None:
-        """Return the id of a transition's target state, or None for the mission's end."""
+        """Return the diagram's id of the machine's state `id`, or None for the mission's end."""
         return None if id == DONE else self.ids[id]
 
     def nested(self) -> Iterator[tuple[int, Leaf | Composite | None]]:
         """Yield all leaves and groups in order, each with the number of groups that contain it.
 
-        None instead of a leaf or group closes a group. Not recursive, as groups may be nested to
-        any depth.
+        None instead of a leaf or group marks the end of a group. This is not recursive, as groups
+        may be nested to any depth.
         """
         depth = 0
         pending: list[str | None] = list(reversed(self.hfsm.mission.children))
@@ -76,7 +79,7 @@ class Diagram:
                 pending += [None, *reversed(group.children)]
 
     def transition_arrows(self) -> Iterator[Arrow]:
-        """Yield all transitions: first those of the leaves, then those of the groups."""
+        """Yield all transitions as arrows: first those of the leaves, then those of the groups."""
         for leaf in self.hfsm.leaves:
             transitions = (*leaf.transitions, leaf.failure, leaf.missed)
             yield from (self._arrow(self.ids[leaf.id], t) for t in transitions if t)
@@ -105,7 +108,10 @@ class Diagram:
 
 
 def transition_label(transition: StateTransition, group: Composite | None = None) -> str:
-    """Return the reason for a transition as text; empty if it needs no reason."""
+    """Return the label of a transition's arrow: why it is taken; empty for the usual one.
+
+    `group` is the group that the transition belongs to; None if it belongs to a task.
+    """
     if transition.kind is TransitionKind.CONDITIONAL:
         return conditions_text(transition.conditions)
     if transition.kind is TransitionKind.FAILURE:

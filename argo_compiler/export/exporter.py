@@ -27,7 +27,7 @@ class Exporter:
 def refusal(
     code: str, message: str, hint: str | None = None, span: Span | None = None
 ) -> Diagnostic:
-    """Return the diagnostic for a part of the mission that the format can't express.
+    """Return the diagnostic for a part of the mission that an export format can't express.
 
     `code` is given without its prefix `export.`.
     """
@@ -37,7 +37,8 @@ def refusal(
 def battery_level_refusals(reactions: Iterable[Reaction]) -> Iterator[Diagnostic]:
     """Yield a refusal for each reaction that only reports a battery level.
 
-    For formats that have no place for the level: the robot would not know which one to report.
+    This is for formats that have no place for the level: the robot would not know at which charge
+    of its battery to report.
     """
     for reaction in reactions:
         if reaction.response is Response.REPORT and reaction.battery_below is not None:

@@ -126,11 +126,14 @@ class _Behavior:
         self.lines: list[str] = []
 
     def _label(self, id: str, name: str) -> str:
-        """Return a unique label without the characters that FlexBE's editor does not accept."""
+        """Return a state's label: its unique `id`, and its name in characters FlexBE accepts."""
         return f"{id} {_identifier(name)}".strip()
 
     def _ranges(self) -> dict[str, tuple[int, int]]:
-        """Return the numbers of the first and the last task of each state."""
+        """Return the numbers of the first and the last task in each state, by the state's id.
+
+        A task's state has one task; the state of a group or of the mission has those inside it.
+        """
         ranges = {id: (number, number) for id, number in self.numbers.items()}
         for composite in reversed(self.hfsm.composites):
             inside = [ranges[child] for child in composite.children if child != DONE]
@@ -138,12 +141,17 @@ class _Behavior:
         return ranges
 
     def _parts(self, composite: Composite) -> list[tuple[int, str]]:
-        """Return the first task's number and the label of each state of a machine, in order."""
+        """Return each direct child of a composite: the number of its first task, and its label."""
         children = (child for child in composite.children if child != DONE)
         return [(self.ranges[child][0], self.labels[child]) for child in children]
 
     def _outcome(self, machine: str, target: int | str) -> str:
-        """Return the outcome with which a state of the machine leads to the target."""
+        """Return the outcome with which a state inside a FlexBE machine leads towards the target.
+
+        `machine` is the id of the composite. `target` is as in the memory that the states share: a
+        task's number, minus a group's depth for the end of its round, or `end` or `aborted`. The
+        outcome is the label of the machine's child with the target, `round` or `left`.
+        """
         if isinstance(target, str):
             return "left"
         if target < 0:
@@ -282,7 +290,7 @@ class _Behavior:
         )
 
     def _action_state(self, leaf: Leaf) -> str:
-        """Return the call that makes the state for the action of a task."""
+        """Return the Python call, as source, that makes the FlexBE state for a task's action."""
         task = leaf.task
         arguments = (
             f"task={task.name!a}, pose={_pose(task)!r}, way={_travel_arguments(task)!a}, "

@@ -43,8 +43,9 @@ _NONE, _VALUE, _UNREADABLE, _FAILED = range(4)
 def to_scxml(mission: Mission, hfsm: Hfsm, timers: bool = False) -> str:
     """Return the machine as an SCXML document.
 
-    With `timers`, the engine's own clock sends the time-outs (`<send delay>`). Without, they come
-    from outside like all other events, so that any clock can drive the machine.
+    With `timers`, the engine that runs the chart sends the time-outs itself (`<send delay>`).
+    Without, the time-outs come from outside like all other events, so that any clock can drive the
+    machine.
     """
     start = start_task(mission)
     return _Document(hfsm, start, timers).text()
@@ -86,7 +87,10 @@ class _Document:
         return xml.text()
 
     def _mission_region(self) -> None:
-        """Write the mission's states. Not recursive, as groups may be nested to any depth."""
+        """Write the region `plan`, with the states of the mission's groups and tasks.
+
+        This is not recursive, as groups may be nested to any depth.
+        """
         xml = self.xml
         xml.open("state", {"id": "plan", "initial": "start", "argo:name": self.hfsm.mission.name})
         attributes = {} if self.start is None else task_attributes(self.start)
@@ -161,9 +165,9 @@ class _Document:
             assign(self.xml, f"entered_{n}", _clock(repeat))
 
     def _round_start(self, group: Composite) -> None:
-        """Write the transition that starts a planned round.
+        """Write the transition that starts a group's round at its planned time (`every`).
 
-        It enters all states inside the group anew, which sets their clocks.
+        The transition enters all states inside the group anew, which sets their clocks.
         """
         attributes = {
             "event": "timeout.round",
@@ -207,7 +211,7 @@ class _Document:
     # Tasks
 
     def _task_state(self, leaf: Leaf) -> None:
-        """Write the state of a task: `…_act` while its action is wanted, then `…_end` to decide.
+        """Write a task's state: `…_act` until its action or wait is over, then `…_end` to decide.
 
         `…_end` is active only for the moment in which the next transition is chosen.
 
@@ -268,7 +272,10 @@ class _Document:
                     start_timer(xml, kind)
 
     def _set_wait_deadlines(self, leaf: Leaf) -> None:
-        """Write the assignments of a WAIT's deadlines, which count from the entry of its state."""
+        """Write the assignments of a WAIT's deadlines, which count from the entry of its state.
+
+        For a task that is no WAIT, they clear the deadlines.
+        """
         xml, wait = self.xml, leaf.task.wait
         if wait is None:
             self._assign([("due_wait", "0"), ("due_limit", "0")])
@@ -343,9 +350,10 @@ class _Document:
     def _failure_transition(
         self, event: str, cond: str, leaf: Leaf, transition: StateTransition | None
     ) -> None:
-        """Write what happens when a task has failed with all retries.
+        """Write the transition of the chart for a task that has failed for good.
 
-        The machine takes `transition`, or if that is None the transitions after a success.
+        It occurs at `event` if `cond` is true. The machine takes `transition`, or if that is None
+        the transitions after a success.
         """
         xml, task = self.xml, leaf.task
         target = (
@@ -466,7 +474,7 @@ class _Document:
             cancel_timer(self.xml, "action")
 
     def _store_reading(self, k: int) -> None:
-        """Write the assignments that store a checkpoint's reading from the event's data."""
+        """Write the assignments that store checkpoint `k`'s reading from an event's data."""
         self._assign([(f"known_{k}", str(_UNREADABLE)), (f"time_{k}", "_event.data.time")])
         self._assign([(f"abnormal_{k}", "0"), ("look", "1")])
         with self.xml.nest_in("if", {"cond": "_event.data.value != null"}):
@@ -506,5 +514,5 @@ def _hard_deadline(task: Task) -> float | None:
 
 
 def _clock(repeat: RepeatRule) -> str:
-    """Return the variable with the clock of a group: with or without the time of interruptions."""
+    """Return the variable with a group's clock: `now`, or `clock`, which stops in interruptions."""
     return "now" if repeat.count_interruptions else "clock"

@@ -34,7 +34,7 @@ Assignments = Sequence[tuple[str, str | int]]
 
 
 def outcome_code(outcome: Outcome) -> int:
-    """Return the number of an outcome in the data."""
+    """Return the number that stands for an outcome in the chart's data."""
     return OUTCOMES.index(outcome) + 1
 
 
@@ -116,7 +116,7 @@ class ControlRegion:
         self.kinds = sorted({*self.reactions, *hold_ends})
 
     def write(self) -> None:
-        """Write the region."""
+        """Write the region `control` with its states and transitions."""
         xml = self.xml
         initial = "stopped" if self.supervised else "going"
         with xml.nest_in("state", {"id": "control", "initial": initial}):
@@ -204,7 +204,11 @@ class ControlRegion:
     # Rows
 
     def _row_transitions(self, stage: Stage, active: Reaction | None = None) -> None:
-        """Write the transitions of a state, from the rows of its stage."""
+        """Write the transitions of the open state, from the table's rows for its stage.
+
+        The table is that of interruptions (`argo_compiler.hfsm.interrupts`). `active` is the
+        reaction that the state belongs to; None outside of reactions.
+        """
         for trigger, guard in _SPONTANEOUS.items():
             for row, conds, _ in self._possible_rows(stage, trigger, active, None):
                 self._write_row(row, stage, None, _conjunction([guard, *conds]), active, None)
@@ -219,7 +223,12 @@ class ControlRegion:
     def _possible_rows(
         self, stage: Stage, trigger: Trigger, active: Reaction | None, kind: EventKind | None
     ) -> Iterator[tuple[InterruptRow, list[str], Reaction | None]]:
-        """Yield the rows that may be taken, each with its guards and the event's own reaction."""
+        """Yield the rows of the table that may be taken at a stage and trigger.
+
+        Each row comes with its guards that only the run decides, and with the reaction to the event
+        `kind`, or None. `active` is the active reaction. Rows after one that is always taken are
+        left out.
+        """
         own = None if kind is None else self.reactions.get(kind)
         for row in ROWS.get((stage, trigger), ()):
             static = [g for g in (*row.when, *row.unless) if g not in _DYNAMIC]
@@ -268,9 +277,9 @@ class ControlRegion:
             self._transition(row, stage, event, cond, target, active, own, kind)
 
     def _turn_guard(self, reaction: Reaction) -> str:
-        """Return the guard that a reaction waits, and that none of equal rank has waited longer.
+        """Return the guard that the reaction waits, and no other of equal rank has waited longer.
 
-        It does not name higher ranks, as their transitions come first.
+        The guard does not name reactions of higher ranks, as their transitions come first.
         """
         guards = [f"since_{reaction.event} != 0"]
         guards += (
@@ -398,6 +407,9 @@ def _events(own: Reaction | None, active: Reaction | None) -> dict[str, str]:
 
 
 def round_deadline(n: int, repeat: RepeatRule) -> str:
-    """Return the expression for the due time of a group's round, in s since the mission's start."""
+    """Return the expression for the time at which the present round of group `n` is due.
+
+    The time is in s since the mission's start.
+    """
     due = f"entered_{n} + (round_{n} - 1) * {number_text(repeat.every)}"
     return due if repeat.count_interruptions else f"{due} + lost"

@@ -76,7 +76,7 @@ class ChartIds:
         self.objects.setdefault(object_id, len(self.objects) + 1)
 
     def object_number(self, task: Task) -> int:
-        """Return the number of the object that the task measures, or 0 if it measures none."""
+        """Return the chart's number of the task's checkpoint, or 0 if it measures none."""
         if task.action is not Action.MEASURE or task.object_id is None:
             return 0
         return self.objects[task.object_id]
@@ -103,7 +103,7 @@ def assign(xml: XmlWriter, location: str, expr: str) -> None:
 
 
 def write_data_model(xml: XmlWriter, hfsm: Hfsm, ids: ChartIds) -> None:
-    """Write the data model with its initial values."""
+    """Write the variables of the chart with their initial values."""
     with xml.nest_in("datamodel"):
         for name in _NUMBERS:
             xml.add("data", {"id": name, "expr": "0"})
@@ -133,7 +133,10 @@ def write_data_model(xml: XmlWriter, hfsm: Hfsm, ids: ChartIds) -> None:
 
 
 def task_attributes(task: Task) -> Attributes:
-    """Return the attributes in Argo's namespace that a driver of the chart needs of a task."""
+    """Return the attributes of a task's state for the program that drives the chart.
+
+    They are in Argo's namespace, such as `argo:action`.
+    """
     joints, window = task.joint_states, task.window
     joint_states: Attributes = {}
     if joints is not None:
@@ -167,14 +170,15 @@ def _pose_attributes(pose: Pose | None) -> Attributes:
 def start_group_timer(xml: XmlWriter, n: int, counts_interruptions: bool) -> None:
     """Write the start of the engine's own timer for the time-out of group `n`.
 
-    It runs while the group is active and the mission is not interrupted.
+    The caller starts and cancels the timer so that it runs while the group is active and the
+    mission is not interrupted.
     """
     deadline = f"until_{n}" if counts_interruptions else f"until_{n} + lost"
     _send(xml, f"timeout.g{n}", f"timer_{n}", deadline)
 
 
 def start_timer(xml: XmlWriter, kind: str) -> None:
-    """Write the start of the engine's own timer for one of `DEADLINES`, if that one is set."""
+    """Write the start of the engine's own timer for a deadline of `DEADLINES`, if that is set."""
     with xml.nest_in("if", {"cond": f"due_{kind} != 0"}):
         _send(xml, f"timeout.{kind}", f"timer_{kind}", f"due_{kind}")
 

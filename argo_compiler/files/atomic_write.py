@@ -18,9 +18,9 @@ _MAX_LINKS = 40
 
 
 def is_stream(path: Path) -> bool:
-    """Return True if the path can only be written to, not replaced.
+    """Return True if a file at the path can only be written to, not replaced by another one.
 
-    True for a terminal, a pipe, a device, and a file descriptor that this process has open.
+    That is so for a terminal, a pipe, a device, and a file descriptor that this process has open.
     """
     absolute = path.absolute()
     if absolute in _STREAMS or absolute.parent in _OPEN_FILES:
@@ -54,10 +54,11 @@ def check_writable(file: Path) -> None:
 
 
 def write_atomically(path: Path, content: str | bytes) -> None:
-    """Write bytes, or text as UTF-8 with Unix line ends; on an error, the old file stays.
+    """Write bytes or text to a file; on an error, the old file stays.
 
-    The content is written to a draft on the same disk, which then replaces the file, so nobody ever
-    sees a part of it. A link stays a link. A stream such as a terminal is written to directly.
+    Text is written as UTF-8 with unchanged line ends. The content is written to a draft on the same
+    disk, which then replaces the file, so nobody ever sees a part of it. A symbolic link stays, and
+    the file that it leads to is replaced. A stream such as a terminal is written to directly.
     Raises OSError.
     """
     data = content.encode("utf-8") if isinstance(content, str) else content
@@ -69,8 +70,8 @@ def write_atomically(path: Path, content: str | bytes) -> None:
 def atomic_draft(path: Path) -> Iterator[Path]:
     """Yield the path of a draft, which replaces the file if the block ends without an error.
 
-    The draft has the file's name, in a folder of its own. For a stream, the path itself is yielded.
-    Raises OSError.
+    The caller creates the draft. It has the file's name and lies in a folder of its own. For a
+    stream (see `is_stream`), the path itself is yielded. Raises OSError.
     """
     if is_stream(path):
         yield path
@@ -112,7 +113,10 @@ def write_folder(folder: Path, files: Mapping[str, bytes]) -> None:
 
 
 def _swap(folder: Path, names: list[str], old: Path, new: Path) -> None:
-    """Move the old files out of the folder and the new ones in; undo all of it on an error."""
+    """Move files of the folder to `old` and those of `new` to the folder; undo that on an error.
+
+    `names` are the paths of the files, the same in all three folders.
+    """
     try:
         for name in reversed(names):
             if os.path.lexists(folder / name):
@@ -125,7 +129,7 @@ def _swap(folder: Path, names: list[str], old: Path, new: Path) -> None:
 
 
 def _undo_swap(folder: Path, names: list[str], old: Path, new: Path) -> None:
-    """Undo a swap; works from any point that the swap or an earlier undo has reached."""
+    """Undo `_swap` from any point that it, or an earlier undo, has reached."""
     for name in reversed(names):
         if os.path.lexists(folder / name) and not os.path.lexists(new / name):
             (folder / name).replace(new / name)
@@ -135,9 +139,10 @@ def _undo_swap(folder: Path, names: list[str], old: Path, new: Path) -> None:
 
 
 def _complete(action: Callable[[], None]) -> None:
-    """Run an action to its end, again after each interruption; then raise the last interruption.
+    """Call a function again after each interruption until it has ended; then raise the last one.
 
-    The action must be repeatable. An error (`Exception`) of it is raised at once.
+    An interruption is an exception such as KeyboardInterrupt. The function must be repeatable. If
+    it raises an error (`Exception`), that is raised at once.
     """
     interruption = None
     while True:
@@ -153,7 +158,7 @@ def _complete(action: Callable[[], None]) -> None:
 
 
 def _resolve_links(path: Path) -> Path:
-    """Return the path behind any links. Raises OSError if they form a loop, or are too many."""
+    """Return the path to which symbolic links lead. Raises OSError for a loop or too many links."""
     for _ in range(_MAX_LINKS):
         if not path.is_symlink():
             return path

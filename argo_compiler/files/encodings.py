@@ -25,9 +25,10 @@ def detect_encoding(content: bytes) -> str | None:
 
 
 def _unmarked_utf16(content: bytes) -> str | None:
-    """Return the kind of UTF-16 by its zero bytes, or None.
+    """Return the kind of UTF-16 of a text without a mark, or None if it is not UTF-16.
 
-    In UTF-16, every second byte of Latin text is zero, and no other byte.
+    It is found by the zero bytes: in UTF-16, nearly every second byte of Latin text is zero, and no
+    other byte.
     """
     if len(content) % 2:
         return None

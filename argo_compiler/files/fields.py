@@ -8,7 +8,10 @@ from argo_compiler.files.json_places import JsonPath
 
 
 def field_hint(model: type[Model], path: JsonPath) -> str:
-    """Return a hint for the unknown field at a path of a `model`."""
+    """Return a hint for a field that `model` does not have: a similar name, or to check it.
+
+    The path leads to the field in the JSON data of the model.
+    """
     names = [name for owner in _models_at(model, path[:-1]) for name in owner.model_fields]
     nearest = nearest_name(str(path[-1]), tuple(dict.fromkeys(names)))
     return f"is `{nearest}` meant?" if nearest else "check its spelling or remove it"
@@ -17,8 +20,8 @@ def field_hint(model: type[Model], path: JsonPath) -> str:
 def _models_at(model: type[Model], path: JsonPath) -> list[type[Model]]:
     """Return the models that the value at a path may have.
 
-    They are several if the type is a union. A step of the path may choose one of them by its
-    `kind`.
+    There are several if the type is a union. A step of the path may be the `kind` of one of them,
+    as in the paths of pydantic's errors, and then chooses that one.
     """
     models = [model]
     for step in path:

@@ -57,9 +57,9 @@ class JsonText:
         return self._lines[number] - 1 if number < len(self._lines) else len(self.text)
 
     def values(self) -> Iterator[JsonValue]:
-        """Yield all values in the order of their first characters.
+        """Yield all values, containers too, in the order of their first characters in the text.
 
-        Not recursive, so any depth of nesting is possible.
+        This is not recursive, so any depth of nesting is possible.
         """
         positions: list[
             int | None
@@ -105,7 +105,7 @@ class _Node:
 
 
 def find_places(text: JsonText, paths: Collection[JsonPath]) -> dict[JsonPath, Span]:
-    """Return the place of each path's value, including the value's key if it has one.
+    """Return, by path, the place in the text of the value there, including its key if it has one.
 
     The place of an object without a key is that of its first member, which shows more than a brace.
     If a path does not exist, the place is that of its longest existing part. Takes linear time.
@@ -151,7 +151,7 @@ def _place(text: JsonText, root: _Node, path: JsonPath) -> Span:
 
 
 def find_duplicate_keys(text: JsonText, limit: int) -> dict[JsonPath, Span]:
-    """Return the paths of keys that occur repeatedly in their object, with their first place.
+    """Return the paths of keys that occur repeatedly in their object, with the first key's place.
 
     At most `limit` paths are returned. `find_places` returns the last place of a key.
     """

@@ -29,7 +29,7 @@ _NEW_FIELDS = {
 
 
 def migrate(data: dict[str, Any]) -> tuple[dict[str, Any], int]:
-    """Return a mission's data marked as the current version, and the data's own version.
+    """Return the data of a mission marked as the current version, and the version they had.
 
     All fields of older versions exist in the current one. After the data have become a mission,
     `newer_fields` finds fields that the older version did not have, and `upgrade` restores the
@@ -42,7 +42,7 @@ def migrate(data: dict[str, Any]) -> tuple[dict[str, Any], int]:
 
 
 def newer_fields(mission: Mission, version: int) -> Iterator[tuple[JsonPath, str]]:
-    """Yield path and name of each field that is set but did not exist in the given version.
+    """Yield the path and the name of each field that is set but did not exist in `version`.
 
     This includes the `action` of WAIT tasks, with the name `WAIT`.
     """
@@ -71,11 +71,12 @@ def upgrade(mission: Mission, version: int) -> tuple[Mission, tuple[Diagnostic, 
 
 
 def _to_3(mission: Mission) -> tuple[Mission, tuple[Diagnostic, ...]]:
-    """Return the mission in version 3, and warnings.
+    """Return a mission of version 1 or 2 as one of version 3 that means the same, and warnings.
 
-    In version 3, a velocity applies to the path to its task, not to the path to the next one; the
-    poses of a MEASURE and of a RETURN reaction are used; and a reaction without a priority gets its
-    rank from its event.
+    New in version 3: a velocity applies to the path to its task, not to the path to the next one;
+    the poses of a MEASURE and of a RETURN reaction are used; and a reaction without a priority gets
+    its rank from its event. So velocities are moved, these poses are removed, and missing
+    priorities become 0.
     """
     warnings = tuple(_changes(mission))
     mission, differ = with_approach_velocities(mission)
@@ -98,7 +99,7 @@ def _to_3(mission: Mission) -> tuple[Mission, tuple[Diagnostic, ...]]:
 
 
 def _changes(mission: Mission) -> Iterator[Diagnostic]:
-    """Yield a warning for each part of an older mission whose meaning has changed."""
+    """Yield a warning for each part of an older mission that means something else now."""
     compared = {c.object_id for task in mission.tasks for t in task.transitions
                  for c in t.conditions}  # fmt: skip
     failing = [

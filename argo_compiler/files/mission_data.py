@@ -40,7 +40,7 @@ class UnplacedDiagnostic(NamedTuple):
 def unplaced(
     code: str, message: str, hint: str | None, path: JsonPath | None = None
 ) -> UnplacedDiagnostic:
-    """Return an error about the value at the path, or about the whole file if that is None."""
+    """Return an error about the value at the path; None stands for the whole file."""
     subject = None if path is None else format_path(path)
     return UnplacedDiagnostic(diagnostic_of(code, message, hint, subject), path)
 
@@ -81,7 +81,11 @@ def _validate_header(header: dict[str, Any]) -> tuple[Mission, list[UnplacedDiag
 def _validate_list(
     name: str, values: list[Any], max_faults: int
 ) -> tuple[tuple[Model, ...], list[UnplacedDiagnostic]]:
-    """Return the valid items of a list, and its errors; stop after `max_faults` errors."""
+    """Return the items of one of the mission's lists, and the errors in it.
+
+    `name` is that of the list. Items are missing if there are errors. The validation stops after
+    `max_faults` errors.
+    """
     items: list[Model] = []
     faults: list[UnplacedDiagnostic] = []
     for start, text in _portions(values):
@@ -98,9 +102,9 @@ def _validate_list(
 
 
 def _portions(values: list[Any]) -> Iterator[tuple[int, str]]:
-    """Yield JSON lists of the values, each with the position of its first value.
+    """Yield portions of the values as JSON lists, each after the position of its first value.
 
-    A list is not longer than MAX_ITEM, unless it has only one value.
+    A JSON list is not longer than MAX_ITEM characters, unless it has only one value.
     """
     texts: list[str] = []
     length = start = 0
@@ -127,8 +131,9 @@ def _too_large(part: str, path: JsonPath | None) -> UnplacedDiagnostic:
 def _faults(
     error: ValidationError, list_path: JsonPath, first: int
 ) -> Iterator[UnplacedDiagnostic]:
-    """Yield the errors in a portion of the list at `list_path`, which starts with item `first`.
+    """Yield pydantic's errors in a portion of a list of the mission, with paths in the mission.
 
+    `list_path` is the path of the list, and `first` the position of the portion's first item.
     `list_path` is empty for the mission without its lists.
     """
     for fault in error.errors(include_url=False, include_input=False)[:MAX_FAULTS]:

@@ -38,7 +38,10 @@ _Rows = tuple[tuple[int | None, ...], ...]
 
 
 def _model(data: type, **json_types: Any) -> type[BaseModel]:
-    """Return the model of a dataclass's JSON object; `json_types` are types that differ in JSON."""
+    """Return a pydantic model of the JSON object that a dataclass is written as.
+
+    `json_types` are the types of fields that differ in JSON from those of the dataclass.
+    """
     hints = {**get_type_hints(data), **json_types}
     defaults = {
         f.name: f.default_factory() if f.default_factory is not MISSING else f.default
@@ -82,7 +85,7 @@ def route_problem_text(problem: RouteProblem) -> str:
 
 
 def _json_value(value: Any) -> Any:
-    """Return a part of a problem as a value that JSON can represent."""
+    """Return the value of a problem's field as a value that JSON can represent."""
     if isinstance(value, np.ndarray):
         return [[None if time == NEVER else time for time in row] for row in value.tolist()]
     if isinstance(value, EnergyBudget):
@@ -128,7 +131,7 @@ def parse_route_problem(text: str, name: str) -> RouteProblem:
 
 
 def _fault_text(error: ValidationError, text: str) -> str:
-    """Return the first error with its place, such as `:3:7: visits[0].prize: …`."""
+    """Return the first error as text with line, column and path: `:3:7: visits[0].prize: …`."""
     first = error.errors(include_url=False)[0]
     path: JsonPath = first["loc"]
     owner = path[:-1] if first["type"] in {"missing", "extra_forbidden"} else path
@@ -183,6 +186,6 @@ def _matrix(rows: _Rows, name: str) -> NDArray[np.int64]:
 def route_suggestion_text(suggestion: RouteSuggestion) -> str:
     """Return a suggestion as JSON, with all its fields, also the history of the search.
 
-    The keys of the route's charges, which are positions, become strings.
+    The route's `charges` are a mapping by position in the route; in JSON these keys are strings.
     """
     return json.dumps(asdict(suggestion), ensure_ascii=False) + "\n"

@@ -33,7 +33,8 @@ ReadingTest = Callable[[CheckpointReading, float], bool]
 def reading_test(condition: Condition) -> ReadingTest:
     """Return a function that checks whether a reading satisfies the condition.
 
-    A checkpoint without a reading satisfies no condition; the caller checks that (C4, C7).
+    The function takes the reading and the present time (s). A checkpoint without a reading
+    satisfies no condition; the caller checks that (C4, C7).
     """
     max_age = condition.max_age
     match condition.type:
@@ -64,7 +65,10 @@ def reading_test(condition: Condition) -> ReadingTest:
 
 
 def value_test(condition: Condition) -> Callable[[float], bool]:
-    """Return a function that checks a value by a LESS, GREATER or WITHIN, without its `max_age`."""
+    """Return a function that compares a value with the bounds of a LESS, GREATER or WITHIN.
+
+    It does not check the age of the value (`max_age`).
+    """
     low, high = condition.param1, condition.param2
     if low is None:
         return lambda _: False

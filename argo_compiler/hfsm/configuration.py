@@ -84,15 +84,15 @@ class Configuration:
         return self.last_number
 
     def clock_at(self, now: float, group: GroupNode) -> float:
-        """Return the reading of a group's clock (s) at time `now`."""
+        """Return what a group's clock shows (s) at time `now`."""
         return self._clock_time(now, group) + self._clock_offset(group)
 
     def take_transition(
         self, transitions: tuple[CompiledTransition, ...], now: float
     ) -> CompiledTransition:
-        """Take the first transition that is possible, and return it.
+        """Take the first of these transitions that is possible at `now`, and return it.
 
-        If a transition completes a group's round, the group's own transitions are tried next.
+        If it completes a group's round, one of the group's own transitions is taken and returned.
         """
         if self.awaited_round is not None:
             self.start_round(now)
@@ -135,13 +135,16 @@ class Configuration:
         self._update_group_due(now)
 
     def advance_clocks(self, seconds: float, now: float) -> None:
-        """Advance the clocks of groups by the duration of a task done by hand."""
+        """Advance the clocks of groups by the duration (s) of a task done by hand.
+
+        Groups that count interruptions are not affected: their clocks have run meanwhile.
+        """
         if seconds:
             self.by_hand_s += seconds
             self._update_group_due(now)
 
     def set_reading(self, object_id: str, reading: CheckpointReading | None, now: float) -> None:
-        """Set a checkpoint's reading, or remove it if `reading` is None."""
+        """Set or (None) remove a checkpoint's reading, and let a WAIT check its conditions."""
         if reading is None:
             self.readings.pop(object_id, None)
         else:
@@ -149,17 +152,17 @@ class Configuration:
         self.reading_changed(now)
 
     def reading_changed(self, now: float) -> None:
-        """Let the active task, if it is a WAIT, check its conditions at `now`."""
+        """Let the active task, if it is a WAIT, check its conditions, as a reading has changed."""
         if self.visit.leaf is not None and self.visit.leaf.wait is not None:
             self.schedule_wait_check(now)
 
     def schedule_wait_check(self, now: float) -> None:
-        """Schedule a check of the WAIT's conditions, now or at the end of the interruption."""
+        """Schedule a check of the active WAIT's conditions at `now`, or after the interruption."""
         self.visit.check_at = now
         self.update_visit_due()
 
     def are_satisfied(self, guards: tuple[Guard, ...], now: float) -> bool:
-        """Return True if the readings satisfy all of the conditions."""
+        """Return True if the present readings satisfy all of the compiled conditions at `now`."""
         readings = self.readings
         for object_id, test in guards:
             reading = readings.get(object_id)
@@ -168,7 +171,7 @@ class Configuration:
         return True
 
     def start_round(self, now: float) -> None:
-        """Start the awaited round, and with it the present visit."""
+        """Start the awaited round of a group at `now`, and with it the present visit."""
         frame = self.awaited_round
         assert frame is not None
         self.awaited_round = None
@@ -180,7 +183,7 @@ class Configuration:
 
     @property
     def round_due(self) -> float:
-        """Time (s) at which the awaited round is due if no clock stops; infinite if none is."""
+        """Time (s) at which the awaited round is due if no clock stops; infinite without one."""
         frame = self.awaited_round
         return math.inf if frame is None else self._round_due(frame)
 
@@ -220,9 +223,11 @@ class Configuration:
     def _enter(
         self, leaf: LeafNode | None, kept_groups: int, domain: GroupNode | None, now: float
     ) -> None:
-        """Leave all groups but the first `kept_groups`, and enter the leaf.
+        """Leave all active groups but the outermost `kept_groups`, and enter the leaf.
 
-        `domain` is the last of the kept groups.
+        `domain` is the innermost of the kept groups; None if none is kept. The groups between it
+        and the leaf are entered with their first round. Without a leaf the mission's end is
+        entered.
         """
         self.last_number = number = self.last_number + 1
         visit = self.visit  # reused, which is faster than a new object
@@ -274,9 +279,9 @@ class Configuration:
                     self.group_due, self.due_group = at, frame.group
 
     def _clock_time(self, now: float, group: GroupNode) -> float:
-        """Return the time at which a group's clock is read.
+        """Return the executor's time (s) that a group's clock shows at `now`, without its offset.
 
-        This is the start of the interruption if the clock has stopped.
+        This is the start of the interruption if the group's clock has stopped, and `now` otherwise.
         """
         if self.interrupted_at is None or group.counts_interruptions:
             return now
@@ -287,5 +292,5 @@ class Configuration:
         return 0.0 if group.counts_interruptions else self.by_hand_s - self.interrupted_s
 
     def _duration_end(self, frame: Frame) -> float:
-        """Return the time (s) at which the group's duration ends if its clock stops no more."""
+        """Return the executor's time (s) at which a group's duration ends if its clock goes on."""
         return frame.entered + frame.group.duration - self._clock_offset(frame.group)

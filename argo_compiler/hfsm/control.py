@@ -45,7 +45,7 @@ class Control:
 
     @property
     def active(self) -> ReactionNode | None:
-        """The active reaction, or None."""
+        """The active reaction; None if no reaction is active."""
         active = self.interrupt_state.active
         return None if active is None else self.tables.reactions[active]
 
@@ -63,7 +63,7 @@ class Control:
 
     @property
     def next_due(self) -> float:
-        """Time (s) of the next change that needs no event; infinite if there is none."""
+        """Earliest time (s) of a change of the mission or a hold without an event, or infinity."""
         due = self.mission.next_due
         return due if due < self.hold_due else self.hold_due
 
@@ -81,13 +81,17 @@ class Control:
     # Time
 
     def advance_time(self, until: float) -> None:
-        """Process everything that is due up to the time `until`, in the order of time."""
+        """Process all changes that are due up to the time `until` (s), in the order of time."""
         while (at := self.next_due) <= until:
             self.mission.now = at
             self.process_due()
 
     def process_due(self) -> None:
-        """Process everything that is due now and needs no action."""
+        """Process all changes that are due now and need no action of the robot.
+
+        These are ends of waits, time-outs, tasks done by hand, the limit of a hold, and the end of
+        the mission.
+        """
         mission = self.mission
         configuration = mission.configuration
         while mission.outcome is None:
@@ -118,7 +122,7 @@ class Control:
     # Events and reactions
 
     def handle_event(self, kind: EventKind, detail: str) -> None:
-        """Report an event, and start the mission's reaction to it."""
+        """Add an event to the trace, and start the mission's reaction to it if it has one."""
         self.mission.record_event(kind)
         self.mission.add_entry(Cause.REPORT, event=kind, detail=detail)
         self._advance(Trigger.EVENT, kind)
@@ -134,7 +138,7 @@ class Control:
     # Persons
 
     def pause(self, detail: str = "") -> None:
-        """Pause the mission for a person."""
+        """Pause the mission at a person's command; `detail` is for the trace."""
         self._advance(Trigger.PAUSE, detail=detail)
 
     def give_back(self, by_hand: Sequence[ByHand]) -> None:
@@ -143,11 +147,11 @@ class Control:
         self.resume()
 
     def resume(self) -> None:
-        """Resume the mission for a person, or end a hold."""
+        """Resume the mission, or end the hold of a reaction, at a person's command."""
         self._advance(Trigger.RESUME)
 
     def cancel(self) -> None:
-        """End the mission for a person."""
+        """End the mission at a person's command."""
         self._advance(Trigger.CANCEL)
 
     # The table
@@ -177,9 +181,10 @@ class Control:
         detail: str,
         over: EventKind | None,
     ) -> None:
-        """Apply a row of the table to the state of the mission and to the trace.
+        """Apply a row of the table of interruptions to the state of the mission and to the trace.
 
-        `over` is the event of the reaction that has just ended, if one has.
+        `trigger`, `event`, `failure` and `detail` are those that the rows were taken for; `over` is
+        the event of the reaction that these rows have ended, if they have.
         """
         mission, row, active = self.mission, step.row, step.before.active
         if step.before.stage is Stage.GOING and row.target is not None:
@@ -210,7 +215,7 @@ class Control:
         """End the mission at once, whatever the mission was doing.
 
         Args:
-            step: row of the table of interrupts that was taken, which leads to the end.
+            step: row of the table of interruptions that was taken, which leads to the end.
             event: event that the row was taken for, if any; a reaction to it that ends the mission
                 is added to the trace.
             failure: why the mission failed; None: it did not.

@@ -137,7 +137,10 @@ class Executor:
         return executor
 
     def start(self, now: float) -> tuple[Command, ...]:
-        """Start the mission, or continue a restored one, and return the first commands."""
+        """Start the mission, or continue a restored one, at time `now` (s).
+
+        Returns the first command, if any.
+        """
         with self._exclusive():
             if self._started:
                 raise ValueError("the executor has been started already")
@@ -196,7 +199,7 @@ class Executor:
             self._call_token.append(token)
 
     def _handle_other(self, event: Event, now: float) -> None:
-        """Handle an event that is neither the end of an action nor a `Tick`."""
+        """Handle a given reading, an event that the mission may react to, or a person's command."""
         control = self._control
         if isinstance(event, ReadingGiven):
             mission = control.mission
@@ -218,9 +221,10 @@ class Executor:
                     control.cancel()
 
     def progress(self) -> Progress:
-        """Return the mission's progress at the time of the last call; see `restore`.
+        """Return the mission's progress at the time of the last `start` or `handle`.
 
-        An action that still runs is not part of it: pause first and wait for its end.
+        `restore` continues from it. An action that still runs is not part of it: pause first and
+        wait for the end of the action.
         """
         with self._exclusive():
             if not self._started:
@@ -261,7 +265,7 @@ class Executor:
 
     @property
     def outcome(self) -> Outcome | None:
-        """Outcome of the mission; None if it has not ended."""
+        """Outcome of the mission; None if the mission has not ended."""
         return self._control.outcome
 
     @property
@@ -281,7 +285,7 @@ class Executor:
 
     @property
     def reaction(self) -> EventKind | None:
-        """The event whose reaction is active, or None."""
+        """The event whose reaction is active; None if no reaction is active."""
         return self._control.interrupt_state.active
 
     @property
@@ -291,7 +295,7 @@ class Executor:
 
     @property
     def configuration(self) -> tuple[str, ...]:
-        """Ids of the active states: the mission, its groups, the leaf and the active reaction.
+        """Ids of the active states: the mission, groups from the outermost, the leaf, the reaction.
 
         Empty before the start.
         """
@@ -309,7 +313,7 @@ class Executor:
 
     @property
     def next_deadline(self) -> float | None:
-        """Time (s) of the next change that needs no event, or None."""
+        """Earliest time (s) of a change without an event, such as a time-out; None without one."""
         due = self._control.next_due
         return due if self._started and due < math.inf else None
 
@@ -320,7 +324,7 @@ class Executor:
 
     @property
     def values(self) -> Mapping[str, Measured]:
-        """Readings that have a value, by object_id."""
+        """Last reading of each checkpoint, by object_id, where it has a value."""
         return {
             id: Measured(reading.value, reading.time)
             for id, reading in self._control.mission.configuration.readings.items()
@@ -336,7 +340,7 @@ class Executor:
 
     @property
     def trace(self) -> Sequence[TraceEntry]:
-        """All entries since `start`, in order; each one is created on access."""
+        """Trace since `start`, in the order of time; each entry is created on access."""
         return View(self._control.mission.trace, trace_entry)
 
     @property
@@ -346,7 +350,7 @@ class Executor:
 
     @contextmanager
     def _exclusive(self) -> Iterator[None]:
-        """Raise ValueError if another call is under way, and refuse others until this one ends."""
+        """Refuse other calls during the `with` block; raise ValueError if one is under way."""
         try:
             token = self._call_token.pop()
         except IndexError:
@@ -410,7 +414,7 @@ class Executor:
         return "the mission was interrupted in the meantime"
 
     def _succeed(self, event: ActionSucceeded) -> None:
-        """Handle the success of the running action."""
+        """Handle the success of the running action: of a task, or of the drive of a reaction."""
         control, leaf = self._control, self._running_leaf
         self._running = None
         self._cancelling = False
@@ -429,7 +433,7 @@ class Executor:
             mission.complete_late(leaf)
 
     def _end_action(self, event: ActionFailed | ActionStopped) -> None:
-        """Handle the failure or the stop of the running action."""
+        """Handle the failure of the running action, or its end after a cancellation."""
         control, leaf = self._control, self._running_leaf
         mission = control.mission
         # The cancellation may have caused the failure, so during one it counts as a stop.

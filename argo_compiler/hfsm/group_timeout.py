@@ -12,7 +12,7 @@ from argo_compiler.il import Group
 def timeout_transition(group: Group) -> StateTransition | None:
     """Return the transition that leaves a group when its time is up, or None without a hard stop.
 
-    It completes the group, as the end of its last round does.
+    The transition completes the group: what follows the group is next, as after its last round.
     """
     if not group.ends_at_once:
         return None

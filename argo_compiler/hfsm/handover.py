@@ -14,10 +14,11 @@ AnyModel = TypeVar("AnyModel", bound=Model)
 
 
 def hand_over(progress: Progress, by_hand: Sequence[ByHand], away: float = 0.0) -> Progress:
-    """Return the progress `away` seconds later, with the tasks done or skipped by a person.
+    """Return the progress at the end of a supervision of `away` seconds by a person.
 
-    `by_hand` is in the order in which they were done. The robot is then given back, and from that
-    time on these tasks age: `away` of a later `Executor.restore` is the time since then only.
+    `by_hand` are the tasks that the person did or skipped, in this order. The robot is given back
+    at the end, and from then on these tasks age: `away` of a later `Executor.restore` is the time
+    since then only.
     """
     aged = add_time_away(progress, away)
     dated = (task.model_copy(update={"age": task.age or 0.0}) for task in by_hand)
@@ -50,10 +51,11 @@ def _add_seconds(model: AnyModel, field: str, seconds: float) -> AnyModel:
 def match_to_mission(
     progress: Progress, mission: Mission
 ) -> tuple[Progress | None, tuple[Diagnostic, ...]]:
-    """Return the progress for a mission that was edited since, by names of tasks and groups.
+    """Return the progress in a mission that was edited since, and diagnostics of what is lost.
 
-    `check` must find no errors in the mission. The progress is None if the mission can't continue
-    without a decision; then a diagnostic is an error.
+    Tasks and groups are matched by their names. `check` must find no errors in the mission. The
+    progress is None if the mission can't continue without a decision; then a diagnostic is an
+    error.
     """
     if progress.outcome is not None:
         return progress, ()
@@ -99,7 +101,10 @@ def _check_active(progress: Progress, mission: Mission) -> Iterator[Diagnostic]:
 def _match_groups(
     progress: Progress, mission: Mission
 ) -> tuple[tuple[GroupProgress, ...], list[Diagnostic]]:
-    """Return the groups around the active task. Known ones keep their rounds and clocks."""
+    """Return the edited mission's groups around the active task, and diagnostics.
+
+    Groups that the progress has keep their rounds and clocks.
+    """
     position = next((i for i, t in enumerate(mission.tasks) if t.name == progress.active), None)
     around = [
         r.group.name for r in group_ranges(mission) if position is not None and r.contains(position)

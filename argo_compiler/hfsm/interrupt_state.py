@@ -59,10 +59,10 @@ def take_rows(
     event: EventKind | None = None,
     outcome: Outcome | None = None,
 ) -> tuple[AppliedRow, ...]:
-    """Return the rows that are taken at a trigger, until no further row follows.
+    """Return the rows of the table of interruptions that are taken at a trigger, in order.
 
-    `event` is the event that occurs, for EVENT; `outcome` is that of the mission itself, for DONE
-    and ENDED.
+    The first one is taken at the trigger, the others follow from it (`Trigger.ALWAYS`). `event` is
+    the event that occurs, for EVENT; `outcome` is that of the mission itself, for DONE and ENDED.
     """
     steps: list[AppliedRow] = []
     while True:
@@ -79,7 +79,7 @@ def take_rows(
 
 
 def is_interrupting(reaction: Reaction) -> bool:
-    """Return True if the reaction does more than report the event."""
+    """Return True if the reaction interrupts the mission, rather than only report the event."""
     return reaction.response is not Response.REPORT
 
 
@@ -123,9 +123,9 @@ def _evaluate_guard(
 def evaluate_static_guard(
     guard: InterruptGuard, own: Reaction | None, active: Reaction | None, event: EventKind | None
 ) -> bool:
-    """Return the value of a guard that depends only on the reactions and the event.
+    """Return the value of a guard that depends on nothing but the reactions and the event.
 
-    `own` is the reaction to `event`, `active` the active reaction.
+    `own` is the reaction to `event`, `active` the active reaction; each is None without one.
     """
     match guard:
         case InterruptGuard.ABORTS:
@@ -196,7 +196,7 @@ _OUTCOMES = {
 
 
 def reaction_outcome(reaction: Reaction) -> Outcome:
-    """Return the outcome of a mission that ends where the reaction has led the robot."""
+    """Return the outcome of a mission that ends after the drive of a reaction, where that led."""
     return {
         Response.RETURN: Outcome.RETURNED,
         Response.SAFE_AREA: Outcome.SHELTERED,

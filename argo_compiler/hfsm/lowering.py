@@ -49,7 +49,8 @@ def lower(
 ) -> Hfsm:
     """Return the state machine of a mission, in time linear in the number of tasks.
 
-    With `progress`, it is that of the remaining mission: only what can still be reached from there.
+    With `progress`, it is the machine of the remaining mission, which has only the states that can
+    still be reached from that progress. Messages call the mission `source_name`.
 
     Raises:
         DiagnosticError: `check` finds errors in the mission.
@@ -117,7 +118,10 @@ class _Lowering:
         return DONE if target is None else task_id(target)
 
     def _children(self) -> dict[int | None, list[str]]:
-        """Return the direct children of the mission (None) and of each group, in mission order."""
+        """Return the ids of the direct children of the mission and of each group, in mission order.
+
+        The key is None for the mission, and the position of a group in the nesting.
+        """
         children: dict[int | None, list[str]] = {None: []}
         opened = 0
         for i, task in enumerate(self.mission.tasks):
@@ -187,7 +191,11 @@ class _Lowering:
         )
 
     def _failure(self, inside: int | None, task: Task) -> StateTransition | None:
-        """Return the transition after a final failure; None if it is that of any other end."""
+        """Return a task's own transition after it has failed for good.
+
+        It is None if the task continues as after a success. `inside` is the position of the
+        innermost group around the task; None: no group.
+        """
         if task.on_failure is not OnFailure.BRANCH or task.failure_target is None:
             return _FAILURES.get(task.on_failure)
         return StateTransition(
@@ -197,7 +205,7 @@ class _Lowering:
         )
 
     def _missed(self, inside: int | None, task: Task) -> StateTransition | None:
-        """Return the transition after a missed hard window; None if it is that of a failure."""
+        """Return a task's own transition after a missed hard window; None: as after a failure."""
         window = task.window
         if window is None or not window.hard or window.missed_target is None:
             return None
@@ -208,7 +216,7 @@ class _Lowering:
         )
 
     def _return_leaf(self) -> tuple[Leaf, ...]:
-        """Return the leaf that drives back to the dock, if a task has `on_failure` RETURN."""
+        """Return the leaf of the drive back to the dock, or () without `on_failure` RETURN."""
         if all(task.on_failure is not OnFailure.RETURN for task in self.mission.tasks):
             return ()
         return (
@@ -221,7 +229,10 @@ class _Lowering:
         )
 
     def _default(self, inside: int | None, task: Task) -> StateTransition:
-        """Return the unconditional transition of a task, for a state that lies in `inside`."""
+        """Return the unconditional transition of a task, for the task itself or a group it ends.
+
+        `inside` is the position of the group that directly contains that state; None: no group.
+        """
         target = default_target(task)
         if target is None:
             return _END

@@ -61,7 +61,7 @@ class MachineState:
 
     @property
     def next_due(self) -> float:
-        """Time (s) of the next change that needs no event; infinite if there is none."""
+        """Earliest time (s) of a change by a group, the visit or TIME_UP; infinite without one."""
         configuration = self.configuration
         due = (
             configuration.group_due
@@ -71,7 +71,7 @@ class MachineState:
         return due if due < self.time_up_at else self.time_up_at
 
     def record_event(self, kind: EventKind) -> None:
-        """Record an event: TIME_UP, or the event that the active WAIT waits for."""
+        """Record an event; only TIME_UP and what the active WAIT awaits have an effect."""
         if kind is EventKind.TIME_UP:
             self.time_up = True
             self.time_up_at = math.inf
@@ -87,7 +87,7 @@ class MachineState:
         configuration.update_visit_due()
 
     def add_by_hand(self, tasks: Iterable[ByHand], now: float) -> None:
-        """Add tasks that a person did; each counts for the next visit of its task."""
+        """Add tasks that a person did or skipped; each stands in for the next visit of its task."""
         for task in tasks:
             self._by_hand_count += 1
             done = DoneByHand(self._by_hand_count, task, now - (task.age or 0.0))
@@ -104,8 +104,8 @@ class MachineState:
     def end_wait(self) -> bool:
         """End the active WAIT if it is over now, and return whether it was.
 
-        The mission must not be interrupted. A task done by hand ends before its WAIT, but after
-        time-outs.
+        The mission must not be interrupted. This does nothing for a WAIT that a person has done by
+        hand: `step` ends it, but takes time-outs first.
         """
         configuration, visit = self.configuration, self.configuration.visit
         leaf = visit.leaf
@@ -138,10 +138,11 @@ class MachineState:
         return True
 
     def step(self) -> bool:
-        """Make one change that is due now and needs no action; return whether there was one.
+        """Make one change that is due now and needs no action of the robot, if there is one.
 
         The changes are: the end of the mission, a time-out, the end of a task that was done by
         hand, or one that is due by the visit's own times. The mission must not be interrupted.
+        Returns True if a change was made.
         """
         configuration = self.configuration
         leaf = configuration.visit.leaf
@@ -160,9 +161,9 @@ class MachineState:
         return True
 
     def _handle_visit_due(self, leaf: LeafNode) -> bool:
-        """Make the change that is due by the visit's own times, other than the end of a WAIT.
+        """Make the change that is due by the visit's own times: round, window or time limits.
 
-        Returns whether there was one.
+        `end_wait` ends a WAIT. Returns True if a change was made.
         """
         configuration, visit = self.configuration, self.configuration.visit
         if configuration.awaited_round is not None:
@@ -181,9 +182,9 @@ class MachineState:
         return True
 
     def start_time_limit(self, seconds: float, not_before: float | None) -> None:
-        """Start the time limit of the action that the present visit has just started.
+        """Start the time limit (s) of the action that the present visit has just started.
 
-        The time counts from `not_before`, if that is later than now.
+        The time counts from the time `not_before` (s), if that is later than now.
         """
         begins = self.now if not_before is None else max(self.now, not_before)
         self.configuration.visit.action_due = begins + seconds
@@ -205,7 +206,10 @@ class MachineState:
     def record_measurement(
         self, object_id: str, leaf: LeafNode, value: float | None, abnormal: bool
     ) -> None:
-        """Record the reading of an action that ended well; without a value it is unreadable."""
+        """Record the reading of a measurement that ended well; value None means unreadable.
+
+        `leaf` is the task that measured, which the machine may have left meanwhile.
+        """
         configuration, now = self.configuration, self.now
         if value is None:
             configuration.readings[object_id] = CheckpointReading(ReadingKind.UNREADABLE, now)
@@ -223,7 +227,7 @@ class MachineState:
         )
 
     def fail(self, leaf: LeafNode, reason: str, unreadable: bool = False) -> None:
-        """Handle a failure of the active task's action: retry, or fail for good."""
+        """Handle a failure of the active task's action: retry the task, or let it fail for good."""
         visit = self.configuration.visit
         if visit.attempt < leaf.retries:
             visit.attempt += 1
@@ -257,7 +261,7 @@ class MachineState:
             self._take_transition((transition,), reason)
 
     def complete(self, leaf: LeafNode, detail: str = "") -> None:
-        """Complete the active task, and take its transition."""
+        """End the active task with success, and take its first possible transition."""
         if leaf.is_return:
             self.end(Outcome.RETURNED, Cause.END)
             return
@@ -269,7 +273,7 @@ class MachineState:
         self.trace.append((now, leaf, configuration.visit.leaf, transition, detail))
 
     def complete_late(self, leaf: LeafNode) -> None:
-        """Count a task that was done after the mission had left it."""
+        """Count the success of an action that came after the mission had left its task."""
         if not leaf.is_return:
             self._count_end(leaf)
             self.add_entry(Cause.LATE, detail=leaf.name)
@@ -296,7 +300,10 @@ class MachineState:
         failure: str | None = None,
         detail: str = "",
     ) -> None:
-        """Add an entry to the trace. By default its source is the active task."""
+        """Add an entry to the trace at the present time; its target is the active task.
+
+        Its source is the active task too, unless another one or None is given.
+        """
         target = self.active
         origin = target if source == "" else source
         self.trace.append(
@@ -304,7 +311,7 @@ class MachineState:
         )
 
     def _count_end(self, leaf: LeafNode, failure: str | None = None, by_hand: bool = False) -> None:
-        """Count the end of a visit."""
+        """Count the end of a visit of a task: done, failed (with the reason), or done by hand."""
         self.tallies[leaf.name][2 if by_hand else 0 if failure is None else 1] += 1
         self.ended.append((leaf.name, failure, by_hand))
 
@@ -357,7 +364,7 @@ class MachineState:
         self._take_transition(leaf.transitions, by_hand=done)
 
     def _time_out_group(self) -> None:
-        """Take the time-out of the group whose time is up."""
+        """Take the time-out transition of the group whose time is up."""
         group = self.configuration.due_group
         assert group is not None
         assert group.timeout is not None

@@ -10,9 +10,10 @@ from argo_compiler.hfsm.tables import CompiledTransition, GroupNode, LeafNode, b
 
 
 def remaining_machine(hfsm: Hfsm, progress: Progress) -> Hfsm:
-    """Return the machine without the states that can't be reached any more (rule H5).
+    """Return the machine without the states that can't be reached from the progress (rule H5).
 
-    Which conditions will be satisfied is unknown, so all of them are assumed to be possible.
+    It is unknown which conditions will be satisfied, so all of them are assumed to be possible. The
+    new machine begins with the active task of the progress.
 
     Raises:
         ArgoError: the machine does not have the active task of the progress.
@@ -55,7 +56,7 @@ def _prune(composite: Composite, initial: str, kept_ids: set[str], reach: "_Reac
 
 
 def _first_leaves(hfsm: Hfsm, leaves: tuple[Leaf, ...]) -> dict[str, str]:
-    """Return the first leaf in each composite."""
+    """Return the id of the first of these leaves in each composite, by the composite's id."""
     parents = {composite.id: composite.parent for composite in hfsm.composites}
     first: dict[str, str] = {}
     for leaf in leaves:
@@ -129,7 +130,10 @@ class _Reach:
                 self._add(transition.target, min(under_way, transition.kept_groups))
 
     def _complete(self, group: GroupNode, under_way: int, time_up: bool) -> None:
-        """Follow the end of a group's round, and of rounds of groups around it that end with it."""
+        """Add what can follow the end of a group's round, and of rounds around it that end with it.
+
+        With `time_up`, the group is left by its time-out and has no further round.
+        """
         following: GroupNode | None = group
         while following is not None:
             group, following = following, None
@@ -153,7 +157,7 @@ class _Reach:
 
 
 def _last_round_flags(leaf: LeafNode, progress: tuple[GroupProgress, ...]) -> list[bool]:
-    """Return, for each group around the leaf, outermost first, whether its last round is active."""
+    """Return, for each group around the leaf, outermost first, whether it is in its last round."""
     known = {p.group: p for p in progress}
     last = []
     for group in leaf.groups:

@@ -28,7 +28,9 @@ _OTHER = "use the mission that it was saved from, or match it to this one first"
 def restore_configuration(
     tables: Tables, progress: Progress, now: float, away: float
 ) -> Configuration:
-    """Return the configuration that continues from `progress` at `now`, after `away` seconds.
+    """Return the configuration that continues from `progress` at time `now` (s).
+
+    `away` is the time (s) since the progress was taken.
 
     Raises:
         ArgoError: the progress does not belong to this machine.
@@ -72,7 +74,7 @@ def restore_configuration(
 
 
 def restore_interrupt_state(tables: Tables, progress: Progress) -> InterruptState:
-    """Return who controls the robot: active and waiting reactions, and whether it is paused.
+    """Return who controls the robot: active and waiting reactions, and if it is paused.
 
     Raises:
         ArgoError: the machine does not have the reactions.
@@ -94,9 +96,9 @@ def restore_interrupt_state(tables: Tables, progress: Progress) -> InterruptStat
 
 
 def group_progress(configuration: Configuration, now: float) -> tuple[GroupProgress, ...]:
-    """Return the active groups, outermost first.
+    """Return the progress of the active groups at time `now` (s), outermost first.
 
-    The clocks of groups that lie within the group whose round is awaited have not started.
+    If the next round of a group is awaited, the clocks of the groups in it have not started.
     """
     started = (
         len(configuration.frames)
@@ -117,7 +119,7 @@ def group_progress(configuration: Configuration, now: float) -> tuple[GroupProgr
 
 
 def reading_progress(configuration: Configuration, now: float) -> tuple[ReadingProgress, ...]:
-    """Return the readings with their ages."""
+    """Return the readings of checkpoints with their ages at time `now` (s)."""
     return tuple(
         ReadingProgress(
             object_id=id,
@@ -131,7 +133,7 @@ def reading_progress(configuration: Configuration, now: float) -> tuple[ReadingP
 
 
 def tally_progress(tallies: Mapping[str, list[int]]) -> tuple[TaskTally, ...]:
-    """Return the number of ended visits of each task."""
+    """Return the numbers of ended visits of each task: done, failed, and done by hand."""
     return tuple(
         TaskTally(task=task, done=done, failed=failed, by_hand=by_hand)
         for task, (done, failed, by_hand) in tallies.items()
@@ -141,7 +143,10 @@ def tally_progress(tallies: Mapping[str, list[int]]) -> tuple[TaskTally, ...]:
 def reaction_progress(
     state: InterruptState, held: float
 ) -> tuple[Reacting | None, tuple[Waiting, ...]]:
-    """Return the active reaction and the waiting ones; `held` (s) is the time of its hold."""
+    """Return the active reaction, if any, and the waiting ones.
+
+    `held` is the time (s) since the hold of the active reaction began, if it holds.
+    """
     waiting = tuple(Waiting(event=p.event, over=p.until_occurred) for p in state.waiting)
     if state.active is None:
         return None, waiting
@@ -152,7 +157,7 @@ def reaction_progress(
 
 
 def leaf_for(tables: Tables, name: str) -> LeafNode:
-    """Return the leaf of the task at which a mission is. Raises ArgoError if there is none."""
+    """Return the leaf of the task `name` at which a progress is. Raises ArgoError without one."""
     leaf = tables.leaves.get(RETURN if name == RETURN_TASK else task_id(name))
     if leaf is None:
         raise Conflict(
@@ -171,7 +176,10 @@ def _groups(leaf: LeafNode, progress: Progress) -> list[GroupNode]:
 
 
 def _reaction(tables: Tables, event: EventKind) -> Reaction:
-    """Return the reaction to an event; it must be one that can be active or wait."""
+    """Return the machine's reaction to an event of a progress.
+
+    Raises ArgoError if it has none, or one that can't be active or wait: REPORT or ABORT.
+    """
     node = tables.reactions.get(event)
     reaction = None if node is None else node.state.reaction
     if reaction is None or reaction.response in (Response.REPORT, Response.ABORT):

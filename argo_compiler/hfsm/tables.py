@@ -32,7 +32,7 @@ Guard = tuple[str, ReadingTest]
 
 
 def compile_guards(conditions: tuple[Condition, ...]) -> tuple[Guard, ...]:
-    """Return the conditions in the form that an executor evaluates."""
+    """Return conditions in the form that an executor evaluates quickly."""
     return tuple((condition.object_id, reading_test(condition)) for condition in conditions)
 
 
@@ -117,7 +117,7 @@ class LeafNode:
 
     @property
     def groups(self) -> Iterator[GroupNode]:
-        """The groups around it, from the innermost outward."""
+        """The groups around the task, from the innermost outward."""
         group = self.parent
         while group is not None:
             yield group
@@ -125,7 +125,7 @@ class LeafNode:
 
     @property
     def may_fail(self) -> bool:
-        """True if it can fail for good in another way than by its window."""
+        """True if the task can fail for good by its action or its wait's limit, not its window."""
         return self.wait is None or self.wait.limit is not None
 
 

@@ -43,7 +43,7 @@ class TraceEntry:
 
     @property
     def why(self) -> str:
-        """The cause as text, with the conditions, the group, the event or the failure."""
+        """Cause of the entry as text, with the conditions, the group, the event or the failure."""
         why = str(self.cause)
         if self.conditions:
             why = " and ".join(self.conditions)
@@ -89,7 +89,7 @@ task, the next one, the transition between them, and the detail"""
 
 
 def raw_entry(stored: RawEntry | StoredStep) -> RawEntry:
-    """Return the stored entry in its full form."""
+    """Return an entry of the trace with all its fields; its conditions are no text yet."""
     if isinstance(stored, RawEntry):
         return stored
     time, source, target, transition, detail = stored
@@ -105,7 +105,7 @@ def raw_entry(stored: RawEntry | StoredStep) -> RawEntry:
 
 
 def trace_entry(stored: RawEntry | StoredStep) -> TraceEntry:
-    """Return the stored entry in the form for people."""
+    """Return an entry of the trace in the form for people, with its conditions as text."""
     raw = raw_entry(stored)
     fields = raw._asdict() | {"conditions": tuple(map(condition_text, raw.conditions))}
     return TraceEntry(**fields)

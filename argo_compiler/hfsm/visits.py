@@ -29,9 +29,10 @@ class TaskVisit:
     """time (s) at which the time limit of the running action ends"""
 
     def wait_end_at(self, started_at: float) -> float:
-        """Return the time (s) at which a WAIT may end, apart from its conditions.
+        """Return the earliest time (s) at which a WAIT may end by duration, event or next check.
 
-        `started_at` is the time (s) at which the mission started. Infinite if the task is no WAIT.
+        Whether its conditions are satisfied is not checked. `started_at` is the time (s) at which
+        the mission started. The result is infinite if the task is no WAIT.
         """
         leaf = self.leaf
         if leaf is None or leaf.wait is None:
@@ -51,12 +52,18 @@ class TaskVisit:
         return self.since + leaf.wait.limit
 
     def missed_at(self, started_at: float) -> float:
-        """Return the time (s) at which the task's hard window ends; infinite without one."""
+        """Return the time (s) at which the task's hard window ends; infinite without one.
+
+        `started_at` is the time (s) at which the mission started.
+        """
         leaf = self.leaf
         return math.inf if leaf is None or leaf.latest is None else started_at + leaf.latest
 
     def next_due(self, started_at: float) -> float:
-        """Return the time (s) of the first of these changes."""
+        """Return the earliest time (s) at which a wait, limit or hard window of the visit ends.
+
+        `started_at` is the time (s) at which the mission started.
+        """
         return min(
             self.wait_end_at(started_at), self.limit_at, self.missed_at(started_at), self.action_due
         )

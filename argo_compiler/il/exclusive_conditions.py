@@ -11,21 +11,25 @@ Alternatives = Sequence[Sequence[Condition]]
 
 
 def are_exclusive(first: Alternatives, second: Alternatives) -> bool:
-    """Return True if no values satisfy an alternative of `first` and one of `second`."""
+    """Return True if no values satisfy an alternative of `first` and one of `second` together.
+
+    False may also mean that this could not be shown.
+    """
     return all(
         any(_are_disjoint(a, b) for a in one for b in other) for one in first for other in second
     )
 
 
 def are_contradictory(conditions: Iterable[Condition]) -> bool:
-    """Return True if, for one of the checkpoints, no value satisfies all the conditions."""
+    """Return True if no value of a checkpoint satisfies two of the conditions on it."""
     return any(_are_disjoint(a, b) for a, b in combinations(conditions, 2))
 
 
 def are_exhaustive(alternatives: Alternatives) -> bool:
     """Return True if each value of a checkpoint satisfies one of the alternatives.
 
-    It detects only pairs of alternatives with one condition each and no `max_age`.
+    It detects only a pair of alternatives that cover all values together, GREATER and LESS, with
+    one condition each and no `max_age`.
     """
     single = [held[0] for held in alternatives if len(held) == 1 and held[0].max_age is None]
     return any(
@@ -34,7 +38,7 @@ def are_exhaustive(alternatives: Alternatives) -> bool:
 
 
 def _cover_all_values(low: Condition, high: Condition) -> bool:
-    """Return True if all values are above the bound of `low` or below that of `high`."""
+    """Return True if each value satisfies GREATER condition `low` or LESS condition `high`."""
     if low.object_id != high.object_id or low.param1 is None or high.param1 is None:
         return False
     if (low.type, high.type) != (ConditionType.GREATER, ConditionType.LESS):

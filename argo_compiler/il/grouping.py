@@ -29,19 +29,20 @@ def task_positions(mission: Mission) -> Mapping[str, int]:
 
 
 def parent_name(name: str) -> str | None:
-    """Return the name of the group in which this one lies, such as `Alpha` for `Alpha/Beta`.
+    """Return the name of the group around the group `name`: `Alpha` for `Alpha/Beta`.
 
-    Returns None if it lies in no group.
+    Returns None if there is none.
     """
     parent, slash, _ = name.rpartition("/")
     return parent if slash else None
 
 
 def group_ranges(mission: Mission) -> tuple[GroupRange, ...]:
-    """Return the groups whose start and end exist in this order, parents before children.
+    """Return the ranges of the groups that have a valid one, parents before children.
 
-    They are sorted by start, longest first; of two with the same range, the one with the shorter
-    path comes first.
+    A range is valid if the tasks `start` and `end` exist and are in this order. The ranges are
+    sorted by start, longest first; of two with the same tasks, the one whose name has fewer parts
+    (`/`) comes first.
     """
     position = task_positions(mission)
     ranges = [
@@ -68,7 +69,10 @@ class GroupNesting:
 
     @staticmethod
     def from_mission(mission: Mission) -> "GroupNesting":
-        """Return the nesting of a mission whose groups have no error by `check`. Linear time."""
+        """Return the nesting of the groups of a mission, in which `check` must find no errors.
+
+        Takes linear time.
+        """
         return _nesting(mission)
 
     def common_range(self, inside: int | None, task: int) -> int | None:

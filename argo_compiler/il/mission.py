@@ -73,7 +73,7 @@ class ConditionType(StrEnum):
 
     @property
     def compares(self) -> bool:
-        """True if it compares the value with bounds."""
+        """True if a condition of this type compares the value of the reading with bounds."""
         return self in _COMPARISONS
 
 
@@ -356,7 +356,7 @@ class Reaction(Model):
 
     @property
     def holds(self) -> bool:
-        """True if it stands still until something occurs or a person resumes."""
+        """True if the robot stands still until an event occurs or a person resumes the mission."""
         return self.until is not None or self.response is Response.PAUSE
 
     @property

@@ -30,9 +30,10 @@ class Subjects:
         return _named("reactions", position, self._reactions, rest)
 
     def subject_path(self, text: str) -> tuple[str | int, ...]:
-        """Return a subject as fields and positions in the mission's lists.
+        """Return the path that a subject stands for: fields, and positions in the mission's lists.
 
-        If it names something that the mission does not have, the path ends with the list.
+        If the subject names something that the mission does not have, the path ends with the list
+        in which that was looked for.
         """
         steps: list[str | int] = []
         for step in parse_subject(text):

@@ -4,7 +4,7 @@ from argo_compiler.il.mission import Action, Mission, Task
 
 
 def default_target(task: Task) -> str | None:
-    """Return the target of the unconditional transition, or None if the mission ends."""
+    """Return the target of a task's unconditional transition; None: none, the mission ends."""
     for transition in task.transitions:
         if not transition.conditions:
             return transition.target

@@ -18,10 +18,11 @@ MISSION_START = ""
 
 
 def transition_pairs(mission: Mission) -> Iterator[tuple[str, str]]:
-    """Yield each transition from one task to another as a pair of names, some more than once.
+    """Yield pairs of names, a task and one that may follow it; some pairs more than once.
 
-    Transitions after a time-out are included. The first pair comes from START, or from
-    `MISSION_START`.
+    They come from transitions, other targets after failures, the next rounds of groups, and what
+    follows a group after its time-out. The first pair is that from START, or from `MISSION_START`,
+    to the first task.
     """
     tasks = mission.tasks
     start = start_task(mission)
@@ -50,8 +51,8 @@ def transition_pairs(mission: Mission) -> Iterator[tuple[str, str]]:
 def with_approach_velocities(mission: Mission) -> tuple[Mission, tuple[str, ...]]:
     """Convert velocities on the path to the next task into velocities on the path to the task.
 
-    Also returns the names of tasks for which this loses something: transitions to them have
-    different velocities. They get the slowest one that was given.
+    Also returns the names of the tasks for which this loses something, because transitions to them
+    have different velocities. Such a task gets the lowest velocity that was given.
     """
     on: Mapping[str, Velocity] = {task.name: task.velocity for task in mission.tasks}
     there: dict[str, set[Velocity]] = {}
@@ -65,10 +66,10 @@ def with_approach_velocities(mission: Mission) -> tuple[Mission, tuple[str, ...]
 def with_departure_velocities(mission: Mission) -> tuple[Mission, tuple[str, ...]]:
     """Convert velocities on the path to the task into velocities on the path to the next task.
 
-    Also returns the names of tasks for which this loses something: transitions from them have
-    different velocities. They get the slowest one that was given. `MISSION_START` is among the
-    names if the path to the first task has a velocity, but the mission has no task with the action
-    START that could have it: that velocity is left out.
+    Also returns the names of the tasks for which this loses something, because transitions from
+    them have different velocities. Such a task gets the lowest one that was given. `MISSION_START`
+    is among the names if the path to the first task has a velocity, but the mission has no task
+    with the action START that could have it: that velocity is left out.
     """
     there: Mapping[str, Velocity] = {task.name: task.velocity for task in mission.tasks}
     on: dict[str, set[Velocity]] = {}

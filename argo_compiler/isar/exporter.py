@@ -28,7 +28,7 @@ class InspectionView(Model):
 
 
 def to_isar(mission: Mission, hfsm: Hfsm, views: Mapping[str, InspectionView]) -> str:
-    """Return the definition as JSON: the inspections in the order in which the machine does them.
+    """Return isar's definition as JSON: inspections in the order in which the machine does them.
 
     `views` contains the site's checkpoints by their `object_id`. If a MEASURE has a pose, that pose
     replaces the pose of the view. Groups with a count are unrolled.
@@ -100,7 +100,7 @@ def _feature_refusals(mission: Mission) -> Iterator[Diagnostic]:
 def _task_order(hfsm: Hfsm) -> tuple[Task, ...]:
     """Return the tasks in the order in which the machine executes them if all actions succeed.
 
-    Without conditions and times, the machine has no other order.
+    The mission must have no conditions and times, so that the machine has no other order.
     """
     executor = Executor(hfsm)
     commands = executor.start(0.0)
@@ -126,7 +126,7 @@ def _task_order(hfsm: Hfsm) -> tuple[Task, ...]:
 def _task_refusals(
     mission: Mission, tasks: tuple[Task, ...], views: Mapping[str, InspectionView]
 ) -> Iterator[Diagnostic]:
-    """Yield refusals for drives to other poses than the dock, and for unknown checkpoints.
+    """Yield refusals for WAYPOINT tasks except a last one to the dock, and unknown checkpoints.
 
     A mission without tasks is refused, too.
     """

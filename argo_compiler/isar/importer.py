@@ -43,7 +43,7 @@ def read_isar(content: bytes, source_name: str, catalog: Catalog | None = None) 
 
 
 def from_isar(data: Any, source_name: str, catalog: Catalog | None = None) -> Imported:
-    """Return the mission of a definition, with a MEASURE for each image, in the same order.
+    """Return the mission of an isar definition: a MEASURE for each image, in the same order.
 
     The tag of the equipment names the checkpoint: it is the checkpoint's number, or its name if a
     catalogue is given. The robot's pose is imported, and the robot measures from it; the target
@@ -133,9 +133,10 @@ class _Importer:
             )
 
     def _pose(self, path: str, pose: RobotPose) -> Pose | None:
-        """Return the pose in the site's frame.
+        """Return the robot's pose of the definition's part at `path`, which is for messages.
 
-        If it is in another frame or its orientation is invalid, add a warning and return None.
+        If the pose is in another frame than the site's, or its orientation is invalid, add a
+        warning and return None.
         """
         frames = {pose.frame_name, pose.position.frame_name, pose.orientation.frame_name}
         if frames != {FRAME}:

@@ -200,7 +200,10 @@ def _open_reader(path: Path, first: bytes) -> Iterator[Any]:
 
 
 def _read_message(name: str, reader: Any, types: RosTypes) -> bytes:
-    """Return the content of the topic's message, which may be repeated but not differ."""
+    """Return the bytes of the message on /mission, which may be repeated but must not differ.
+
+    Messages for people call the bag `name`.
+    """
     connections = [c for c in reader.connections if c.topic == TOPIC]
     if not connections:
         topics = sorted({c.topic for c in reader.connections})

@@ -21,7 +21,7 @@ class TooLargeError(Exception):
 
 
 def check_ros1_chunks(reader: Any, connections: set[int]) -> None:
-    """Raise TooLargeError if a chunk with messages of the given connections is too large."""
+    """Raise TooLargeError if a chunk with messages of these connections is too large unpacked."""
     for info in reader.chunk_infos:
         chunk = reader.chunks[info.pos]
         if connections.isdisjoint(info.connection_counts):
@@ -31,7 +31,7 @@ def check_ros1_chunks(reader: Any, connections: set[int]) -> None:
 
 
 def check_mcap_chunks(path: Path) -> None:
-    """Raise TooLargeError if a chunk of an MCAP file is too large.
+    """Raise TooLargeError if a chunk of an MCAP file is too large when it is unpacked.
 
     A broken file is not an error here, as its reader reports it.
     """
@@ -52,7 +52,10 @@ def check_mcap_chunks(path: Path) -> None:
 
 
 def check_metadata(folder: Path) -> None:
-    """Raise TooLargeError if a rosbag2 folder is compressed by file or by message."""
+    """Raise TooLargeError if a rosbag2 folder is compressed by file or by message.
+
+    The size of the unpacked data is unknown then.
+    """
     path = folder / "metadata.yaml"
     if path.stat().st_size > MAX_METADATA_BYTES:
         raise TooLargeError(f"its metadata.yaml is larger than {MAX_METADATA_BYTES // 1000} kB")
@@ -69,7 +72,7 @@ def _check(compression: str, content: bytes) -> None:
 
 
 def _bounded_decompressor(compression: str) -> Callable[[bytes, int], bytes] | None:
-    """Return a function that unpacks a limited number of bytes; None if nothing is compressed."""
+    """Return a function that unpacks bytes up to a limit; None for no known compression."""
     if "bz2" in compression:
         return bz2.BZ2Decompressor().decompress
     if "lz4" in compression:

@@ -88,7 +88,7 @@ def raise_error(source_name: str, code: str, message: str, hint: str) -> NoRetur
 
 
 def _constants(types: RosTypes) -> dict[type[Enum], dict[Any, int]]:
-    """Return the constants for each enumeration, read from the message definitions."""
+    """Return, by enumeration, the numbers that stand for its members in messages."""
     constants: dict[type[Enum], dict[Any, int]] = {
         enumeration: types.enum_constants(message, enumeration, prefix)
         for enumeration, (message, prefix) in _CONSTANTS.items()
@@ -102,7 +102,7 @@ def _constants(types: RosTypes) -> dict[type[Enum], dict[Any, int]]:
 
 
 def to_message(mission: Mission, types: RosTypes) -> Any:
-    """Return the mission as a MissionSpecification.
+    """Return the mission as a ROS message, a MissionSpecification.
 
     In the message, a task's velocity applies to the path to the next task. Raises DiagnosticError
     for an integer beyond 64 bits, a text that UTF-8 can't represent, and velocities that depend on
@@ -112,7 +112,10 @@ def to_message(mission: Mission, types: RosTypes) -> Any:
 
 
 def _with_onward_velocities(mission: Mission) -> Mission:
-    """Return the mission with the velocity of the path from each task instead of the path to it."""
+    """Return the mission with each task's velocity on the path from it instead of to it.
+
+    Raises DiagnosticError if that is impossible without loss.
+    """
     onward, _ = with_departure_velocities(mission)
     back, differ = with_approach_velocities(onward)
     for task, returned in zip(mission.tasks, back.tasks, strict=True):
@@ -137,10 +140,10 @@ class _MessageWriter:
         self.constants = _constants(types)
 
     def message(self, part: Model, path: str, named: bool = True) -> Any:
-        """Return the message of a part of the mission.
+        """Return the ROS message for the mission or a part of it, such as a task.
 
-        Errors name the field after `path`, or only `path` if fields are not `named`, as inside the
-        parts of a task, group or reaction.
+        Errors name the faulty field by `path` and its name, or by `path` alone if `named` is False,
+        as for the windows and other parts of a task, group or reaction.
         """
         fields: dict[str, Any] = {}
         for name, kind in self.types.fields(_MESSAGES[type(part)]):
@@ -183,7 +186,7 @@ class _MessageWriter:
 
 
 def _field_value(part: Model, name: str) -> Any:
-    """Return the value of a message's field in a part of the mission, or None if it is not set."""
+    """Return the part's value for the message field `name`, or None if it is not set."""
     if isinstance(part, TimeWindow) and name == "kind":
         return Stop.HARD if part.hard else Stop.SOFT
     for step in _FLATTENED.get(name, (name,)):
@@ -211,7 +214,7 @@ def _integer(path: str, value: int, kind: str) -> int:
 
 
 def from_message(message: Any, types: RosTypes, source_name: str) -> Received:
-    """Return the mission of a MissionSpecification, in which velocities are those to each task.
+    """Return the mission of a MissionSpecification; its velocities become those on paths to tasks.
 
     This does not check the meaning of the mission, as `check` does. Raises DiagnosticError for
     values that a mission can't have, with the path of the field.
@@ -257,7 +260,7 @@ class _MessageReader:
         self.constants = _constants(types)
 
     def part(self, message: Any, path: str) -> dict[str, Any]:
-        """Return the data of a part of the mission; errors name its fields after `path`."""
+        """Return the data of the mission or a part of it; errors name its fields after `path`."""
         kind = message.__msgtype__.rpartition("/")[2]
         model_fields = _MODELS[kind].model_fields
         data: dict[str, Any] = {}

@@ -13,7 +13,7 @@ MAGIC = (ROS1, MCAP, SQLITE)
 
 
 def is_bag(path: Path) -> bool:
-    """Return True if the path is to be read as a bag, as a folder or by suffix or first bytes."""
+    """Return True if the path is to be read as a bag: any folder, or a file that looks like one."""
     return os.path.isdir(path) or is_bag_content(path.name, first_bytes(path))
 
 

@@ -65,7 +65,7 @@ class RosTypes:
         return {m: self.constant(message, prefix + m.name) for m in enumeration}
 
     def constant(self, message: str, name: str) -> int:
-        """Return the value of a message's constant."""
+        """Return the value of the constant `name` in the definition of a message."""
         return int(getattr(self.store.types[f"{PACKAGE}/msg/{message}"], name))
 
     def encode(self, mission: Any) -> bytes:
@@ -83,7 +83,7 @@ class RosTypes:
         return self.store.deserialize_cdr(content, SPECIFICATION)
 
     def digest(self) -> str:
-        """Return the digest of the definition by which ROS compares it.
+        """Return the digest by which ROS compares definitions of MissionSpecification.
 
         It is the MD5 sum in ROS 1 and the type hash in ROS 2.
         """

@@ -16,10 +16,10 @@ class SchemaName(StrEnum):
 
 
 def schema_path(name: SchemaName) -> Path:
-    """Return the path of the shipped schema."""
+    """Return the path of the shipped JSON Schema with this name."""
     return Path(__file__).parent / f"{name}.schema.json"
 
 
 def read_schema(name: SchemaName) -> str:
-    """Return the text of the shipped schema."""
+    """Return the text of the shipped JSON Schema with this name."""
     return schema_path(name).read_text(encoding="utf-8")

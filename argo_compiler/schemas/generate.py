@@ -28,12 +28,12 @@ class _Generator(GenerateJsonSchema):
 
 
 def schema_text(name: SchemaName) -> str:
-    """Return the text of the schema that is to be shipped under a name."""
+    """Return the JSON Schema that is to be shipped under a name, as text."""
     return model_schema(MODELS[name], name)
 
 
 def model_schema(model: type[Model], name: str) -> str:
-    """Return the text of the schema for files of a model; its title names them by `name`."""
+    """Return the JSON Schema for files of a model, as text; its title has the `name`."""
     schema = model.model_json_schema(schema_generator=_Generator)
     models = {m.__name__: m for m in _nested_models(model)}
     for title, definition in [(model.__name__, schema), *schema.get("$defs", {}).items()]:

@@ -10,10 +10,11 @@ from argo_compiler.route.pruning import Pruned, least_arc_times
 
 
 def assignment_bound(network: StepNetwork, pruned: Pruned) -> int | None:
-    """Compute a lower bound on the time of arcs and services, by an assignment problem.
+    """Compute a lower bound on the time of all arcs and services of any route.
 
-    In the relaxation, each step is entered once and left once. The bound is in the problem's unit
-    of time. Returns 0 if the network has optional steps, and None if there is no route.
+    It is the value of an assignment problem, in which each step is entered once and left once. The
+    bound is in the problem's unit of time. Returns 0 if the network has optional steps, and None if
+    there is no route.
     """
     if not pruned.possible:
         return None
@@ -34,7 +35,8 @@ def least_between_steps(
 ) -> NDArray[np.int64]:
     """Compute the least cost of the unpruned arcs from each step to each other.
 
-    The last row belongs to the start, the last column to the end; NEVER: there is no arc.
+    Each step may have several nodes. With s steps, the shape is (s + 1, s + 1): the last row
+    belongs to the start, the last column to the end. NEVER: there is no arc.
     """
     count = len(network.prize)
     least = np.full((count + 1, count + 1), NEVER, np.int64)

@@ -133,7 +133,8 @@ class BeamSearch:
     def _legs(self, labels: _Labels, rows: Vector, node: int) -> Iterator[tuple[Vector, ...]]:
         """Yield the feasible legs from labels to a node (m: the end), straight or by a charger.
 
-        Each item has the rows of its labels, their arrival times, second measures, and charger.
+        Each item has the rows of its labels, their arrival times, their second measures (energy
+        used since the last charge, or travel), and the charger.
         """
         network, battery = self._network, self._battery
         last, time, second = labels.last[rows], labels.time[rows], labels.second[rows]
@@ -168,8 +169,9 @@ class BeamSearch:
     ) -> tuple[_Labels, Vector] | None:
         """Return the undominated labels of the next layer that may lead to a better path.
 
-        With them returns, for each, a lower bound on the cost of all paths that continue it; None
-        if the time is up before the end.
+        With them returns, for each, a lower bound on the cost of all paths that continue it.
+        Returns None if the time is up before the end. `upper` is the prize and cost of the best
+        known path.
         """
         network, pruned = self._network, self._pruned
         rules = self._bits.layer(size)
@@ -266,7 +268,8 @@ class BeamSearch:
 def _undominated(labels: _Labels) -> NDArray[np.int64]:
     """Return the rows of the labels that no other one with the same set and last node dominates.
 
-    They are in the order of sets, nodes and times.
+    One dominates another if it is not higher in time and in the second measure. The rows are in the
+    order of sets, nodes and times.
     """
     if not len(labels.mask):
         return np.zeros(0, np.int64)

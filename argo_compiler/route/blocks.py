@@ -80,7 +80,10 @@ class Blocks:
                         self.needs[second] |= 1 << first if precedence.needed else 0
 
     def can_follow(self, made: int, block: int) -> bool:
-        """Return True if a block may come after a set of blocks."""
+        """Return True if the precedences allow a block as the next one after the blocks in `made`.
+
+        The set `made` has a bit for each block.
+        """
         return not made & (self.followers[block] | 1 << block) and not self.needs[block] & ~made
 
     def drive(self, origins: Locations, goal: int) -> Arrival | None:
@@ -130,9 +133,9 @@ class Blocks:
         return list(order_by_arrival.items())
 
     def _feasible_orders(self, members: tuple[int, ...]) -> list[tuple[int, ...]]:
-        """Return the orders that meet the precedences and do not interrupt inner rounds.
+        """Return the orders of a block's members that the precedences and inner rounds allow.
 
-        Returns none for large rounds.
+        An order must not interrupt an inner round. Returns none for large rounds.
         """
         if len(members) > _MOST_MEMBERS:
             return []

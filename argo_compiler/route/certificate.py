@@ -175,7 +175,11 @@ class _Check:
             raise _OutOfTime
 
     def _enumerate(self, blocks: Blocks, *, use_dominance: bool) -> None:
-        """Enumerate all routes; without dominance, only within a limit of work."""
+        """Enumerate all routes, and decide by them the claims that are still open.
+
+        `use_dominance`: prune a partial route if another one with the same blocks is at least as
+        good in every respect. Without it, there is a limit of work.
+        """
         if not self._open or not blocks.exact:
             return
         enumeration, is_complete = Enumeration(blocks, _weakest(self._open), self._spend), False
@@ -208,8 +212,9 @@ class _Check:
     ) -> None:
         """Confirm the claims that follow from bounds, and record why the others don't.
 
-        `cost_bound` takes a prize and the claimed cost, and returns a lower bound on the cost of
-        routes that win that prize, or None if none wins it.
+        `prize_bound` is an upper bound on the prize of any route. `cost_bound` takes a prize and
+        the claimed cost, and returns a lower bound on the cost of routes that win that prize, or
+        None if none wins it.
         """
         for claim, claimed in list(self._open.items()):
             if claimed is None:

@@ -58,7 +58,7 @@ class CircuitModel:
     # Circuit
 
     def _add_circuit(self) -> list[Any]:
-        """Add arcs and self-loops, and return the literal of each step that it is made."""
+        """Add arcs and self-loops, and return for each step the literal that the route makes it."""
         network, pruned, model = self._network, self._pruned, self.model
         m = network.size
         circuit: list[tuple[int, int, cp_model.LiteralT]] = []
@@ -163,7 +163,10 @@ class CircuitModel:
         self._cost = duration if network.objective is Objective.DURATION else work
 
     def _add_energy_levels(self, used: int, capacity: int) -> list[Any]:
-        """Add the energy used since the last charge, after each step and at the route's end."""
+        """Add and return the energies used since the last charge, after each step and at the end.
+
+        They are variables. `used` is the energy that is used when the robot starts.
+        """
         network, model = self._network, self.model
         count, m = len(network.prize), network.size
         assert network.energy is not None
@@ -189,7 +192,7 @@ class CircuitModel:
         return levels
 
     def _add_begins(self, used: Sequence[Any]) -> list[cp_model.IntVar]:
-        """Add and return the begin time of each step."""
+        """Add and return the variables of the steps' begin times."""
         network, pruned, model = self._network, self._pruned, self.model
         m, begins = network.size, []
         latest_of_all = self._horizon
@@ -270,7 +273,7 @@ class CircuitModel:
                 constraint.only_enforce_if(optional)
 
     def _add_ranks(self) -> list[cp_model.IntVar]:
-        """Add and return the rank of each step in the route."""
+        """Add and return variables that increase along the route, one for each step."""
         network, model = self._network, self.model
         count = len(network.prize)
         ranks = [model.new_int_var(0, count - 1, "") for _ in range(count)]
@@ -318,7 +321,10 @@ class CircuitModel:
         self.model.add(total >= least)
 
     def hint(self, path: tuple[int, ...], charges: Mapping[int, int]) -> None:
-        """Add a path as a hint, with the chargers by the position in it."""
+        """Add a path as a hint: a solution from which CP-SAT starts its search.
+
+        `charges`: number of the charger by the position in the path before which the robot charges.
+        """
         m = self._network.size
         arcs = enumerate(pairwise((m, *path, m)))
         legs = {(i, j, charges.get(position)) for position, (i, j) in arcs}
@@ -328,7 +334,7 @@ class CircuitModel:
     def solution_path(
         self, is_true: Callable[[cp_model.IntVar], bool]
     ) -> tuple[tuple[int, ...], dict[int, int]]:
-        """Return the nodes of a solution in order, and its charges.
+        """Return the nodes of a solution in order, and its charges by the position among them.
 
         `is_true` returns the value of a literal in the solution.
         """

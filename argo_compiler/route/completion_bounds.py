@@ -53,14 +53,17 @@ def _make_step_sets(layers: list[Masks], ends: list[NDArray[np.bool_]], bits: in
 
 
 def sets_in_layers(network: StepNetwork, bits: StepBits, layers: list[Masks]) -> StepSets:
-    """Return the sets of the layers, which have 0, 1 and so on steps."""
+    """Return the sets in `layers`, and for each whether a route may end with it.
+
+    Layer k has the sets of k steps, as bit masks.
+    """
     ends = [can_end(network, bits, size, masks) for size, masks in enumerate(layers)]
     # If steps share bits, sets of different sizes may have the same mask.
     return _make_step_sets(layers, ends, MOST_BITS if bits.shared else len(network.prize))
 
 
 def subsets_of(goals: Masks, steps: int) -> StepSets:
-    """Return all subsets of the goals; a route may end only with a goal.
+    """Return all subsets of `goals`, which are sets of steps; a route may end only with a goal.
 
     `steps`: number of steps, which must be low enough for a table of all sets.
     """

@@ -85,7 +85,10 @@ class Enumeration:
     def _departures(
         self, locations: Locations, partial: PartialRoute
     ) -> Iterator[tuple[Locations, PartialRoute]]:
-        """Yield the partial route itself, and after a charge at each charger."""
+        """Yield a partial route as it is, and after a charge at each charger within reach.
+
+        With each comes the set of locations from which the next drive may start.
+        """
         yield locations, partial
         battery, tour = self._problem.battery, partial.tour
         for charger in range(len(self._problem.chargers)):
@@ -118,7 +121,10 @@ class Enumeration:
     def _extensions(
         self, made: int, origins: Locations, partial: PartialRoute
     ) -> Iterator[tuple[tuple[int, Locations], PartialRoute]]:
-        """Yield the partial route extended by each block that may come next, with its key."""
+        """Yield the partial route extended by each block that may come next.
+
+        With each comes its key: the set of its blocks, and the robot's possible locations.
+        """
         for block, visit in enumerate(self._blocks.visit):
             if not self._blocks.can_follow(made, block):
                 continue
@@ -160,11 +166,12 @@ class Enumeration:
         return (-prize, cost) >= (-self._incumbent[0], self._incumbent[1])
 
     def _completion(self, made: int) -> tuple[int, int, list[tuple[int, int]]]:
-        """Return bounds on the completions of partial routes with a set of blocks.
+        """Return bounds on the completions of partial routes that have made a set of blocks.
 
-        The first two are the least remaining time, and the prize, with the mandatory blocks. The
-        list has the least time and the prize of each optional block that may still come, sorted by
-        prize per time, highest first.
+        The first is the least remaining time with all mandatory blocks, without the price of
+        leaving the last block made. The second is the prize of the blocks made and of the mandatory
+        ones. The list has the least time and the prize of each optional block that may still come,
+        sorted by prize per time, highest first.
         """
         if made not in self._completions:
             blocks = self._blocks

@@ -29,7 +29,7 @@ class RouteEvaluation:
         return not self.violations
 
     def cost(self, objective: Objective) -> int:
-        """Return the value that the objective minimises."""
+        """Return the cost of the route in units: the value that the objective minimises."""
         match objective:
             case Objective.DURATION:
                 return self.duration

@@ -90,7 +90,11 @@ def _precedes(network: KernelNetwork, one: int, other: int) -> bool:
 
 @compiled
 def _keeps_order(network: KernelNetwork, state: State, first: int, second: int, third: int) -> bool:
-    """Return True if the precedences allow to exchange the two stretches between three cuts."""
+    """Return True if the precedences allow to exchange the stretches of the line between cuts.
+
+    The first stretch lies between the cuts `first` and `second`, the other one between `second` and
+    `third`; cut k is directly after position k.
+    """
     line, bits = state[LINE], state[BITS]
     words = network.before.shape[1]
     bits[:words] = 0
@@ -127,7 +131,7 @@ def _is_in_time(
 
 @compiled
 def _update(network: KernelNetwork, state: State) -> None:
-    """Recompute the times, the cost and the missed prize of the line."""
+    """Recompute the times, the cost and the missed prize of the state's line."""
     line, last, length, missed = state[LINE], state[NUMBERS, COUNT] + 1, 0, 0
     for k in range(last):
         length += network.time[line[k], line[k + 1]]
@@ -178,10 +182,11 @@ def _exchange(network: KernelNetwork, state: State, first: int, second: int, thi
 
 @compiled
 def _best_exchange(network: KernelNetwork, state: State, a: int) -> tuple[int, int, int, int]:
-    """Return the best exchange that gives node `a` a shorter arc.
+    """Return the exchange that saves most among those that give node `a` a shorter arc.
 
-    The first number is the change of the sum of arcs, which is negative, or 0 if there is no such
-    exchange; the others are its cuts.
+    An exchange swaps the two stretches of the line between three cuts. The first number is the
+    change of the sum of arcs, which is negative, or 0 if there is no such exchange; the others are
+    the cuts.
     """
     line, time = state[LINE], network.time
     i, last, most = state[POSITION, a], state[NUMBERS, COUNT] + 1, state[NUMBERS, LENGTH]
@@ -216,7 +221,10 @@ def _best_exchange(network: KernelNetwork, state: State, a: int) -> tuple[int, i
 
 @compiled
 def _improve(network: KernelNetwork, state: State) -> None:
-    """Apply exchanges that save cost, until none has a cut after a node of the queue."""
+    """Apply exchanges that save cost, until there is none for any node of the queue.
+
+    The queue has the nodes after which cuts of the line are tried.
+    """
     while state[QUEUE, 0]:
         a = state[QUEUE, state[QUEUE, 0]]
         state[QUEUE, 0] -= 1
@@ -255,7 +263,7 @@ def _needs_met(network: KernelNetwork, state: State, s: int) -> bool:
 
 @compiled
 def _ruin(network: KernelNetwork, state: State) -> None:
-    """Remove nodes near each other from the line, and the nodes that need their steps."""
+    """Remove some nodes near each other from the line, and those that need a removed step."""
     line, at, made, count = state[LINE], state[POSITION], state[NODE_OF_STEP], state[NUMBERS, COUNT]
     remaining, node = (
         1 + _random_below(state, min(_MOST_REMOVED, count)),
@@ -291,7 +299,10 @@ def _ruin(network: KernelNetwork, state: State) -> None:
 
 @compiled
 def _best_insertion(network: KernelNetwork, state: State, s: int) -> tuple[int, int, int]:
-    """Return the best insertion of a step: its extra cost, its node, and the position before it."""
+    """Return the insertion of a step that costs least: extra cost, node, and position before it.
+
+    Without a possible insertion, the node is -1.
+    """
     line, time = state[LINE], network.time
     best = NO_ARC, -1, -1
     for node in range(network.steps[0, s], network.steps[0, s + 1]):

@@ -144,7 +144,7 @@ def _explain(
 def _shortest_cycle(
     problem: RouteProblem, step: Step, limits: SearchLimits, seed: int, clock: Clock
 ) -> tuple[Step, ...]:
-    """Search for the shortest cyclic order of a large round's parts.
+    """Search for the shortest cyclic order of a large round's parts: its members and inner rounds.
 
     It is a route problem of its own, which starts and ends at the first visit that may come first.
     If there is no such visit, or no route is found, the parts keep their order.

@@ -50,7 +50,7 @@ def count_sets(
     most: int,
     is_time_up: Callable[[], bool] = lambda: False,
 ) -> int:
-    """Count the sets of steps that may come first in a route, as the precedences allow.
+    """Count the sets of steps that a route may have made at some moment, as the precedences allow.
 
     Returns a number above `most` if there are more than `most`, if they do not fit into masks, or
     if the time is up before the end.
@@ -187,7 +187,7 @@ def best_path(network: StepNetwork, layers: list[Layer], pruned: Pruned) -> Best
 def allowed_arcs(
     network: StepNetwork, pruned: Pruned, times: NDArray[np.int64]
 ) -> NDArray[np.int32]:
-    """Return the times of the unpruned arcs and that from start to end, and INF for the others."""
+    """Return `times` for the unpruned arcs and that from start to end, and INF for the others."""
     arcs = np.minimum(times, INF).astype(np.int32)
     allowed = pruned.arcs.copy()
     allowed[network.size, network.size] = True
@@ -243,7 +243,7 @@ def iter_layers(
 
 
 def end_times(network: StepNetwork, arcs: NDArray[np.int32], layer: Layer) -> Masks:
-    """Return the earliest time at the end for each set of a layer."""
+    """Return for each set of a layer the earliest end of a route that makes only its steps."""
     to_end = arcs[: network.size, network.size]
     return np.asarray((layer.times + to_end).min(axis=1), np.int64)
 

@@ -50,7 +50,10 @@ _MOST_OPTIONAL = 22
 
 
 def _applies(problem: RouteProblem) -> bool:
-    """Return True if two measures are necessary and sufficient."""
+    """Return True if a problem has a battery, or waiting that costs nothing, but not both.
+
+    Then labels need a second measure besides time, and two are enough.
+    """
     return problem.waits != (problem.battery is not None)
 
 
@@ -98,7 +101,7 @@ def _report(search: Search, solution: LabelSolution) -> None:
 def solve_with_tables(
     network: StepNetwork, pruned: Pruned, search: Search, layers: list[Layer]
 ) -> LabelSolution:
-    """Return the best path that the beam searches find until the deadline, and its bounds.
+    """Return the best path that the beam searches find until the deadline, and bounds on all paths.
 
     `layers`: layers of the network without a battery.
     """
@@ -131,9 +134,10 @@ def solve_with_tables(
 def solve_with_dual_prices(
     network: StepNetwork, pruned: Pruned, search: Search, start: LabelSolution | None
 ) -> LabelSolution:
-    """Return the best path that the beam searches find until the deadline, and its bounds.
+    """Return the best path that the beam searches find until the deadline, and bounds on all paths.
 
-    For any number of sets, in networks without optional steps whose bits fit into masks.
+    For any number of sets, in networks without optional steps whose bits fit into masks. `start`: a
+    path that is known already, or None.
     """
     bits = StepBits(network, pruned)
     costs = _cost_matrices(network)
@@ -168,7 +172,10 @@ def _widen(
     widths: tuple[int, ...],
     start: LabelSolution | None,
 ) -> LabelSolution:
-    """Run beam searches of increasing width, until one drops no label or the time is up."""
+    """Run beam searches of increasing width, until one drops no label or the time is up.
+
+    Returns the best path found, at least as good as `start`, and bounds on all paths.
+    """
     prize, bound, best = int(network.prize.sum()), 0, start
     for width in widths:
         beam = beams.run(width, best, search)
@@ -256,7 +263,7 @@ def _offer_if_better(
 
 
 def _goal_sets(network: StepNetwork, pruned: Pruned, layers: list[Layer]) -> tuple[Vector, Vector]:
-    """Return the sets that a route may make in time, and their prizes, in descending order.
+    """Return the sets of steps that a route may make in time, and their prizes, highest first.
 
     The check of the time leaves out windows and the battery's state, but includes the least time to
     charge the energy used.

@@ -92,7 +92,7 @@ class _Stage:
             margin *= 2.0
 
     def _cap(self) -> int:
-        """Return an upper limit on the objective of all routes."""
+        """Return an upper limit on the objective of all routes worth considering."""
         return 0 if self.least_prize is None else horizon(self.search.network)
 
     def _best_value(self) -> int | None:
@@ -103,7 +103,7 @@ class _Stage:
         return -best.prize if self.least_prize is None else best.cost
 
     def _most(self, cap: int) -> int:
-        """Return the highest objective that would improve on the best route."""
+        """Return the highest objective, at most `cap`, that would improve on the best route."""
         value = self._best_value()
         return cap if value is None else min(cap, value - 1)
 

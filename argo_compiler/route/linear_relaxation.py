@@ -57,7 +57,7 @@ class LinearRow:
     """the value of the arc itself, shape (m + 1, m + 1); None: 0"""
 
     def coefficients(self, tail: Numbers, head: Numbers) -> Numbers:
-        """Return the coefficients of some arcs."""
+        """Return the coefficients of the arcs with these tails and heads, which are nodes."""
         own = 0 if self.weights is None else self.weights[tail, head]
         across = (self.tails[tail] & self.heads[head]).astype(np.int64)
         return np.asarray(across + self.leave[tail] + self.enter[head] + own)
@@ -131,9 +131,10 @@ class LinearRelaxation:
         return [row for p, row in pairs if p > 0 and not row.equal and row.weights is None]
 
     def restrict(self, most: int) -> tuple[Mask, Mask]:
-        """Return the arcs that routes of a cost up to `most` may have, and their mandatory steps.
+        """Return the arcs that routes with a cost up to `most` may have, and the steps they make.
 
-        This is variable fixing by reduced costs.
+        The steps are those that each of these routes must make. This is variable fixing by reduced
+        costs.
         """
         if self._best is None:
             return self._arcs.copy(), self._mandatory[:-1]

@@ -28,7 +28,11 @@ class CompletionBound(Protocol):
     """Lower bounds on the remaining cost, for sets of steps and last nodes, and kinds of costs."""
 
     def remaining_cost(self, size: int, masks: Masks, last: Vector) -> NDArray[np.int64]:
-        """Return lower bounds for labels with sets of `size`, shape (kinds, labels)."""
+        """Return lower bounds on the cost from each label's last node to the end of the route.
+
+        Each label has a set of `size` steps in `masks`, and a node in `last`. The shape is (kinds,
+        labels).
+        """
         ...
 
     def can_end(self, size: int, masks: Masks) -> NDArray[np.bool_]:
@@ -88,9 +92,10 @@ class DualBound:
         return np.asarray(self._leave[:, self._step[last]] + rest + self._enter[:, -1:])
 
     def _sums(self, size: int, both: NDArray[np.int64]) -> list[NDArray[np.int64]]:
-        """Return, for each value of each chunk of bits, the sum of the prices of its steps.
+        """Return tables of the sum of the steps' prices, for each value of each chunk of a mask.
 
-        The first table includes the steps that all sets of `size` contain.
+        A chunk has `_CHUNK` bits; `both` has the two prices of each step together. The first table
+        includes the steps that all sets of `size` contain.
         """
         if size not in self._tables_by_size:
             undecided, tables = self._bits.undecided(size), []

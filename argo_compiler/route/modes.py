@@ -51,7 +51,10 @@ class StepMode:
     """energy of the round after each of these drives, without the drive"""
 
     def enter(self, drive: Vector, energy: Vector) -> tuple[Vector, Vector]:
-        """Return time and energy until the step's end, after drives of given times and energies."""
+        """Return time and energy from the start of the drive to the step until the step's end.
+
+        `drive` and `energy` are the times and energies of several possible drives.
+        """
         if self.entries is None or self.time is None or self.energy is None:
             return plus(drive, self.service), energy
         index = np.minimum(np.searchsorted(self.entries, drive), len(self.entries) - 1)
@@ -186,7 +189,11 @@ class _RoundOrder:
         return self._next_by_exit[exit]
 
     def runs(self, drives: Vector) -> tuple[Vector, Vector, list[tuple[int, ...]], Vector]:
-        """Return times and energies after some drives, the exits, and the index of each exit."""
+        """Return times and energies of all repetitions after drives of given times, and the exits.
+
+        With the exits, which are sets of possible locations, comes the index of the exit after each
+        drive. The times include the drives; the energies do not.
+        """
         round_, once = self._round, self._without_drive
         more = None if once is None else self._next_repetition(once.exit)
         if once is None or more is None or more.exit != once.exit or more.time == 0:
@@ -346,10 +353,11 @@ def _undominated_in_group(
     is_time_up: Callable[[], bool],
     by_time: bool,
 ) -> list[StepOrder]:
-    """Return the undominated orders of a group with the same first visit.
+    """Return the undominated orders of a group, whose orders have the same first visit.
 
     Each order has an array of times, energies and numbers of exits, shape (3, entries).
-    `is_subset`: whether the locations of exit `row` are among those of exit `column`.
+    `is_subset`: whether the locations of exit `row` are among those of exit `column`. `by_time`: as
+    in `_undominated`.
     """
     undominated: list[StepOrder] = []
     table = np.empty((len(group), *group[0][1].shape), np.int64)

@@ -98,7 +98,7 @@ class StepNetwork:
         return Tour(tuple(order), tour_charges)
 
     def tour_path(self, tour: Tour) -> tuple[tuple[int, ...] | None, dict[int, int]]:
-        """Return the nodes of a route, and its charges by the position among them.
+        """Return the nodes of a route, and its chargers by the position among them.
 
         Instead of the nodes returns None if the network lacks the route's order of some round.
         """
@@ -242,7 +242,7 @@ def _station(
 def _step_order(
     problem: RouteProblem, all_steps: list[Step]
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_], NDArray[np.bool_]]:
-    """Return the network's `needs`, `before` and `mandatory`."""
+    """Return the network's `needs`, `before` and `mandatory`, as in `StepNetwork`."""
     step_of_visit = {visit: k for k, step in enumerate(all_steps) for visit in step.visits}
     count = len(all_steps)
     mandatory = np.array(

@@ -35,7 +35,7 @@ class LayerRules:
     """bits with the same meaning in sets of k and of k + 1 steps; other bits start as 0"""
 
     def rows(self, masks: Masks, node: int) -> NDArray[np.int64]:
-        """Return the rows of the sets that the node may follow."""
+        """Return the indices in `masks` of the sets of steps that the node may follow."""
         if not self.open[node]:
             return np.zeros(0, np.int64)
         needs, ruled = self.needs[node], self.ruled_out_by[node]
@@ -69,7 +69,7 @@ class StepBits:
         return int(self._number.max(initial=-1)) < MOST_BITS
 
     def _assign_numbers(self) -> Masks:
-        """Return the number of each step's bit: the first that is free when it is undecided."""
+        """Return the number of each step's bit: the first one free while it is undecided."""
         if not self.shared:
             return np.arange(len(self._from))
         free_from: list[int] = []

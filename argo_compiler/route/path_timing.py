@@ -98,7 +98,7 @@ class PathTiming:
             extended.append(PathLabel(begin + self._service[node], used, waited, charges))
 
     def evaluate_path(self, path: tuple[int, ...]) -> PathLabel | None:
-        """Return the best label at the end of a complete path, or None if it is infeasible."""
+        """Return the label of least cost at the end of a complete path, or None if infeasible."""
         labels, origin = self.start_labels(), self.network.size
         for position, node in enumerate((*path, self.network.size)):
             labels = self.extend(labels, origin, node, position)
@@ -108,7 +108,7 @@ class PathTiming:
         return min(labels, key=self.cost)
 
     def cost(self, label: PathLabel) -> int:
-        """Return the value that the objective minimises."""
+        """Return the cost of a label at a route's end: the value that the objective minimises."""
         match self.network.objective:
             case Objective.DURATION:
                 return label.time

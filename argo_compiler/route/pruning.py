@@ -184,10 +184,10 @@ def least_path_times(network: StepNetwork) -> NDArray[np.int64]:
 def _shortest_path_lengths(
     first: NDArray[np.float64], onward: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Compute the lengths of the shortest paths, by Dijkstra's algorithm.
+    """Compute the lengths of the shortest paths to all nodes, by Dijkstra's algorithm.
 
-    `first`: lengths of the first arcs; `onward`: lengths of the other arcs (E. W. Dijkstra,
-    Numerische Mathematik 1, 1959).
+    `first`: length of the first arc to each node; `onward`: lengths of the arcs between nodes, from
+    row to column (E. W. Dijkstra, Numerische Mathematik 1, 1959).
     """
     length, ahead = first.copy(), first.copy()
     for _ in range(len(length)):

@@ -54,7 +54,7 @@ class Relaxation:
             self._rows.append((np.arange(n + self._arcs), self._times, -inf, limit + 0.5))
 
     def prize_bound(self, claimed: int) -> int | None:
-        """Return an upper bound on the prize, or None if the relaxation has no route.
+        """Return an upper bound on the prize of any route, or None if the relaxation has no route.
 
         The search ends when the bound is at most the claimed one.
         """
@@ -62,7 +62,7 @@ class Relaxation:
         return None if least is None else -least
 
     def cost_bound(self, prize: int, claimed: int) -> int | None:
-        """Return a lower bound on the cost of routes that win a prize, or None if none wins it.
+        """Return a lower bound on the cost of routes that win at least `prize`; None: none wins it.
 
         The search ends when the bound is at least the claimed one.
         """
@@ -89,9 +89,10 @@ class Relaxation:
         return np.append(variables, self._arcs + block), np.append(coefficients, -1.0), least, most
 
     def _minimum(self, objective: NDArray[np.float64], prize: int, enough: int) -> int | None:
-        """Return a lower bound on an objective, for routes that win a prize; None: none wins it.
+        """Return a lower bound on an objective of routes that win at least `prize`.
 
-        The search ends when the bound is at least `enough`, or at the deadline.
+        `objective` has the coefficients of the variables. The search ends when the bound is at
+        least `enough`, or at the deadline. Returns None if no route wins the prize.
         """
         best = int(np.minimum(objective, 0.0).sum())
         lower = np.zeros(len(objective))

@@ -118,7 +118,11 @@ _Key = tuple[float, int, float, float]
 
 
 def _key(problem: RouteProblem, route: Tour, estimate: Completion, confidence: float) -> _Key:
-    """Return the sort key of a route; the greater one is better."""
+    """Return the sort key of a route: of two routes, the one with the greater key is better.
+
+    It compares the probability of completion up to `confidence`, then the prize, the probability
+    itself, and the shorter mean duration.
+    """
     sufficient = min(estimate.probability, confidence)
     prize = _prize(problem, route) if estimate.probability > 0.0 else 0
     return (sufficient, prize, estimate.probability, -estimate.duration)
@@ -150,7 +154,7 @@ class _Search:
         return probability == 1.0 and prize == sum(visit.prize for visit in self._problem.visits)
 
     def consider(self, route: Tour) -> bool:
-        """Store a route if it is new and the best one so far, and return whether it is."""
+        """Store a route if it is better than the best one so far; return True if it was stored."""
         identity = (route.order, tuple(sorted(route.charges.items())))
         if identity in self._seen:
             return False
@@ -253,7 +257,11 @@ def _with_longer_legs(problem: RouteProblem, extra: NDArray[np.float64]) -> Rout
 def _with_tighter_limits(
     problem: RouteProblem, margin: float, spread: TravelSpread, deviations: float
 ) -> RouteProblem:
-    """Return the problem with earlier limits and a smaller battery."""
+    """Return the problem with earlier limits and a smaller battery.
+
+    `margin`: units by which the limits are earlier; `deviations`: standard deviations of the energy
+    by which the battery is smaller.
+    """
     less = round(margin)
     visits = tuple(
         visit

@@ -58,9 +58,10 @@ class Draws:
         self.leg = lru_cache(_CACHED // samples)(self._draw_leg)
 
     def _draw_leg(self, location: int, time: int) -> tuple[Floats, Floats, Floats]:
-        """Draw the numbers of the `time`-th leg to a location.
+        """Draw the numbers of the leg to a location that is the `time`-th one, from 0.
 
-        Returns the factors, the delays in s, and the number of services there, for each sample.
+        Returns the factors of its time, the delays in s, and how often the service there is done,
+        for each sample.
         """
         spread, rng = self.spread, self._generator(1, location, time)
         factors = self.common * _factors(spread.way, self.samples, rng)
@@ -182,7 +183,7 @@ class _SampledSimulation:
         self._location_set[selected] = self._sets.index(locations)
 
     def _drive(self, selected: Bools, location: int) -> Floats:
-        """Drive to a location, and return the number of services there in each sample."""
+        """Drive to a location, and return how often the service there is done in each sample."""
         factors, delays, services = self.draws.leg(location, self._leg_counts[location])
         self._leg_counts[location] += 1
         nominal = self._worst(self.problem.travel, location)

@@ -144,9 +144,9 @@ class LocalSearch:
         return tuple(path)
 
     def _insert(self, path: list[int], s: int) -> list[int] | None:
-        """Return the path with a step at one of the cheapest positions, or None if it fits nowhere.
+        """Return the path with a step inserted where it costs least, or None if it fits nowhere.
 
-        Only the cheapest positions are tried.
+        Only a few of the cheapest positions are tried.
         """
         steps = [self._step[node] for node in path]
         low = max((k + 1 for k, t in enumerate(steps) if t in self._before[s]), default=0)

@@ -149,7 +149,7 @@ class Search:
         shared.turns.append(SolverTurn(solver, begin, shared.clock() - shared.begun))
 
     def spend(self, work: float, iterations: int = 0) -> None:
-        """Add a solver's work, in nominal s by its own count, and the routes it has tried."""
+        """Add a solver's work, in nominal s by its own count, and how many routes it has tried."""
         with self._shared.lock:
             self._shared.work += work
             self._shared.iterations += iterations

@@ -42,9 +42,10 @@ def make_solution(
     prize_bound: int,
     bound: int,
 ) -> LabelSolution:
-    """Return the path with its prize and cost.
+    """Return the path with its prize and cost, and with bounds on all paths.
 
-    Raises AssertionError if the path is infeasible, which is a defect of the solver.
+    `prize_bound` and `bound` are those of `LabelSolution`. Raises AssertionError if the path is
+    infeasible, which is a defect of the solver.
     """
     route = network.route(path, dict(charges))
     evaluation = evaluate(network.problem, route)

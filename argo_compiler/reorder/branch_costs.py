@@ -52,11 +52,19 @@ class BranchCosts:
         self._rounds: dict[int, float] = {}
 
     def time(self, unit: TaskUnit) -> Row:
-        """Return the times from the end of a unit's first task to the end of each destination."""
+        """Return the times from the end of a unit's first task to the end of each destination.
+
+        A destination is a task with its action, a charger, or the mission's end. The times are in
+        units of time, and include the conditional tasks of the unit: in the worst case, or in the
+        mean where probabilities are known.
+        """
         return self._row(unit, self._time, self._probabilities)
 
     def inner_time(self, unit: TaskUnit) -> float:
-        """Return the time from the end of a unit's first task to the end of its last one."""
+        """Return the time from the end of a unit's first task to the end of its last one.
+
+        It is in units of time, and 0 if the unit has one task.
+        """
         if len(unit.leaves) == 1:
             return 0.0
         inside, costs = frozenset(unit.leaves), self._time
@@ -66,7 +74,7 @@ class BranchCosts:
         return float(rows[0])
 
     def energy(self, unit: TaskUnit) -> Row:
-        """Return the energies for the same part as `time`, always in the worst case."""
+        """Return the energies for the same drives and tasks as `time`, always in the worst case."""
         return self._row(unit, self._energy, {})
 
     def _row(self, unit: TaskUnit, costs: Costs, probabilities: Probabilities) -> Row:
@@ -91,7 +99,10 @@ class BranchCosts:
         probabilities: Probabilities,
         leaving: Callable[[int], Row],
     ) -> Row:
-        """Return the costs after the end of the entry; `leaving` gives those from the last leaf."""
+        """Return the costs from the end of leaf `entry` to the destinations, over leaves `inside`.
+
+        `leaving` returns the costs from the last of these leaves on.
+        """
         branches = {
             leaf: self._branches(leaf, inside, level, costs, probabilities) for leaf in inside
         }
@@ -134,10 +145,10 @@ class BranchCosts:
         return branches
 
     def _tail(self, leaf: int, level: int, costs: Costs) -> tuple[int | None, float]:
-        """Return the unconditional target after all groups that end here, and their extra cost.
+        """Return the node that follows a leaf without a condition, and the cost of further rounds.
 
-        The groups are those below `level`; the extra cost is that of their further rounds. The
-        target is None if one of them is endless.
+        These are the further rounds of all groups below `level` that end with the leaf; the node
+        follows after all of them. It is None if one of the groups is endless.
         """
         flow = self._chain.flow
         node, extra = flow.leaves[leaf].unconditional, 0.0
@@ -151,7 +162,7 @@ class BranchCosts:
         return node, extra
 
     def _further_rounds(self, number: int, costs: Costs) -> float:
-        """Return the cost of a group's rounds after the first one."""
+        """Return the cost of all rounds of group `number` after the first one."""
         group = self._chain.flow.groups[number]
         round_ = self._after(
             group.start,
@@ -171,7 +182,10 @@ class BranchCosts:
 
 
 def _combined(options: list[tuple[Row, float | None]], default: Row) -> Row:
-    """Return the mean of the options if all probabilities are known, else the worst."""
+    """Return the mean of rows of costs if all their probabilities are known, else the worst.
+
+    `default` is the result if there are no rows.
+    """
     if not options:
         return default
     known = [p for _, p in options if p is not None]
@@ -185,7 +199,7 @@ def _combined(options: list[tuple[Row, float | None]], default: Row) -> Row:
 def _depth_first(
     entry: int, following: Mapping[int, list[int | None]]
 ) -> tuple[list[int], set[tuple[int, int]]]:
-    """Return the nodes reached, each after its successors, and the edges that lead back."""
+    """Return the nodes reached from `entry`, successors first, and the edges that lead back."""
     order: list[int] = []
     back: set[tuple[int, int]] = set()
     is_done = {entry: False}

@@ -136,7 +136,10 @@ def late_visits(planned: MissionProblem, route: Tour) -> Iterator[str]:
 
 
 def _duration_limit(mission: Mission, requirements: Requirements) -> tuple[float, str] | None:
-    """Return the duration limit in s and its description, or None if there is no limit."""
+    """Return the shorter of maximum duration and budget, in s, with its description.
+
+    Returns None if there is neither.
+    """
     limits = []
     if mission.max_duration is not None:
         words = f"maximum duration {time_words(mission.max_duration)}"
@@ -190,8 +193,8 @@ def _costs(
     """Return times (units), energies (Wh) and the inner times of visits.
 
     Times and energies have the problem's rows and columns. They include the conditional tasks after
-    the row's first task, and the action at the column; inf if there is no path. The inner time of a
-    visit is that of its conditional tasks, in whole units.
+    the first task of the row's visit, and the action at the column; inf if there is no path. The
+    inner time of a visit is that of its conditional tasks, in whole units of time.
     """
     tasks, end = len(matrix.tasks), visits.chain.end
     nowhere = np.zeros((len(matrix.time), 1))  # column of a mission that ends where the robot is
@@ -216,7 +219,10 @@ def _costs(
 def _travel_times(
     visits: Visits, times: NDArray[np.float64], services: list[int], matrix: TravelMatrix
 ) -> NDArray[np.int64]:
-    """Return the travel times in whole units, without the service times of the visits."""
+    """Return the problem's travel times in whole units, without the service times of the visits.
+
+    `times` are those of `_costs`, which include parts of the service times.
+    """
     is_path = np.isfinite(times)
     rounded = np.ceil(np.where(is_path, times, 0.0) - _ROUNDING).astype(np.int64)
     for k, unit in enumerate(visits.task_units):
@@ -226,7 +232,7 @@ def _travel_times(
 
 
 def _work(unit: TaskUnit, matrix: TravelMatrix) -> int:
-    """Return the units that the first task of a unit takes itself."""
+    """Return the time that the action of a task unit's first task takes, in units of time."""
     return int(matrix.work[unit.entry])
 
 
@@ -275,7 +281,7 @@ def _rounds(visits: Visits, matrix: TravelMatrix) -> Iterator[Round]:
 def _battery(
     visits: Visits, matrix: TravelMatrix, times: NDArray[np.float64], energies: NDArray[np.float64]
 ) -> EnergyBudget | None:
-    """Return the energy budget, or None if it is unknown or lasts to the end in every order."""
+    """Return the energy budget; None if it is unknown, or if one charge lasts in every order."""
     if matrix.battery is None or matrix.charging <= 0.0:
         return None
     if _max_energy(visits, matrix, times, energies) <= matrix.battery:

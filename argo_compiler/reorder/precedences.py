@@ -17,7 +17,9 @@ AS_WRITTEN = "the order as written"
 def precedences(
     visits: Visits, precise: bool, requirements: Requirements
 ) -> tuple[Precedence, ...]:
-    """Return all precedences; `precise` states whether the mission requires the written order.
+    """Return all precedences of a mission's visits.
+
+    `precise` states whether the mission itself requires the written order.
 
     Raises ArgoError if a requirement names something that the mission does not have.
     """
@@ -41,9 +43,10 @@ def precedences(
 
 
 def required_last_visit(visits: Visits) -> int | None:
-    """Return the visit that must be made because an earlier unit can't end the mission, or None.
+    """Return the last visit if an earlier unit can't end the mission, so that it must be made.
 
-    A unit that is left by several transitions can't come last in a mission that does not dock.
+    Returns None if it need not be made. A unit that is left by several transitions can't come last
+    in a mission that does not dock.
     """
     if visits.chain.end is not None or not visits.chain.units:
         return None
@@ -137,7 +140,10 @@ def _decisions(visits: Visits) -> Iterator[Precedence]:
 
 
 def _early_ends(visits: Visits) -> Iterator[Precedence]:
-    """Yield precedences that keep visits on their side of a task that may end the mission."""
+    """Yield precedences around each task that may end the mission before its usual end.
+
+    What is written before the task stays before it, and what is written after it stays after it.
+    """
     leaves = {leaf for leaf, _ in visits.chain.early_exits}
     exits = sorted({visits.visit_of_leaf[leaf] for leaf in leaves if leaf in visits.visit_of_leaf})
     for exit_, low, high in zip(
@@ -152,7 +158,7 @@ def _early_ends(visits: Visits) -> Iterator[Precedence]:
 
 
 def _last_units(visits: Visits) -> Iterator[Precedence]:
-    """Yield precedences that keep units with several exits from coming last.
+    """Yield precedences that keep a unit that is left by several transitions from coming last.
 
     A round ends with one task, and so does a mission that does not dock.
     """
@@ -164,7 +170,10 @@ def _last_units(visits: Visits) -> Iterator[Precedence]:
 
 
 def _before_last(visits: Visits, units: tuple[Unit, ...], whole: str) -> Iterator[Precedence]:
-    """Yield precedences that put each unit with several exits before the last unit."""
+    """Yield precedences that put units which are left by several transitions before the last unit.
+
+    `whole` names what the units are part of, for the message.
+    """
     for unit in units[:-1]:
         if isinstance(unit, TaskUnit) and _has_several_exits(unit):
             here, last = visits.visit_of_leaf[unit.entry], visits.visits_in((units[-1],))[-1]

@@ -92,7 +92,7 @@ class _Rewriting:
         )
 
     def _tasks_by_leaf(self) -> list[tuple[int, Task]]:
-        """Return the mission's tasks with the numbers of their leaves."""
+        """Return pairs of a leaf's number and its task, for all tasks of the mission but START."""
         leaves = self.chain.flow.leaves
         return [
             (i, self.tasks_before[leaf.name])
@@ -162,7 +162,10 @@ class _Rewriting:
     def _branch_targets(
         self, leaf: int, task: Task, inside: set[str], following: str | None
     ) -> dict[str, object]:
-        """Return the fields with the new targets of a failure and a missed window, if changed."""
+        """Return the fields of a task with new targets of its failure and missed window.
+
+        Fields that do not change are left out.
+        """
 
         def new_target(target: str | None) -> str | None:
             if target is None or target in inside or target in self._early_end_tasks(leaf, True):
@@ -181,7 +184,10 @@ class _Rewriting:
         return changed
 
     def _keeps_target(self, leaf: int, transition: Transition, inside: set[str]) -> bool:
-        """Return True if a transition stays within its unit or ends the mission early."""
+        """Return True if a transition keeps its target: it stays in its unit or ends the mission.
+
+        The end is one before the mission's usual end.
+        """
         if transition.target in inside:
             return bool(transition.conditions) or not self._ends_round_of_level(leaf)
         return transition.target in self._early_end_tasks(leaf, bool(transition.conditions))

@@ -48,7 +48,7 @@ class Level:
         return len(self.children)
 
     def successors(self, edges: Sequence[Edge]) -> list[list[int]]:
-        """Return the successors of each child and of the sink by these edges."""
+        """Return by these edges the successors of each child and of the sink, as positions."""
         following: list[list[int]] = [[] for _ in range(len(self.children) + 1)]
         for edge in edges:
             following[edge.source].append(edge.target)
@@ -230,7 +230,11 @@ class TaskGraph:
             level.chain_error = f"'{flow.leaves[leaf].name}' leaves it"
 
     def _without_early_ends(self, level: Level) -> list[Edge]:
-        """Return the edges without early ends of children from which the usual end is reached."""
+        """Return a level's edges without those that only end the mission early.
+
+        An edge remains if its child does not reach the usual end otherwise. The others are recorded
+        in `early_exits`.
+        """
         usual = [edge for edge in level.edges if not edge.early]
         leads_to_end = can_reach(level.successors(usual), [level.sink])
         remaining = []
@@ -244,7 +248,10 @@ class TaskGraph:
         return remaining
 
     def detach_early_ends(self, level: Level) -> None:
-        """Remove from the mission's level the children that do not lead to its usual end."""
+        """Remove from the mission's level the children that do not lead to its usual end.
+
+        Transitions to them become early exits.
+        """
         leads_to_end = can_reach(level.successors(level.edges), [level.sink])
         last = None if self.end is None else level.child_of[self.end]
         out = {k for k in range(len(level.children)) if not leads_to_end[k] and k != last}

@@ -53,11 +53,11 @@ class TravelMatrix:
         return watt_hours * 3600.0 / (self.charging * self.unit)
 
     def units_up(self, seconds: float) -> int:
-        """Return a time in whole units, rounded up."""
+        """Return a time in s as whole units of time, rounded up."""
         return int(np.ceil(seconds / self.unit - _ROUNDING))
 
     def units_down(self, seconds: float) -> int:
-        """Return a time in whole units, rounded down."""
+        """Return a time in s as whole units of time, rounded down."""
         return int(np.floor(seconds / self.unit + _ROUNDING))
 
 

@@ -116,7 +116,10 @@ class _Finder:
         )
 
     def _units(self, group: int, level: Level, entry: int) -> tuple[Unit, ...]:
-        """Return the units of a level in order. Each is entered at one leaf."""
+        """Return the units of a level in the written order. Each is entered at one leaf.
+
+        `entry` is the leaf at which the level is entered.
+        """
         successors = level.successors(level.edges)
         reached = reachable_from(successors, [level.child_of[entry]])
         parts = [part for part in reversed(components(successors)) if reached[part[0]]]
@@ -153,7 +156,10 @@ class _Finder:
         )
 
     def _entries(self, level: Level, chain: Sequence[int]) -> set[int]:
-        """Return the leaves at which a chain is entered from outside."""
+        """Return the leaves at which a chain is entered from outside it.
+
+        A chain is here a list of a level's children.
+        """
         inside = set(chain)
         return {
             edge.entry

@@ -99,7 +99,10 @@ class Visits:
         return sorted({self.visit_of_leaf[i] for i in leaves if i in self.visit_of_leaf})
 
     def find(self, what: MissionPart) -> list[int]:
-        """Return the visits that a requirement names. Raises ArgoError if there are none."""
+        """Return the visits of a checkpoint, task or group that a requirement names.
+
+        Raises ArgoError if there are none.
+        """
         if isinstance(what, str):
             for i, leaf in enumerate(self.chain.flow.leaves):
                 if leaf.name == what:
@@ -124,7 +127,7 @@ class Visits:
         return result
 
     def with_whole_groups(self, visits: list[int]) -> list[int]:
-        """Return the visits with all visits of their outermost groups: left out only together."""
+        """Return the visits and all others in their outermost groups: left out only together."""
         result = list(visits)
         for group_unit, inside in self.group_units:
             around = self.chain.flow.groups[group_unit.group].parent

@@ -35,7 +35,7 @@ def with_wait_times(chain: UnitChain, matrix: TravelMatrix) -> TravelMatrix:
 
 
 def _possible_rows(chain: UnitChain, waits: list[int], start: int) -> dict[int, set[int]]:
-    """Return, for each WAIT, the rows of the matrix where the robot may be."""
+    """Return for each WAIT the rows of the travel matrix at whose poses the robot may wait."""
     flow = chain.flow
     leading: dict[int, set[int]] = {k: set() for k in waits}
     if flow.initial in leading:
@@ -55,7 +55,7 @@ def _possible_rows(chain: UnitChain, waits: list[int], start: int) -> dict[int, 
 
 
 def _leaf_transitions(chain: UnitChain) -> list[tuple[int, int]]:
-    """Return all pairs of leaves that may follow each other, with rounds and time-outs."""
+    """Return all pairs of leaves that may follow each other, also by rounds and time-outs."""
     flow = chain.flow
     result: list[tuple[int, int]] = []
     ends: dict[int, list[int]] = {}

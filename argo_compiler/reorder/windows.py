@@ -49,9 +49,10 @@ class Windows:
         self._visits, self._matrix = visits, matrix
 
     def start_limits(self, visit: int) -> tuple[int, int | None]:
-        """Return the earliest and latest start of a visit in units, for an end by `latest`.
+        """Return the earliest and latest start of a visit's action in units of time.
 
-        The latest start is None if there is no limit.
+        With the latest start, the action ends at the end of its hard window; it is None if there is
+        no limit.
         """
         entry = self._visits.task_units[visit].entry
         window = _binding_window(self._visits.leaf_task(entry).window)

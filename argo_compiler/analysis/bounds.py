@@ -29,7 +29,7 @@ class MissionBounds:
 
     @cached_property
     def completion_times(self) -> tuple[TaskEnd, ...]:
-        """Completion times of each leaf, if durations are known."""
+        """Bounds on the end of each leaf over all its visits; for known durations only."""
         return completion_times(self.lengths, self.mission_level)
 
 

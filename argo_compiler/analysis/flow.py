@@ -112,7 +112,7 @@ class Flow:
         return self.end_node + 1
 
     def round_end(self, group: int) -> int:
-        """Return the node at which a round of the group has ended."""
+        """Return the number of the node at which a round of the group has ended."""
         return len(self.leaves) + group
 
     def time_up(self, group: int) -> int:
@@ -128,7 +128,7 @@ class Flow:
 
     @classmethod
     def from_machine(cls, hfsm: Hfsm, mission: Mission) -> "Flow":
-        """Return the control-flow graph of a machine, in linear time."""
+        """Return the control-flow graph of a machine, computed in linear time."""
         return _Builder(hfsm, mission).flow()
 
 

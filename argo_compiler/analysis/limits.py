@@ -132,7 +132,11 @@ def _too_long(study: Study, duration: Bounds, limit: float) -> Iterator[Diagnost
 def _cut_short(
     study: Study, bounds: MissionBounds, limit: float, longest: Bound | None
 ) -> Iterator[Diagnostic]:
-    """Yield a diagnostic on the tasks that are lost when a reaction to TIME_UP ends the mission."""
+    """Yield a diagnostic on tasks that are not done if the reaction to TIME_UP ends the mission.
+
+    There is none if the mission always ends within `limit` (s) when nothing fails. `longest` is the
+    upper bound on the duration with failures and reactions.
+    """
     assert bounds.duration is not None
     most = bounds.duration.most.value
     if most is not None and most <= limit:

@@ -213,7 +213,7 @@ class PathLengths:
         def hops(
             last: Source, target: int, cost: Cost, group_exit: GroupExit | None
         ) -> Iterator[Hop]:
-            """Yield the steps to a leaf of the level: it may end, or its window may close."""
+            """Yield the steps to a leaf: to its end and missed window, or to the group around."""
             following = self._key_for(level, target, last)
             if not isinstance(following, int):
                 yield Hop(node(following), cost, group_exit, cost)

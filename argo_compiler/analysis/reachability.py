@@ -322,7 +322,7 @@ class ReachabilitySearch:
         return leaf.may_give_up or (leaf.deadline is not None and leaf.missed is None)
 
     def _values(self, object_id: str) -> int:
-        """Return the state bits of all values of an object."""
+        """Return the state bits of the values that an object can show; 0 if it is not tracked."""
         shift = self.fields.shift.get(object_id)
         return 0 if shift is None else self.fields.scales[object_id].possible << shift
 
@@ -338,7 +338,7 @@ class ReachabilitySearch:
         return (scale.possible | scale.unreadable) << shift
 
     def _after_success(self, leaf: LeafFlow, state: int) -> int:
-        """Return the state after the leaf's measurement succeeded."""
+        """Return the possible readings after a leaf's measurement succeeded, from those before."""
         object_id = leaf.measures
         if object_id is None or object_id not in self.fields.scales:
             return state
@@ -348,7 +348,10 @@ class ReachabilitySearch:
         )
 
     def _after_failure(self, leaf: LeafFlow, state: int) -> int:
-        """Return the state after the leaf's measurement finally failed."""
+        """Return the possible readings after a leaf's measurement failed, from those before.
+
+        It has failed finally: there is no further attempt.
+        """
         object_id = leaf.measures
         if object_id is None or object_id not in self.fields.scales:
             return state

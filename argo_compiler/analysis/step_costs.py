@@ -358,7 +358,10 @@ class StepCosts:
                 self.too_slow[target] = counted
 
     def _include_retries(self, clean_up: float) -> None:
-        """Replace the costs of the steps by those with all attempts, none longer than the first."""
+        """Replace the costs of the steps by upper bounds that include all attempts and clean-ups.
+
+        No attempt takes longer than the first one.
+        """
         longest: dict[int, Cost] = {}
         for (source, target), cost in self._steps.items():
             leaf = self.flow.leaves[target]

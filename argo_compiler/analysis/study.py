@@ -118,7 +118,10 @@ class Study:
         )
 
     def path_words(self, leaf: int) -> str:
-        """Return the text of a shortest path to a leaf if nothing fails; empty if there is none."""
+        """Return the names of the tasks on a shortest execution path to a leaf if nothing fails.
+
+        The text is empty if there is no such path.
+        """
         path = path_to(self._path_tree, self.flow.initial, leaf)
         return "" if path is None else self.words(path)
 

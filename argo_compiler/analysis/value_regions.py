@@ -49,16 +49,16 @@ class Scale:
 
     @cached_property
     def width(self) -> int:
-        """Number of bits of a set."""
+        """Number of bits of a set of readings."""
         return 2 * len(self.bounds) + 4
 
     @cached_property
     def full(self) -> int:
-        """Set with all bits, those without a value included."""
+        """Set of all readings, those without a value included."""
         return (1 << self.width) - 1
 
     def satisfying(self, condition: Condition) -> int:
-        """Return the readings that satisfy a condition on this object, whatever their age."""
+        """Return the bits of the readings that satisfy a condition on this object at any age."""
         match condition.type:
             case ConditionType.UNREADABLE:
                 return self.unreadable
@@ -192,7 +192,10 @@ class Fields:
 
 
 def sum_bits(parts: Iterable[int]) -> int:
-    """Return the union of bit sets; pairwise, so that few intermediate results are long."""
+    """Return the union of bit sets.
+
+    It is computed in pairs, so that few intermediate results are long.
+    """
     pending = list(parts)
     while len(pending) > 1:
         pending = [

@@ -162,7 +162,11 @@ class MissionWalk:
         return self.states.set(state, o, scale.failed | others) | self._reported
 
     def _may_fail(self, task: Task) -> bool:
-        """Return True if a task may finally fail; without failures, only by its time (W3, W5)."""
+        """Return True if a task may finally fail.
+
+        Without failures of actions, a WAIT fails when its limit has elapsed (W3), and a task fails
+        when its hard window has closed (W5).
+        """
         waits = task.wait is not None and task.wait.limit is not None
         return self._can_miss_window(task) or waits or (self.failures and task.action is not _WAIT)
 

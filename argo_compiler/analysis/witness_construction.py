@@ -9,7 +9,7 @@ from argo_compiler.analysis.witness import Invariant, ReadingScale, Witnesses
 
 
 def make_witnesses(study: Study, loops: Iterable[NonTerminatingLoop]) -> Witnesses:
-    """Return the witnesses for the verdicts and the loops of a study, in linear time."""
+    """Return the witnesses for the verdicts and the loops of a study, made in linear time."""
     return Witnesses(
         nominal=_invariant(study, study.nominal, failures=False),
         all=_invariant(study, study.with_failures, failures=True),

@@ -157,7 +157,7 @@ class _Check:
         self._refute_by(suggestion.route)
 
     def search(self) -> None:
-        """Search for better routes, and for proofs that there are none."""
+        """Search for routes that refute the open claims, and for proofs that there are none."""
         self._confirm_by_bounds(sum(v.prize for v in self._problem.visits), lambda *_: 0, _TRIVIAL)
         self._why.clear()
         with suppress(_OutOfTime):

@@ -225,7 +225,10 @@ class CircuitModel:
         j: int,
         charger: int | None,
     ) -> Any:
-        """Return the time of the arrival at node j from node i, straight or by a charger."""
+        """Return the time of the arrival at node j from node i, straight or by a charger.
+
+        It is an expression of the model's variables.
+        """
         network, m = self._network, self._network.size
         departure: Any = 0
         if i < m:
@@ -249,7 +252,7 @@ class CircuitModel:
                 self._link_begin(end, arrival, literal)
 
     def _add_precedences(self) -> None:
-        """Add the constraints of `needs` and `before`, on begin times or on ranks."""
+        """Add constraints for the network's `needs` and `before`, on begin times or on ranks."""
         network, pruned, model = self._network, self._pruned, self.model
         ranks: list[cp_model.IntVar] | None = None
         for i, j in np.argwhere(network.before).tolist():

@@ -143,7 +143,7 @@ class Enumeration:
                     yield key, PartialRoute(end, travel, arrived.used, tour)
 
     def _finish(self, made: int, origins: Locations, partial: PartialRoute) -> None:
-        """Complete a partial route, and store it as the best one if it is feasible and better."""
+        """Complete a partial route by the drive to the end; store it if it is feasible and best."""
         end = self._after_drive(partial, self._blocks.drive(origins, self._problem.end))
         if end is None or self._blocks.mandatory & ~made or end.time > self._limit:
             return

@@ -237,7 +237,7 @@ def _improve(network: KernelNetwork, state: State) -> None:
 
 @compiled
 def _shuffle(network: KernelNetwork, state: State) -> None:
-    """Apply some random exchanges near each other."""
+    """Exchange some random pairs of neighbouring stretches of the line, near each other."""
     count = state[NUMBERS, COUNT]
     around, length = _random_below(state, count), min(_LONGEST_STRETCH, count // 2)
     for _ in range(2 + _random_below(state, 3)):

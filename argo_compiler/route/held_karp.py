@@ -270,7 +270,7 @@ def _can_complete(
 
 
 def set_prizes(network: StepNetwork, masks: Masks) -> Masks:
-    """Return the prize of each set; the prize of all steps if no step is optional."""
+    """Return the sum of prizes of each set of steps; that of all steps if no step is optional."""
     if not network.selective:
         return np.full(len(masks), network.prize.sum())
     total = np.zeros(len(masks), np.int64)

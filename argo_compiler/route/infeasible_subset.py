@@ -42,7 +42,7 @@ class InfeasibleSubset:
 
 
 def requirements(problem: RouteProblem) -> list[Requirement]:
-    """Return all requirements of a problem."""
+    """Return all constraints of a problem that could be given up to make a route possible."""
     collected = [
         Requirement(precedence.words, "precedence", number)
         for number, precedence in enumerate(problem.precedences)
@@ -212,7 +212,11 @@ class _Finder:
         self._unknown = False
 
     def infeasible_subset(self) -> tuple[list[Requirement], bool, bool]:
-        """Return an infeasible subset, whether it is minimal, and whether none is smaller."""
+        """Return requirements that can't all be met, and how good this explanation is.
+
+        The second member is True if each smaller part of them can be met; the third one is True if
+        no smaller number of requirements is infeasible.
+        """
         everything = frozenset(range(len(self._candidates)))
         small = self._shrink(everything)
         minimal = not self._unknown
@@ -269,7 +273,7 @@ class _Finder:
         return infeasible
 
     def _extend(self, feasible: Subset) -> Subset:
-        """Add requirements to a feasible subset until it is maximal."""
+        """Add requirements to a feasible subset until none can be added, or no check is left."""
         for added in range(len(self._candidates)):
             if (
                 added not in feasible

@@ -292,7 +292,10 @@ def _goal_sets(network: StepNetwork, pruned: Pruned, layers: list[Layer]) -> tup
 def _earliest_ends(
     network: StepNetwork, arcs: NDArray[np.int32], layers: Iterable[Layer]
 ) -> tuple[Vector, Vector]:
-    """Return all sets of the layers, with the empty one, and their earliest end times."""
+    """Return all sets of steps in the layers, with the empty one, and their earliest ends.
+
+    An end is that of a route which makes only the steps of the set.
+    """
     m = network.size
     masks, at_end = [np.zeros(1, np.int64)], [arcs[m:, m].astype(np.int64)]
     for layer in layers:

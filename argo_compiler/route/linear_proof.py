@@ -96,7 +96,7 @@ class _Stage:
         return 0 if self.least_prize is None else horizon(self.search.network)
 
     def _best_value(self) -> int | None:
-        """Return the objective of the best route, or None if there is none with the least prize."""
+        """Return the objective of the best route; None if none with the least prize is known."""
         best = self.search.best
         if best is None or best.prize < (self.least_prize or 0):
             return None

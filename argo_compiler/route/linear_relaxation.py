@@ -125,7 +125,7 @@ class LinearRelaxation:
 
     @property
     def cuts(self) -> list[LinearRow]:
-        """Cuts with a positive price in the bound."""
+        """Cuts with a positive dual price, on which the bound rests."""
         prices = [] if self._best is None else self._best.prices.tolist()
         pairs = zip(prices, self._rows, strict=False)
         return [row for p, row in pairs if p > 0 and not row.equal and row.weights is None]

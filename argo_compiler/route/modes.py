@@ -129,7 +129,10 @@ class StepOrder(Protocol):
         ...
 
     def run(self, drive: int) -> "StepOutcome":
-        """Return the outcome after a drive to `first` of a given time, without its energy."""
+        """Return the outcome of all repetitions after a drive to `first` of a given time.
+
+        The time includes the drive; the energy does not.
+        """
         ...
 
 
@@ -170,7 +173,10 @@ class _RoundOrder:
             self._without_drive = self._add_other_parts(self._without_drive)
 
     def first_repetition(self, drive: int) -> StepOutcome:
-        """Return the outcome of the first repetition after a drive of a given time."""
+        """Return the outcome of the first repetition after a drive of a given time.
+
+        The time includes the drive; the energy does not.
+        """
         if self._without_drive is None:
             return self._add_other_parts(self._parts[0].run(drive))
         outcome = self._without_drive
@@ -254,7 +260,10 @@ class _Drives:
         self._worst: dict[tuple[tuple[int, ...], int], tuple[int, int]] = {}
 
     def entries(self, first: int) -> Vector:
-        """Return the times of all drives to a visit, sorted: each step is entered after one."""
+        """Return the different times of all drives to a visit, sorted.
+
+        A step that begins with the visit is entered after one of these drives.
+        """
         if first not in self._entries:
             drives = np.unique(self._travel[:, first])
             self._entries[first] = drives[drives < NEVER]

@@ -202,7 +202,7 @@ def _latest(latest: int | None) -> int:
 
 
 def _worst_drives(matrix: NDArray[np.int64], exits: list[tuple[int, ...]]) -> NDArray[np.int64]:
-    """Return the highest value of a drive from each exit's locations to each location."""
+    """Return the highest time or energy of a drive from each exit's locations to each location."""
     worst = matrix[[locations[0] for locations in exits]]
     for row, locations in enumerate(exits):
         if len(locations) > 1:

@@ -78,9 +78,10 @@ class Relaxation:
         return None if least is None else max(least, cost)
 
     def _row(self, arcs: NDArray[np.bool_], block: int, least: float, most: float) -> Row:
-        """Return a constraint on the number of selected arcs minus the block's variable.
+        """Return a constraint on how many of some arcs a route has, less 1 if it makes a block.
 
-        The start and end have no variable.
+        The number lies from `least` to `most`. Nothing is taken off for the start and end, which
+        have the number after the last block's.
         """
         variables = np.flatnonzero(arcs)
         coefficients = np.ones(len(variables))

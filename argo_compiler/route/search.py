@@ -91,7 +91,10 @@ class Search:
         observers: Observers | None = None,
         begun: float | None = None,
     ) -> None:
-        """Start the search; `clock` returns s since any time, `begun` is on it, now if None."""
+        """Start the search.
+
+        `clock` returns s from any start; `begun` is the search's start on that clock, None: now.
+        """
         self.network, self.pruned, self.seed = network, pruned, seed
         begun = clock() if begun is None else begun
         most = sum(visit.prize for visit in network.problem.visits)

@@ -101,7 +101,10 @@ class _Rewriting:
         ]
 
     def _start_leading_to(self, start: Task, first: str | None) -> Task:
-        """Return START with an unconditional transition to the first task, if there is one."""
+        """Return START with its unconditional transition to `first`, the new order's first task.
+
+        Without a first task, the transition is removed.
+        """
         transitions = tuple(
             t if t.conditions else t.model_copy(update={"target": first})
             for t in start.transitions

@@ -49,7 +49,7 @@ class TravelMatrix:
             raise Invalid("with chargers, the battery and the charging power must be given")
 
     def units_of_energy(self, watt_hours: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the time in units that it takes to charge an energy in Wh."""
+        """Return the time, in units of time, that it takes to charge an energy in Wh."""
         return watt_hours * 3600.0 / (self.charging * self.unit)
 
     def units_up(self, seconds: float) -> int:

@@ -74,7 +74,10 @@ class Windows:
         return f"{self._visits.names[visit]} {start}done by {time_words(window.latest)}"
 
     def end_limit(self) -> tuple[float, str] | None:
-        """Return the latest end (s) of the mission's last task and its description, or None."""
+        """Return the latest end of the mission's last task in s, and its description.
+
+        It counts from the mission's start. Returns None if no window limits the end.
+        """
         end = self._visits.chain.end
         window = None if end is None else _binding_window(self._visits.leaf_task(end).window)
         if end is None or window is None or window.latest is None:

@@ -77,7 +77,7 @@ def test_warnings_of_the_import_are_returned(tmp_path):
     path = tmp_path / "isar.json"
     path.write_text(json.dumps(data))
     (finding,) = load(path).diagnostics
-    assert finding.message.startswith("tasks[1].zoom: ")
+    assert finding.message.startswith("tasks[1].zoom is ignored")
 
 
 def test_isar_gets_the_positions_of_the_checkpoints(umad, navigator):

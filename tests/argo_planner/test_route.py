@@ -207,7 +207,7 @@ def test_pauses_are_shown_and_written(argo, source, tmp_path):
     [
         (["--before", "3"], "name at least two"),
         (["--before", "3, 17"], "no checkpoint 17"),
-        (["--budget", "soon"], "no duration"),
+        (["--budget", "soon"], "is not a duration"),
         (["--budget", "0 s"], "more than 0"),
         (["--budget", "-5min"], "must be above 0"),
         (["--budget", "9" * 400], "has to be"),

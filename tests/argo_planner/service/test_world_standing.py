@@ -187,7 +187,7 @@ def test_unknown_floors_headings_and_maps_are_refused(site):
         standing_map(site, 8, 0)
     with pytest.raises(Invalid, match="no heading 8"):
         standing_map(site, 1, 8)
-    with pytest.raises(Invalid, match="no map"):
+    with pytest.raises(Invalid, match="not a map"):
         read_standing_map(b"{}\nnothing")
     twice = crate("a", 0, 0, 0), crate("a", 1, 1, 0)
     with pytest.raises(Invalid, match="two obstacles"):

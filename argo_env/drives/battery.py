@@ -65,10 +65,11 @@ class Battery:
         self._remaining = min(max(self._remaining - watts * seconds / 3600.0, 0.0), self.capacity)
 
     def steps_until(self, estimate: float, watts: float, seconds: float, limit: int) -> int:
-        """Return the number of steps after which the estimated charge first reaches `estimate`.
+        """Return the number of steps after which the estimated charge first is `estimate` or more.
 
-        Each step takes `seconds` with a load of `watts`; `estimate` is 0 to 1. Returns `limit` if
-        the charge does not reach it in fewer steps. The battery itself does not change.
+        The battery is charged: each step takes `seconds` with a load of `watts`, less than 0;
+        `estimate` is 0 to 1. Returns `limit` if the estimate is not reached in fewer steps. The
+        battery itself does not change.
         """
         simulated = copy(self)
         for count in range(limit):
@@ -79,7 +80,7 @@ class Battery:
 
     @property
     def state(self) -> tuple[float, float]:
-        """Remaining energy (Wh) and load (W)."""
+        """Remaining energy (Wh) and present load (W), less than 0 while the battery is charged."""
         return self._remaining, self._load
 
     @state.setter
@@ -108,7 +109,10 @@ def estimated_charge(voltage: float, current: float) -> float:
 def electric_load(
     power: PowerSpec, before: BodyPose, after: BodyPose, seconds: float, measuring: bool
 ) -> float:
-    """Return the power (W) that the robot draws to move between two poses in some seconds."""
+    """Return the power (W) that the robot draws between two poses that are `seconds` apart.
+
+    `measuring` states whether it measures, which counts only while it stands.
+    """
     distance = math.dist((before.x, before.y, before.z), (after.x, after.y, after.z))
     least = _MOVING * seconds
     if distance > least:
@@ -129,7 +133,8 @@ def electric_loads(
 ) -> NDArray[np.float64]:
     """Return the power (W) for each of n steps, equal to `electric_load` to the last bit.
 
-    `distances` (m) have the shape (n,); `poses`, which have no roll, the shape (n + 1, 5).
+    `distances` (m) of the steps have the shape (n,); `poses` before the first step and after each,
+    which have no roll, the shape (n + 1, 5). `seconds` is the duration of a step.
     """
     before, after = poses[:-1], poses[1:]
     least = _MOVING * seconds

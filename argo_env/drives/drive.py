@@ -52,12 +52,12 @@ class Drive(Protocol):
 
     @property
     def failure(self) -> str | None:
-        """Description of what happened, after FAILED."""
+        """Description of why the drive can't go on, after `step` returned FAILED; else None."""
         ...
 
     @property
     def incidents(self) -> Sequence[Incident]:
-        """Faults since the robot was placed, whether or not the robot could continue."""
+        """Faults of the drive since `set_pose`, whether or not the robot could continue."""
         ...
 
     def set_pose(self, pose: BodyPose) -> None:
@@ -72,7 +72,7 @@ class Drive(Protocol):
         ...
 
     def step(self) -> DriveStatus:
-        """Continue for one time step."""
+        """Continue on the path for one time step, and return the status after it."""
         ...
 
     def halt(self) -> None:

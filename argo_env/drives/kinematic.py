@@ -36,12 +36,13 @@ _MOTIONS = 2000  # in the cache of a site; each takes some 5 kB
 def rest_height_and_slope(
     offsets: NDArray[np.float64], heights: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the heights at the middle (m) and the slopes (dz/ds) of the hull edges above it.
+    """Return the height and the slope at which a rigid track rests on each of n ground profiles.
 
-    `offsets` (m), shape (k,), are positions along the track on both sides of 0, but not 0;
-    `heights` (m), shape (n, k), are those of the ground there. Of all lines through a point behind
-    and a point ahead of the middle, the line that is highest at the middle lies above all other
-    points.
+    The height (m) is that of the track's middle, the slope is dz/ds; both have the shape (n,).
+    `offsets` (m), shape (k,), are positions along the track on both sides of its middle at 0, but
+    not 0; `heights` (m), shape (n, k), are those of the ground there. The track lies on an edge of
+    the ground's upper hull: of all lines through a point behind and a point ahead of the middle,
+    the line that is highest at the middle lies above all other points.
     """
     behind, ahead = offsets < 0, offsets > 0
     s_b, s_a = offsets[behind][:, None], offsets[ahead][None, :]
@@ -90,10 +91,10 @@ def resting_poses(world: World, motion: Motion, robot: RobotSpec) -> list[BodyPo
 
 
 def _averaged(values: NDArray[np.float64], window: int) -> NDArray[np.float64]:
-    """Return the moving average over `window` values, an odd number, and fewer towards the ends.
+    """Return the moving average of the values over `window` of them, an odd number.
 
-    The first and the last value stay as they are, so that a motion continues where the previous
-    one ended.
+    Towards the ends the average is over fewer values. The first and the last value stay as they
+    are, so that a motion continues where the previous one ended.
     """
     k = np.arange(len(values))
     half = np.minimum(window // 2, np.minimum(k, k[::-1]))
@@ -218,7 +219,7 @@ class KinematicDrive(NonCopyable, TimedDrive):
 
 
 def _flippers_on(motion: Motion) -> float:
-    """Return the angle of the flippers (rad) for a motion."""
+    """Return the angle of the flippers (rad, tips up) for a motion: flat on stairs, else raised."""
     return FLAT if motion.on_stairs else RAISED
 
 

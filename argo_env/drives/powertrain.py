@@ -74,7 +74,10 @@ class Powertrain:
         self._drive.set_pose(pose)
 
     def follow(self, path: Path, velocity: float | None) -> None:
-        """Start to follow `path` as soon as the robot can move."""
+        """Start to follow `path` as soon as no emergency stop or fault holds the robot.
+
+        `velocity` (m/s) is the planned speed on the flat; None means the robot's own speed.
+        """
         self.path_and_velocity = path_from_pose(path, self._drive.pose), velocity
         self._credit, self._still_time, self._failure = 0.0, 0.0, None
         self._drive.follow(path, velocity)
@@ -101,11 +104,11 @@ class Powertrain:
 
     @property
     def can_batch_steps(self) -> bool:
-        """True if nothing can happen to the robot at its pose, so that steps can be batched."""
+        """True if the robot can touch nothing at its pose, so that steps can be made in batches."""
         return isinstance(self._drive, TimedDrive) and self._drive.can_batch_steps
 
     def steps_ahead(self, limit: int) -> StepsAhead:
-        """Predict the next steps, at most `limit`, while nothing can happen to the robot.
+        """Predict the next steps, at most `limit`, as long as the robot can touch nothing.
 
         In all of them the emergency stop holds the robot, or the robot surely moves.
         """
@@ -125,7 +128,7 @@ class Powertrain:
         return StepsAhead(poses[: len(made)], made)
 
     def advance(self, ahead: StepsAhead, passed: int, count: int) -> None:
-        """Make `count` of the predicted steps, after the first `passed` of them were made."""
+        """Make the next `count` of the predicted steps, of which the first `passed` were made."""
         if self.stop_pressed:
             self.held_steps += count
             return
@@ -151,13 +154,14 @@ class Powertrain:
 
     @property
     def _makes_every_step(self) -> bool:
-        """True if the drive is not slowed, and makes a step of its own in each step."""
+        """True if the drive is not slowed: each time step is a step of the drive."""
         return self.speed_share == 1.0 and not self._credit
 
     def _count_drive_steps(self, limit: int, left: int) -> NDArray[np.int64]:
-        """Return the number of the drive's own steps after each of the next steps.
+        """Return how many steps the drive has made after each of the next time steps.
 
-        There are at most `limit` next steps, and at most `left` of the drive's own.
+        A slowed drive makes no step in some time steps. The result ends after `limit` time steps,
+        or before the drive would make more than `left` steps.
         """
         if self._makes_every_step:
             return np.arange(1, min(limit, left) + 1)

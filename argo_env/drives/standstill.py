@@ -31,5 +31,5 @@ def first_motionless_step(before: PoseTuple, poses: PoseArray) -> int:
 
 
 def has_moved(before: PoseTuple, after: PoseTuple) -> bool:
-    """Return whether the robot has moved between two poses."""
+    """Return True if two poses differ by more than 1 mm in position or 1 mrad in heading."""
     return math.dist(before[:3], after[:3]) > _MOVED or abs(after[3] - before[3]) > _MOVED

@@ -83,7 +83,7 @@ class TimedDrive(ABC):
     @property
     @abstractmethod
     def can_batch_steps(self) -> bool:
-        """True if nothing can happen to the robot at its pose, so that steps can be batched."""
+        """True if the robot can touch nothing at its pose, so that steps can be made in batches."""
 
     def _times_ahead(self, count: int) -> NDArray[np.float64]:
         """Return the time (s) since the start of the path after each of the next `count` steps."""
@@ -95,25 +95,26 @@ class TimedDrive(ABC):
         """Return the poses after each of the next `count` steps, shape (n, 5).
 
         `count` is at most `steps_left`. The poses equal those that `step` would lead to, to the
-        last bit. There are fewer than `count` if something can happen to the robot on the way.
+        last bit. There are fewer than `count` if the robot might touch something on its path, or
+        has to move its flippers.
         """
 
     def skip_to(self, pose: PoseTuple, count: int) -> None:
-        """Skip `count` steps, and set the robot to the pose after them."""
+        """Count `count` steps as made, and set the robot to the pose after them."""
         self._steps += count
         self._pose = BodyPose(*pose)
 
     @abstractmethod
     def _pose_at(self, motion: Motion, share: float) -> BodyPose:
-        """Return the robot's pose after a share of the motion, 0 to 1."""
+        """Return the robot's pose when a share, 0 to 1, of the motion is done."""
 
 
 def path_from_pose(path: Path, pose: BodyPose) -> Path:
-    """Return the path, with a straight shift to its start first if the robot's pose is beside it.
+    """Return the path, with a straight shift from the robot's pose to the path's start if needed.
 
     Paths begin at a state of the navigator's lattice. A robot that was stopped may be some
-    centimetres away from it, at most the navigator's SNAP_DISTANCE. A tracked robot could not
-    shift sideways.
+    centimetres away from it, at most the navigator's SNAP_DISTANCE. A tracked robot could not shift
+    sideways.
     """
     start = path.start
     if math.dist((start.x, start.y), (pose.x, pose.y)) < _SAME_POSITION:
@@ -161,7 +162,7 @@ class RouteDrive(TimedDrive):
 
     @staticmethod
     def _pitch(motion: Motion) -> float:
-        """Return the pitch (rad) while the robot is under way on the motion."""
+        """Return the pitch (rad, positive with the front down) while the robot is on the motion."""
         if not motion.on_stairs:
             return 0.0
         return motion.gear * math.asin((motion.start.z - motion.end.z) / motion.length)

@@ -63,5 +63,5 @@ class Timetable:
 
 
 def count_steps(seconds: float, time_step: float) -> int:
-    """Return the number of time steps (s) in some seconds, rounded up."""
+    """Return the number of steps of `time_step` (s) in which `seconds` pass, rounded up."""
     return math.ceil(seconds / time_step - _ROUNDING)

@@ -78,10 +78,10 @@ class Belts:
         spin: tuple[float, float, float],
         dt: float,
     ) -> tuple[Wrench, list[Contact]]:
-        """Return the wrench of all belts about `position`, and the other contacts.
+        """Return the wrench of all belts on the body about `position`, and the other contacts.
 
-        The wrench is force (N) and torque (N m) in the world's axes. The other contacts are all
-        except those of belts with the walking surfaces.
+        The wrench is the force (N) and the torque (N m) in the world's axes. The other contacts are
+        all except those of belts with the walking surfaces.
 
         Args:
             contacts: the robot's contacts, rows of PyBullet's `getContactPoints`
@@ -108,10 +108,10 @@ class Belts:
         velocity: tuple[float, float, float],
         spin: tuple[float, float, float],
     ) -> tuple[list[tuple[float, ...]], float, list[Contact]]:
-        """Return the sums for each belt, the total force (N), and the other contacts.
+        """Return the sums for each belt, the total normal force (N), and the other contacts.
 
-        The sums are those that `_NO_SUMS` lists, over the contacts of a belt. The total force is
-        summed in the order of the contacts.
+        The sums are those that `_NO_SUMS` lists, over the contacts of a belt. The total is that of
+        all belts, summed in the order of the contacts. The arguments are as for `wrench`.
         """
         # Plain floats in local variables: this runs 240 times a simulated second.
         px, py, pz = position
@@ -185,7 +185,7 @@ class Belts:
         spin: tuple[float, float, float],
         dt: float,
     ) -> Wrench:
-        """Return the wrench of all belts from their sums."""
+        """Return the wrench of all belts from the sums and the total of `_sum_contacts`."""
         _, lx, ux, _, ly, uy, _, lz, uz = axes
         wx, wy, wz = spin
         scale = self._cap / total if total > self._cap else 1.0
@@ -213,7 +213,8 @@ class Belts:
     ) -> tuple[float, float, float]:
         """Update the bending of a belt's grousers by its slip, and return the push of the belt.
 
-        The push is the force along and across over the normal force, and the torque (N m). Grousers
+        `on` are the sums of the belt's contacts, `turning` is the body's turn rate (rad/s). The
+        push is the forces along and across over the normal force, and the torque (N m). Grousers
         that would push harder than the grip allows slide instead.
         """
         bends, at = self.bends, 3 * belt

@@ -123,7 +123,7 @@ class TrackedBody(Connection):
         self.advance(_SETTLING)
 
     def command(self, speed: float, turn_rate: float, flipper: float) -> None:
-        """Set the command from now on.
+        """Set the command that the tracks and flippers follow from now on.
 
         `speed` is in m/s forwards, `turn_rate` in rad/s counter-clockwise, `flipper` is the angle
         of the flippers in rad, tips up; the command keeps within the flippers' limits.
@@ -133,7 +133,7 @@ class TrackedBody(Connection):
         self._drive_flippers()
 
     def advance(self, steps: int) -> None:
-        """Simulate some steps of TIME_STEP."""
+        """Simulate `steps` steps of TIME_STEP each."""
         client, body = self._client, self._body
         for _ in range(steps):
             position, turned = pybullet.getBasePositionAndOrientation(body, physicsClientId=client)
@@ -194,19 +194,19 @@ class TrackedBody(Connection):
 
     @property
     def belt_speeds(self) -> tuple[float, float]:
-        """Speeds of the left and the right belts in m/s."""
+        """Present speeds of the left and the right belts in m/s; they lag behind the command."""
         half = self._robot.track_gauge / 2 * (self._turn + self._push)
         return self._speed - half, self._speed + half
 
     def touches(self) -> tuple[Touch, ...]:
-        """Return the contacts with what the robot must not touch since the last call."""
+        """Return the contacts, since the last call, with what the robot must not touch."""
         return self._contact_log.pop()
 
     def snapshot(self) -> Snapshot:
         """Return the present state; call `release` when it is no longer needed.
 
         PyBullet does not restore its cache of contacts. So this method clears that cache, too: the
-        simulation continues after a snapshot exactly as after its restoration.
+        simulation continues after taking a snapshot exactly as after `restore`.
         """
         state = pybullet.saveState(physicsClientId=self._client)
         self._return_to(state)
@@ -217,7 +217,7 @@ class TrackedBody(Connection):
         return Snapshot(state, memory)
 
     def restore(self, snapshot: Snapshot) -> None:
-        """Restore a state; the simulation then repeats itself bit by bit."""
+        """Restore the state of a snapshot; the simulation then repeats itself bit by bit."""
         self._return_to(snapshot.state)
         (
             self._command, self._speed, self._turn, self._push, bends, contacts, touches
@@ -256,14 +256,17 @@ class TrackedBody(Connection):
         self._place(self._body, _FAR, (0.0, 0.0, 0.0))
 
     def _return_to(self, state: int) -> None:
-        """Restore a state of PyBullet with an empty cache of contacts."""
+        """Restore a saved state of PyBullet, by its id, with an empty cache of contacts."""
         self._place(self._body, _FAR, (0.0, 0.0, 0.0))
         self._detect()
         pybullet.restoreState(state, physicsClientId=self._client)
         self._drive_flippers()
 
     def _mean_x(self) -> float:
-        """Return the x coordinate (m) of the centre of mass; the robot must be level at `_FAR`."""
+        """Return the x coordinate (m) of the robot's centre of mass in the base's frame.
+
+        The robot must stand level at `_FAR`.
+        """
         total = self._dynamics(-1)[0] * self._center[0]
         for link in self._flippers:
             state = pybullet.getLinkState(self._body, link, physicsClientId=self._client)
@@ -283,7 +286,10 @@ class TrackedBody(Connection):
             )
 
     def _belt_speeds(self, yaw_rate: float) -> tuple[float, float]:
-        """Update the speeds of the belts by one step; return them in m/s, left and right."""
+        """Move the belts' speeds towards the command for one step; return left and right in m/s.
+
+        `yaw_rate` (rad/s) is the body's actual turn rate.
+        """
         wanted = self._command
         most = ACCELERATION * TIME_STEP
         self._speed += min(most, max(-most, wanted.speed - self._speed))
@@ -296,7 +302,7 @@ class TrackedBody(Connection):
         return self._speed - half, self._speed + half
 
     def _frame(self) -> tuple[Vector, tuple[float, ...]]:
-        """Return the origin of the base's frame (m), and its rotation matrix row by row."""
+        """Return the origin (m) of the base's frame, and the base's rotation matrix row by row."""
         position, turned = pybullet.getBasePositionAndOrientation(
             self._body, physicsClientId=self._client
         )
@@ -304,7 +310,10 @@ class TrackedBody(Connection):
         return self._origin(position, axes), axes
 
     def _origin(self, position: Vector, m: tuple[float, ...]) -> Vector:
-        """Return the origin of the base's frame (m), with its centre of mass at `position`."""
+        """Return the origin (m) of the base's frame if the base's centre of mass is at `position`.
+
+        `m` is the base's rotation matrix row by row.
+        """
         (x, y, z), (a, b, c) = position, self._center
         return (
             x - m[0] * a - m[1] * b - m[2] * c,

@@ -46,7 +46,10 @@ class RecoveryPhase:
 
 
 def recovery_phases(motion: Motion, attempt: int, pitch: float) -> tuple[RecoveryPhase, ...]:
-    """Return the phases of an attempt (0, 1, ...) to get free from where `motion` is stuck."""
+    """Return the phases of an attempt (0, 1, ...) to free a robot that is stuck on `motion`.
+
+    `pitch` is the robot's (rad): on a slope it only backs off.
+    """
     angle = _ANGLES[attempt % len(_ANGLES)]
     if motion.turn:
         side = 1 if attempt % 2 == 0 else -1
@@ -98,9 +101,10 @@ class StallDetector:
     def update(
         self, pose: BodyPose, roll: float, speed: float, turn_rate: float
     ) -> Incident | None:
-        """Add a sample, and return the present fault of the drive; None if there is none.
+        """Add a sample, and return the fault of the drive that the last WINDOW s show, or None.
 
-        `speed` (m/s) and `turn_rate` (rad/s) are the commands since the last call.
+        `roll` (rad) is the robot's; `speed` (m/s) and `turn_rate` (rad/s) are the commands since
+        the last call.
         """
         if abs(roll) > _MOST_ROLL or not _LEAST_PITCH < pose.pitch < _MOST_PITCH:
             detail = f"pitch {math.degrees(pose.pitch):.0f}°, roll {math.degrees(roll):.0f}°"
@@ -251,7 +255,10 @@ class TrackedDrive(NonCopyable):
         self.body.command(0.0, 0.0, self._flippers.angle)
 
     def _flight_for(self, motion: Motion) -> Flight | None:
-        """Return the flight of a motion, found once for it; None if it is not on stairs."""
+        """Return the flight of stairs of a motion; None for a motion that is not on stairs.
+
+        It is found once for each motion.
+        """
         if not motion.on_stairs:
             return None
         if self._flight is None or self._flight[0] is not motion:
@@ -259,7 +266,10 @@ class TrackedDrive(NonCopyable):
         return self._flight[1]
 
     def _check_motion(self, touches: tuple[Touch, ...]) -> None:
-        """Record a fault of the drive; start a recovery or fail if the robot cannot continue."""
+        """Record a present fault of the drive; start a recovery or fail if the robot is stuck.
+
+        `touches` are for the message: what the robot is stuck against.
+        """
         assert self._follower is not None
         incident = self._stall_detector.update(self.body.pose, self.body.roll, *self._commanded)
         if incident is None:

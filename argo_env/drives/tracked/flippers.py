@@ -49,16 +49,20 @@ class Flight:
     """slope of the line through the nosings in rad"""
 
     def edges(self, pose: BodyPose) -> tuple[float, float]:
-        """Return the distances (m) along the tracks from the robot's middle to the two edges.
+        """Return the distances (m) along the tracks from the robot's middle to top edge and foot.
 
-        The first is that to the top edge, the second that to the foot.
+        They are positive downhill, and less than 0 for an edge that the middle has passed on its
+        way down.
         """
         at = (pose.x - self.x) * self.ahead[0] + (pose.y - self.y) * self.ahead[1]
         return (self.top - at) / math.cos(pose.pitch), (self.foot - at) / math.cos(pose.pitch)
 
 
 def find_flight(world: World, motion: Motion, gauge: float) -> Flight:
-    """Return the flight that the ground below the tracks shows along a motion on stairs."""
+    """Return the flight that the ground below the left track shows along a motion on stairs.
+
+    `gauge` (m) is the distance between the middles of the tracks.
+    """
     high, low = (motion.start, motion.end) if motion.gear > 0 else (motion.end, motion.start)
     ahead = math.cos(motion.start.yaw), math.sin(motion.start.yaw)
     length = math.dist((high.x, high.y), (low.x, low.y))
@@ -84,7 +88,10 @@ class Flippers:
         self.angle = RAISED
 
     def step(self, flight: Flight | None, motion: Motion | None, pose: BodyPose, dt: float) -> bool:
-        """Update the commanded angle after `dt` (s); return whether the robot should go slowly."""
+        """Update the commanded angle after `dt` (s); return True if the robot should go slowly.
+
+        `flight` is the one that the motion is on; None: it is not on stairs.
+        """
         if flight is None or motion is None:
             self._towards(RAISED, FLIPPER_RATE, dt)
             return False

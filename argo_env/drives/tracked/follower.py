@@ -75,7 +75,10 @@ class Follower:
         return FollowerCommand(0.0, 0.0, None)
 
     def _heading_correction(self, pose: BodyPose) -> list[Motion]:
-        """Return a final turn, if the last straight motion came to its end from beside its line."""
+        """Return a turn to append if the heading at the path's end is wrong, else an empty list.
+
+        That happens if the last straight motion came to its end from beside its line.
+        """
         error = wrap(self._end.yaw - pose.yaw)
         if not self.motions or abs(error) <= _CROOKED:
             return []
@@ -83,7 +86,10 @@ class Follower:
         return [Motion(crooked, self._end, turn=error)]
 
     def _position_correction(self, pose: BodyPose) -> list[Motion]:
-        """Return a final short straight motion, if a turn swung the robot along its heading."""
+        """Return a short straight motion to append if the robot is not at the path's end, else [].
+
+        That happens if a turn moved the robot along its heading.
+        """
         end = self._end
         ahead = math.cos(end.yaw), math.sin(end.yaw)
         left = (end.x - pose.x) * ahead[0] + (end.y - pose.y) * ahead[1]
@@ -93,10 +99,11 @@ class Follower:
         return [Motion(short, end, gear=1 if left > 0 else -1)]
 
     def distance_to_stop(self, motion: Motion, pose: BodyPose) -> float:
-        """Return the distance (m) to the point where a straight motion should stop.
+        """Return the distance (m) from the robot to the point where a straight motion should stop.
 
-        It is horizontal, along the motion's line, and less than 0 beyond that point. The point is
-        the motion's end; before a turn it is offset so that the pivot of the turn is at that end.
+        The distance is horizontal, along the motion's line, and less than 0 beyond that point. The
+        point is the motion's end; before a turn it is offset so that the pivot of the turn is at
+        that end.
         """
         ahead = math.cos(motion.start.yaw), math.sin(motion.start.yaw)
         x, y = motion.end.x - pose.x, motion.end.y - pose.y
@@ -108,13 +115,13 @@ class Follower:
         return motion.gear * (x * ahead[0] + y * ahead[1] + stop_after)
 
     def deviation(self, motion: Motion, pose: BodyPose) -> tuple[float, float]:
-        """Return the offset (m) to the left of a motion's line, and the heading error (rad)."""
+        """Return the robot's offset (m) to the left of a motion's line, and heading error (rad)."""
         yaw = motion.start.yaw
         x, y = pose.x - motion.start.x, pose.y - motion.start.y
         return y * math.cos(yaw) - x * math.sin(yaw), wrap(pose.yaw - yaw)
 
     def _continues(self) -> bool:
-        """Return True if the next motion continues in the same direction, without a stop."""
+        """Return True if the path's next motion continues the present one without stop or turn."""
         if self.index + 1 >= len(self.motions):
             return False
         now, then = self.motions[self.index], self.motions[self.index + 1]

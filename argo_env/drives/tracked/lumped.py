@@ -19,7 +19,7 @@ Matrix = NDArray[np.float64]
 def lump_links(
     urdf: Path, arm: Mapping[str, float], moving: tuple[str, ...], mass_scale: float
 ) -> str:
-    """Return the URDF in which only the joints in `moving` can move.
+    """Return the robot's URDF, as text, with only the joints in `moving` left.
 
     All other joints are fixed at the angles of `arm` (deg), or 0, and their links become part of
     the link that carries them. All masses are multiplied by `mass_scale`.
@@ -52,7 +52,10 @@ def lump_links(
 def _carried(
     name: str, joints: Mapping[str, ET.Element], arm: Mapping[str, float], moving: tuple[str, ...]
 ) -> tuple[str, Matrix]:
-    """Return the link that a link becomes part of, and its pose there, shape (4, 4)."""
+    """Return the link that the link `name` becomes part of, and its pose there, shape (4, 4).
+
+    `joints` are the joints by their child links; the others are as for `lump_links`.
+    """
     pose = np.eye(4)
     while name in joints and joints[name].get("name") not in moving:
         joint = joints[name]

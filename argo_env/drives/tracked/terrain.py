@@ -50,14 +50,14 @@ class Terrain:
         return self._index[part].nearest_each(points)
 
     def write_urdf(self, folder: str) -> Path:
-        """Write the URDF to the folder, and return its path."""
+        """Write the terrain's URDF to the folder, and return the file's path."""
         path = Path(folder) / "terrain.urdf"
         path.write_text(to_urdf(self.name, self._elements, drawn=False), encoding="utf-8")
         return path
 
 
 def _housing(checkpoint: SiteCheckpoint) -> Element:
-    """Return a checkpoint as one box: a body with a joint would slow every step of the physics."""
+    """Return a checkpoint's housing as one box: a body with a joint would slow the physics."""
     x, y, z = checkpoint.position
     height = _HOUSING_HEIGHT.get(checkpoint.kind, _HOUSING_WIDTH)
     size = (_HOUSING_DEPTH, _HOUSING_WIDTH, height)
@@ -102,7 +102,7 @@ class ContactLog:
         self._deepest: dict[tuple[str, str], Touch] = {}
 
     def add(self, contacts: list[tuple[Any, ...]], origin: Vector, axes: tuple[float, ...]) -> None:
-        """Add the strong ones of some contacts, which are rows of PyBullet's `getContactPoints`.
+        """Add those of the contacts (rows of PyBullet's `getContactPoints`) whose force counts.
 
         `origin` (m) and `axes`, a rotation matrix row by row, are those of the robot's frame.
         """
@@ -118,13 +118,13 @@ class ContactLog:
             self._look_up()
 
     def pop(self) -> tuple[Touch, ...]:
-        """Return the contacts since the last call, and clear the log."""
+        """Return the deepest contact of each part with each element, and clear the log."""
         touches = tuple(touch for _, touch in self.deepest_touches())
         self._deepest = {}
         return touches
 
     def deepest_touches(self) -> tuple[tuple[tuple[str, str], Touch], ...]:
-        """Return the contacts since the last `pop` in a form for `restore`."""
+        """Return the contacts that `pop` would return, in a form for `restore`; clear nothing."""
         if self._pending:
             self._look_up()
         return tuple(self._deepest.items())
@@ -149,7 +149,11 @@ class ContactLog:
 
 
 def _part_at(point: Vector, origin: Vector, m: tuple[float, ...]) -> str:
-    """Return the part of the body at a point: hull, track, or the stowed arm."""
+    """Return the name of the body's part at a point: hull, track, or the stowed arm.
+
+    `point` and `origin` (m) are in the world's frame; `origin` and `m`, a rotation matrix row by
+    row, are those of the robot's frame.
+    """
     x, y, z = point[0] - origin[0], point[1] - origin[1], point[2] - origin[2]
     left, up = x * m[1] + y * m[4] + z * m[7], x * m[2] + y * m[5] + z * m[8]
     if up > _HULL_TOP:

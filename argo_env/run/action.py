@@ -120,7 +120,7 @@ class SimulatedAction:
     def detour(self, setup: RunSetup) -> None:
         """Continue with a setup whose navigator knows of a new blockage.
 
-        If the current path leads through the blockage, the robot halts and takes another path.
+        If the current path leads through a known blockage, the robot halts and takes another path.
         """
         self._setup = setup
         navigator = setup.navigator
@@ -134,7 +134,7 @@ class SimulatedAction:
 
     @property
     def is_measuring(self) -> bool:
-        """True if the arm is in motion or raised."""
+        """True if the robot measures: its arm is raised, or on its way up or down."""
         return self._phase in (self._measure, self._stow, self._stow_unread)
 
     @property
@@ -143,10 +143,9 @@ class SimulatedAction:
         return self._phase == self._drive and self._give_up_at == math.inf
 
     def count_measuring_steps(self, limit: int) -> int:
-        """Return in how many steps, at most `limit`, the robot only measures.
+        """Return how many of the next steps, at most `limit`, the robot only measures in.
 
-        They are the steps before the one in which it looks at the checkpoint or its measurement
-        ends.
+        They are the steps before the one in which the measurement ends and its value is read.
         """
         if self._phase != self._measure or self._give_up_at < math.inf:
             return 0
@@ -186,7 +185,7 @@ class SimulatedAction:
         )
 
     def to_task_run(self, end: ActionEnd, now: float, distance: float, climbed: float) -> TaskRun:
-        """Return the entry for the record of the action, which ended at `now` (s).
+        """Return the action, which ended at `now` (s), in the form of the run's record.
 
         Args:
             end: the end of the action.
@@ -263,7 +262,10 @@ class SimulatedAction:
         return self._after_drive(self._start_driving)
 
     def _after_drive(self, following: Callable[[], ActionEnd | None]) -> ActionEnd | None:
-        """Step the drive and call `following` once the robot has arrived or come to rest."""
+        """Step the drive, and call `following` once the robot has arrived or come to rest.
+
+        Returns the end of the action; None if it has not ended.
+        """
         match self._setup.drive.step():
             case DriveStatus.MOVING:
                 return None
@@ -280,7 +282,7 @@ class SimulatedAction:
         return self._after_drive(self._arrived)
 
     def _arrived(self) -> ActionEnd | None:
-        """Begin the task at its pose, or wait if it may not begin yet."""
+        """Begin the task at its pose, or wait if its time window has not begun yet."""
         if self._now < self._not_before - _INSTANT:
             self._early_since = self._now if self._early_since is None else self._early_since
             self._phase = self._wait_to_begin
@@ -317,7 +319,7 @@ class SimulatedAction:
         return ActionSucceeded(self.task.name, value, abnormal, self._id)
 
     def _try_next_view(self, failure: str) -> ActionEnd | None:
-        """Drive to the next view, for a checkpoint whose face is turned against the plan.
+        """Drive to the next pose to look from, if the checkpoint is turned otherwise than planned.
 
         The action fails with `failure` if there is no further view, the task states a pose from
         which to measure, or the action is cancelled.
@@ -354,14 +356,14 @@ class SimulatedAction:
         return self._now >= self._give_up_at - _INSTANT
 
     def _start_stowing(self, phase: Callable[[], ActionEnd | None]) -> None:
-        """Enter `phase`, which stows the arm as far as it has been raised."""
+        """Enter `phase`, which lasts as long as it takes to stow the arm from where it is."""
         third = self._setup.navigator.robot.sensor.stowing_time
         self._remaining = min(self._measuring_time - self._remaining, third)
         self._phase = phase
 
     @property
     def _only_stows(self) -> bool:
-        """True if all that remains of the measurement is to stow the arm."""
+        """True if all that remains of the measuring time is that for stowing the arm."""
         return self._remaining <= self._setup.navigator.robot.sensor.stowing_time + _INSTANT
 
     def _brake(self) -> ActionEnd | None:
@@ -377,7 +379,7 @@ class SimulatedAction:
         return ActionFailed(self.task.name, reason, self._tried_to_read, self._id)
 
     def _count_down(self) -> bool:
-        """Subtract a time step from the remaining time; return True if none remains."""
+        """Subtract a time step from the phase's remaining time; return True if none remains."""
         self._remaining -= self._setup.drive.time_step
         return self._remaining <= 1e-9
 
@@ -399,7 +401,7 @@ class SimulatedAction:
         return self._checkpoint().id
 
     def _unmoved_joints(self) -> tuple[str, ...]:
-        """Return the joints that the task states and nothing in the world moves."""
+        """Return the names of the joints that the task states but nothing in the world moves."""
         joints = self.task.joint_states
         moves = self._setup.watches_world and self.task.action is Action.MEASURE
         moved = (
@@ -427,7 +429,7 @@ def _requested_joints(task: Task) -> dict[str, float]:
 
 
 def _can_start_at(navigator: Navigator, pose: BodyPose) -> bool:
-    """Return True if a robot at `pose` can start a path right there."""
+    """Return True if a path can start so near to `pose` that the robot need not shift first."""
     try:
         start = navigator.snap(_to_pose(pose))
     except Unreachable:

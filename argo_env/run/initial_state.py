@@ -48,7 +48,7 @@ class InitialState(Model):
 
 
 def make_machine(mission: Mission, beginning: InitialState | None = None) -> Executor:
-    """Return a machine for a run of the mission, from its start or restored to an initial state.
+    """Return a machine for a run of the mission, at its start or restored to an initial state.
 
     Raises ArgoError if the mission has errors, or the initial state is not one of this mission.
     """
@@ -59,9 +59,10 @@ def make_machine(mission: Mission, beginning: InitialState | None = None) -> Exe
 
 
 def progress_now(machine: Machine, now: float, by_hand: Sequence[ByHand]) -> Progress:
-    """Return the progress at time `now` (s since the mission's start), work by hand included.
+    """Return the machine's progress at time `now` (s), with the tasks in `by_hand` done.
 
-    Raises Conflict if an action still runs, or the mission has ended or has nothing left to do.
+    `now` counts from the mission's start. Raises Conflict if the mission is not paused, an action
+    still runs, or the mission has ended or has nothing left to do.
     """
     if machine.finished or machine.outcome is not None:
         raise Conflict("the mission has ended: there is nothing to continue")
@@ -76,7 +77,7 @@ def progress_now(machine: Machine, now: float, by_hand: Sequence[ByHand]) -> Pro
 
 
 def match_progress(progress: Progress, mission: Mission) -> tuple[Progress, tuple[Diagnostic, ...]]:
-    """Return the progress in an edited mission, and diagnostics of what no longer fits.
+    """Return the progress as one of an edited mission, and diagnostics of what no longer fits.
 
     Raises DiagnosticError if the mission has errors, or can't continue from this progress.
     """

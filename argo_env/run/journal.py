@@ -52,7 +52,7 @@ class Header(Model):
 
     @classmethod
     def from_run(cls, site: OpenedSite, spec: RunSpec) -> Self:
-        """Return the header of a run of the spec on the site.
+        """Return the header of the journal of a run of the spec on the site.
 
         Raises ArgoError if the mission's file can't be read.
         """
@@ -153,7 +153,7 @@ def fingerprints(site: OpenedSite, spec: RunSpec) -> dict[str, str]:
 def require_free(path: Path, replace: bool = False) -> None:
     """Raise ArgoError if no new journal can be written at this path.
 
-    A file that exists already is refused; with `replace` only while another process has it open.
+    An existing file is refused, or, with `replace`, only one that another process has open.
     """
     if replace and os.path.isfile(path):
         file = _open(path)
@@ -235,7 +235,10 @@ def open_journal(path: Path) -> Journal:
 
 
 def _parse(path: Path, content: bytes) -> tuple[Header, list[Entry], int]:
-    """Return the header, the entries, and how many bytes of the content they take."""
+    """Return a journal's header, its entries, and how many bytes of the content they take.
+
+    The rest of the content is an incomplete last line. Raises ArgoError for anything else.
+    """
     lines = content.split(b"\n")
     # After the last line end there is nothing, or an incomplete line.
     complete = lines[:-1]

@@ -83,7 +83,7 @@ class LoggedEvent(Model):
 
     @classmethod
     def from_event(cls, event: Event) -> "LoggedEvent":
-        """Return the event as data. Raises Invalid if it is no event, or has invalid values."""
+        """Return an event as data. Raises Invalid for no event, or one with invalid values."""
         kind = _NAMES.get(type(event))
         if kind is None:
             raise Invalid(f"{event!r} is not an event")
@@ -179,13 +179,13 @@ class Entry(Model):
 
     @property
     def sensed(self) -> tuple[Reading | Anomaly, ...]:
-        """Anomalies that the robot noticed, then the reading."""
+        """Anomalies that the robot noticed at this moment, then the reading, if it took one."""
         # An abnormal reading is an anomaly as well, and is returned only as the reading.
         noticed = tuple(anomaly for anomaly in self.found if not anomaly.is_reading)
         return (*noticed, *((self.reading,) if self.reading else ()))
 
     def reported_anomalies(self, site: Site) -> tuple[Anomaly, ...]:
-        """Return the anomalies that the events report from outside, with the robot's position."""
+        """Return the anomalies that events from outside report, with the robot's position then."""
         # The events of what the robot found itself come first.
         x, y, z = (round(v, DIGITS) for v in self.pose[:3])
         return tuple(
@@ -203,11 +203,11 @@ class Entry(Model):
 
     @property
     def _has_reading_by_hand(self) -> bool:
-        """True if the first event after the anomalies is a reading that the robot took by hand."""
+        """True if there is a reading by hand; its event is the first after those of `found`."""
         return self.reading is not None and self.task is not None and self.task.by_hand
 
     def given_values(self, site: Site) -> tuple[GivenValue, ...]:
-        """Return the values of checkpoints that a person reported, without the robot's own."""
+        """Return the values of checkpoints that people reported, not those that the robot read."""
         given = []
         own_reading = len(self.found) if self._has_reading_by_hand else None
         for number, event in enumerate(self.events):
@@ -274,7 +274,7 @@ class RunLog:
             self.add_sample(entry.t, entry.pose, entry.charge)
 
     def with_entry(self, entry: Entry) -> "RunLog":
-        """Return a copy of the log with one more entry."""
+        """Return a copy of the log with one more entry; the log itself does not change."""
         other = RunLog(self.site)
         for name in _LISTS:
             setattr(other, name, list(getattr(self, name)))
@@ -296,7 +296,7 @@ class RunLog:
 
     @property
     def path(self) -> Sequence[PathSample]:
-        """Recorded path."""
+        """Points of the recorded path, in the order of time."""
         if self._pending_samples:
             # Validating many samples at once takes half the time of one by one.
             self._path += _PATH.validate_python(

@@ -61,7 +61,7 @@ class OpenMachine:
     """
 
     def __init__(self, mission: Mission) -> None:
-        """Start with a mission whose tasks follow one another."""
+        """Start with a mission of which each task leads to the next."""
         self.mission = mission
         self._executor = Executor(lower(mission))
         self._handled: list[tuple[Event, float]] = []
@@ -69,7 +69,7 @@ class OpenMachine:
         self._closed = False
 
     def append_task(self, task: Task) -> tuple[Command, ...]:
-        """Append a task to the mission, and return the command that starts it if it can start now.
+        """Append a task to the mission; return the command that starts its action if it starts now.
 
         Raises Conflict if an action runs, DiagnosticError if the mission has errors with the task.
         """

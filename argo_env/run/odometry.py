@@ -36,7 +36,7 @@ class ContactTracker:
         self._open = {(c.link, c.element): c for c in contacts}
 
     def update(self, touches: Iterable[Touch], now: float) -> tuple[Contact, ...]:
-        """Add all touches at time `now` (s), and return the contacts that have ended."""
+        """Add all touches at time `now` (s), and return the contacts that have ended by then."""
         deepest: dict[tuple[str, str], Touch] = {}
         for touch in touches:
             key = (touch.link, touch.element)
@@ -81,12 +81,12 @@ class Odometry:
         return self._contacts.open
 
     def restore(self, entry: Entry) -> None:
-        """Restore the sums and the open contacts from an entry."""
+        """Restore the sums and the open contacts from an entry of the log."""
         self.distance, self.climbed = entry.distance, entry.climbed
         self._contacts.restore(entry.touching)
 
     def close_contacts(self) -> None:
-        """End all open contacts."""
+        """End all open contacts, as the run ends."""
         self.ended_contacts += self._contacts.open
         self._contacts.restore(())
 
@@ -99,7 +99,10 @@ class Odometry:
         self.ended_contacts += self._contacts.update(touches, now)
 
     def add_incidents(self, incidents: Sequence[Incident], now: float) -> None:
-        """Add the new ones of the drive's `incidents` as mishaps at time `now` (s)."""
+        """Add the incidents of the drive that are new since the last call as mishaps at `now` (s).
+
+        `incidents` are all since the start.
+        """
         for incident in incidents[self._incident_count :]:
             pose = incident.pose
             self.mishaps.append(

@@ -75,12 +75,12 @@ class Perception:
         return tuple(found)
 
     def steps_with_updates(self, first: int, last: int, charges: tuple[float, float]) -> set[int]:
-        """Return the numbers of the steps in which an update may find or change anything.
+        """Return the numbers of a batch's steps in which an update may find or change anything.
 
         Args:
             first: number of the first step of a batch.
             last: number of its last step; no fault begins or ends in the batch.
-            charges: least and greatest charge of the battery in the batch, 0 to 1.
+            charges: lowest and highest charge of the battery in the batch, 0 to 1.
         """
         steps: set[int] = set()
         for (_, every, turn), skippable in zip(self._turns, self._skippable, strict=True):
@@ -89,7 +89,10 @@ class Perception:
         return steps
 
     def _was_reported(self, watch: Watch, detection: Detection) -> bool:
-        """Return True if the detection is an anomaly known from before the resumption, once."""
+        """Return True if the detection is an anomaly that was reported before the run was resumed.
+
+        Each of those anomalies is recognised once only.
+        """
         if detection.place is None or isinstance(watch, RestorableWatch):
             return False
         for known in self._known:

@@ -55,7 +55,7 @@ class PowerSupply:
         return self._battery is not None and self._battery.is_empty
 
     def restore(self, entry: Entry) -> None:
-        """Restore the charge from an entry."""
+        """Restore the battery's charge from an entry of the log."""
         if entry.charge is not None:
             self.reset(entry.charge, entry.body_pose)
 
@@ -67,7 +67,7 @@ class PowerSupply:
             self.charging = charge < 1.0 and self._docked(pose)
 
     def consume(self, before: BodyPose, after: BodyPose, seconds: float, measuring: bool) -> None:
-        """Draw the energy of a motion of `seconds`, or charge the battery of a docked robot."""
+        """Draw the energy of a step of `seconds`, or charge the battery if the robot is docked."""
         if self._battery is None:
             return
         watts = electric_load(self._power, before, after, seconds, measuring)
@@ -85,8 +85,8 @@ class PowerSupply:
         """Predict the supply after each of n steps, up to the one in which the battery is empty.
 
         Args:
-            loads: loads in W, shape (n,).
-            places: poses of the robot after the steps.
+            loads: power in W that the robot draws in each step, shape (n,).
+            places: poses of the robot after the steps, shape (n, 5).
             seconds: duration of a step in s.
 
         Returns:
@@ -109,7 +109,10 @@ class PowerSupply:
     def _predict_docked(
         self, loads: NDArray[np.float64], docked: NDArray[np.bool_], seconds: float
     ) -> tuple[NDArray[np.bool_], NDArray[np.float64], NDArray[np.float64]]:
-        """Return charging, remaining energy (Wh) and load (W) after steps, some of them docked."""
+        """Return, after each step, whether it charges, the remaining energy (Wh) and the load (W).
+
+        `docked` states for each step whether the robot stands in a dock.
+        """
         assert self._battery is not None
         (remaining, _), capacity = self._battery.state, self._battery.capacity
         states = []
@@ -123,7 +126,7 @@ class PowerSupply:
         return charges, remainders, drawn
 
     def _docked_after(self, loads: NDArray[np.float64], places: PoseArray) -> NDArray[np.bool_]:
-        """Return after which of the steps the robot stands in a dock, shape (n,)."""
+        """Return, for each step, whether the robot stands in a dock after it, shape (n,)."""
         x, y = places[:, 0], places[:, 1]
         near = np.zeros(len(loads), dtype=bool)
         for dock in self._docks:
@@ -136,13 +139,16 @@ class PowerSupply:
         return docked
 
     def apply(self, predicted: PredictedSupply, step: int) -> None:
-        """Set the state to the predicted one after the step of this index, which counts from 0."""
+        """Set the supply to the predicted state after the step of this index, from 0."""
         self.charging = bool(predicted.charging[step])
         if self._battery is not None:
             self._battery.state = float(predicted.remaining[step]), float(predicted.watts[step])
 
     def charge_after(self, predicted: PredictedSupply, step: int) -> float | None:
-        """Return the charge (0 to 1) after the step of this index; None without a battery."""
+        """Return the predicted charge (0 to 1) after the step of this index, from 0.
+
+        It is None without a battery.
+        """
         return (
             None
             if self._battery is None
@@ -150,7 +156,7 @@ class PowerSupply:
         )
 
     def charge_range(self, predicted: PredictedSupply) -> tuple[float, float]:
-        """Return the least and greatest charge (0 to 1) after the steps; 1 without a battery."""
+        """Return the lowest and highest predicted charge, 0 to 1; 1 without a battery or steps."""
         if self._battery is None or not len(predicted):
             return 1.0, 1.0
         least, most = float(predicted.remaining.min()), float(predicted.remaining.max())

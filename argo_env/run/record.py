@@ -95,12 +95,12 @@ class TaskRun(Model):
 
     @property
     def measuring_duration(self) -> float:
-        """Time that the measurements took in s."""
+        """Total time in s that the measurements of this execution took."""
         return sum(end - start for start, end in self.measuring or ())
 
     @property
     def outcome_in_words(self) -> str:
-        """Outcome in words, such as `done by hand`."""
+        """Outcome of the task's action in words, such as `done by hand`."""
         return f"{self.outcome} by hand" if self.by_hand else self.outcome
 
 
@@ -185,7 +185,7 @@ class Anomaly(Model):
 
     @property
     def is_end(self) -> bool:
-        """True if this reports the end of something."""
+        """True if this reports that an anomaly has ended."""
         return self.kind in _ENDS
 
     @property
@@ -200,7 +200,7 @@ class Anomaly(Model):
 
     @property
     def whereabouts(self) -> str:
-        """Position of the anomaly or of the robot then, in words; empty if neither is known."""
+        """Position in words: of the anomaly, or else of the robot then; empty if none is known."""
         if self.place is not None:
             return f"on {where(self.floor, self.place)}"
         if self.noticed_from is None:
@@ -257,7 +257,7 @@ class Interruption(Model):
 
     @property
     def cause(self) -> str:
-        """Cause in words."""
+        """Cause of the interruption in words, such as `paused`."""
         if self.event is None:
             return "paused"
         return f"reaction to {self.event.replace('_', ' ')}"
@@ -401,7 +401,7 @@ class Result(Model):
 
     @property
     def only_failures(self) -> bool:
-        """True if the mission came to its end, and all that is missing are failed tasks."""
+        """True if the mission came to its end, and only failed tasks keep it from success."""
         completed = self.outcome is Outcome.COMPLETED_WITH_FAILURES
         return completed and self.within_max_duration and self.docked is not False
 
@@ -498,7 +498,7 @@ class RunRecord(Model):
 
     @property
     def late(self) -> tuple[WindowRun, ...]:
-        """Visits that ended after their soft window."""
+        """Visits of tasks that ended after the task's soft time window."""
         return tuple(run for run in self.windows if run.kept is WindowOutcome.LATE)
 
     @property
@@ -551,8 +551,8 @@ def anomaly_from_reading(reading: Reading, place: Vector | None = None) -> Anoma
 
     Args:
         reading: the reading.
-        place: position of the checkpoint in m; None if the record has no anomaly of the reading,
-            as for a reading taken by hand.
+        place: position of the checkpoint in m; None if the reading was no anomaly of the log, as
+            one taken by hand.
     """
     return Anomaly(
         t=reading.t,

@@ -48,7 +48,11 @@ _ENDINGS = {
 def failed_tasks(
     runs: Sequence[TaskRun], trace: Sequence[TraceEntry], visits: Sequence[VisitRun]
 ) -> tuple[str, ...]:
-    """Return the names of the tasks that failed without a retry, in the order of their failures."""
+    """Return the names of tasks that failed for good in a run, in the order of their failures.
+
+    Each is named once, even if a later visit succeeded. Failures before a retry, and of actions
+    that a person ordered, don't count.
+    """
     retried = {(e.time, e.source) for e in trace if e.cause is Cause.RETRY}
     failed = [
         (r.end, r.task)
@@ -142,10 +146,10 @@ def _success_verdict(
     failed: Sequence[str],
     earlier: Progress,
 ) -> str:
-    """Return the verdict of a successful mission.
+    """Return the verdict of a successful mission, as text.
 
-    It names tasks that a condition passed over, that a person did or skipped, that were done before
-    this run, and optional ones that failed.
+    The text names tasks that a condition passed over, that a person did or skipped, that were done
+    before this run, and optional ones that failed.
     """
     by_hand, skipped = _by_hand(trace, skipped=False), _by_hand(trace, skipped=True)
     done = {
@@ -173,10 +177,10 @@ def _success_verdict(
 
 
 def _failed_earlier(earlier: Progress, mission: Mission) -> Iterator[str]:
-    """Yield the tasks that failed before this run.
+    """Yield the names of the tasks that failed before this run, which continues another one.
 
-    A task that the mission no longer has counts if the mission had failed: it is not known whether
-    the task was optional.
+    A task that the mission no longer has counts if a task that was not optional had failed: it may
+    be that one.
     """
     for tally in earlier.tallies:
         if tally.failed and (mission.task(tally.task) is not None or earlier.failed):
@@ -184,7 +188,7 @@ def _failed_earlier(earlier: Progress, mission: Mission) -> Iterator[str]:
 
 
 def _by_hand(trace: Sequence[TraceEntry], *, skipped: bool) -> tuple[str, ...]:
-    """Return the tasks that a person did by hand, or else those they skipped, in their order."""
+    """Return the names of the tasks that a person did or, with `skipped`, skipped, in order."""
     tasks = (e.source for e in trace if e.by_hand and e.skipped is skipped and e.source)
     return tuple(dict.fromkeys(tasks))
 

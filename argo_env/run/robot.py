@@ -49,7 +49,7 @@ class RobotAction(Protocol):
         """Continue with a setup whose navigator knows of a new blockage."""
 
     def to_task_run(self, end: ActionEnd, now: float, distance: float, climbed: float) -> TaskRun:
-        """Return the entry for the record of the action, which ended at `now` (s).
+        """Return the action, which ended at `now` (s), in the form of the run's record.
 
         `distance` and `climbed` (m) are those of the robot since the mission's start.
         """
@@ -97,28 +97,34 @@ class AnyRobot(Protocol):
         """
 
     def apply_initial_state(self, initial: InitialState) -> None:
-        """Set the state at the start of a run that continues another run."""
+        """Set the robot's state at the start of a run that continues another run."""
 
     def restore(self, last: Entry) -> None:
-        """Restore the state after the last entry of a run whose process has died."""
+        """Restore the robot's state after the last entry of a run whose process has died."""
 
     def restore_anomalies(self, reported: Sequence[tuple[Anomaly, BodyPose]], now: float) -> None:
-        """Restore anomalies that were found before `now`, each with the robot's pose then."""
+        """Restore anomalies that were found before `now` (s), so that none is reported again.
+
+        Each comes with the robot's pose then.
+        """
 
     def update_faults(self, now: float) -> None:
-        """Begin and end the simulated faults that are due."""
+        """Begin and end the simulated faults that are due at `now` (s)."""
 
     def avoid(self, blockages: Sequence[Blockage]) -> None:
-        """Make later paths keep clear of these blockages as well."""
+        """Make paths planned from now on keep clear of these blockages, besides the known ones."""
 
     def start(self, command: StartAction, now: float, arrival_path: Path | None) -> RobotAction:
         """Start an action; no other action may be running."""
 
     def advance(self, step: int, now: float, action: RobotAction | None) -> Sensed:
-        """Let time step number `step` pass, up to `now`, with `action` running."""
+        """Let time step number `step` pass, up to `now` (s), with `action` running, if any."""
 
     def entry_fields(self) -> dict[str, Any]:
-        """Return the fields of an entry that hold the robot's state, from its pose to contacts."""
+        """Return the fields of an entry of the log that hold the robot's state.
+
+        These are its pose, distance, climb and charge, and its mishaps and contacts.
+        """
 
     def clear_reported(self) -> None:
         """Clear the mishaps and ended contacts that `entry_fields` has already reported."""

@@ -44,13 +44,17 @@ class Supervision:
         self._results: list[tuple[float, ByHand]] = []
 
     def results_at(self, now: float) -> tuple[ByHand, ...]:
-        """Return the mission's tasks done by hand since the take-over, with ages at `now` (s)."""
+        """Return the tasks of the mission done by hand since the take-over.
+
+        Their ages are the times from their ends to `now` (s).
+        """
         return tuple(result.model_copy(update={"age": now - end}) for end, result in self._results)
 
     def end_action(self, run: TaskRun, entry: Entry) -> None:
-        """End the action by hand; it counts as done if it succeeded and is a task of the mission.
+        """Note that the action by hand has ended.
 
-        `run` is its entry for the record, and `entry` the log's entry with its reading.
+        Its task counts as done if the action succeeded and the task is one of the mission. `run` is
+        the action in the record's form, and `entry` the log's entry with its reading.
         """
         self.acting = False
         if run.outcome != "done" or self._mission.task(run.task) is None:
@@ -183,7 +187,7 @@ def require_no_action_by_hand(event: Event, acting: Task | None) -> None:
 
 
 def require_no_action(machine: Machine) -> None:
-    """Raise Conflict while an action runs, because the robot can't be given back then."""
+    """Raise Conflict if the machine's action still runs: the robot can't be given back then."""
     if running := machine.running:
         raise Conflict(
             f"the action of task '{running.name}' has not ended yet: take over, and let time pass "
@@ -192,7 +196,10 @@ def require_no_action(machine: Machine) -> None:
 
 
 def require_taken_over(machine: Machine, now: float) -> None:
-    """Raise Conflict if the robot is to be given back at `now` (s) and nobody has taken it over."""
+    """Raise Conflict if a give-back that is due at `now` (s) waits in vain.
+
+    That is so if the mission goes on, as nobody has taken the robot over.
+    """
     if machine.running and not machine.paused and machine.reaction is None:
         raise Conflict(
             f"the robot was to be given back by {now:g} s, and nobody has taken it over: the "
@@ -234,7 +241,7 @@ def _check(event: LoggedEvent, mission: Mission, site: Site) -> None:
 
 
 def _check_by_hand(results: Sequence[ByHand], mission: Mission) -> None:
-    """Raise Invalid for results that a person can't have got by hand in the mission."""
+    """Raise Invalid for tasks done by hand that a person can't have done in the mission."""
     _, diagnostics = match_to_mission(Progress(active=None, by_hand=tuple(results)), mission)
     for diagnostic in diagnostics:
         if diagnostic.code.startswith("handover.by-hand"):
@@ -242,10 +249,10 @@ def _check_by_hand(results: Sequence[ByHand], mission: Mission) -> None:
 
 
 def resolve_new_fault(fault: AnyFault, setup: RunSetup, seed: int, now: float) -> AnyFault:
-    """Resolve a fault that is injected at time `now` (s) and begins then, or at its own later time.
+    """Return a fault injected at time `now` (s) with its target and what the seed draws for it.
 
-    Raises Conflict for a fault that can't begin during a run, ArgoError if the site does not have
-    its target.
+    It begins at `now`, or at its own later time. Raises Conflict for a fault that can't begin
+    during a run, ArgoError if the site does not have its target.
     """
     if not isinstance(fault, Fault):
         raise Invalid(f"{fault!r} is not a fault")

@@ -41,7 +41,7 @@ class Instruments:
     def __init__(
         self, targets: FaultTargets, site: Site, seed: int, profiles: Mapping[int, ValueProfile]
     ) -> None:
-        """Take the value profiles by number of the checkpoint.
+        """Take the profiles, each by the number of the checkpoint whose value changes by it.
 
         Raises NotFound for a checkpoint that the site does not have.
         """
@@ -122,7 +122,7 @@ class RunSetup:
 
 
 def make_run_setup(spec: RunSpec, navigator: Navigator, gui: bool, stack: ExitStack) -> RunSetup:
-    """Make the setup of a run whose spec was checked.
+    """Make the run setup for a spec that was checked.
 
     Args:
         spec: the spec of the run.
@@ -174,7 +174,8 @@ def make_run_setup(spec: RunSpec, navigator: Navigator, gui: bool, stack: ExitSt
 def check_spec(spec: RunSpec, site: Site, fault_text: FaultText | None = None) -> None:
     """Raise ArgoError for a spec that no run on the site can have, whatever its mission is.
 
-    With `fault_text`, from which the faults were read, errors in faults state their lines.
+    `fault_text` is the text from which the faults were read; with it, errors in faults name lines
+    of that text.
     """
     if fault_text:
         fault_text.require_fit(site, spec.seed)
@@ -201,7 +202,7 @@ def check_spec(spec: RunSpec, site: Site, fault_text: FaultText | None = None) -
 
 
 def true_values(site: Site, seed: int, given: Mapping[int, float]) -> dict[int, float]:
-    """Return the true value of each checkpoint in its unit: drawn by the seed, or the given one.
+    """Return each checkpoint's true value in its unit, by number: given, or drawn by the seed.
 
     Raises NotFound for a checkpoint that the site does not have, Invalid for a value beyond its
     scale.

@@ -59,7 +59,7 @@ class ScheduledEvents:
         self._events[self.occurred :] = sorted(upcoming, key=lambda timed: timed[0])
 
     def take_due(self, now: float, at_rest: bool, acting: bool = False) -> list[Event]:
-        """Return the events that occur at time `now` (s), and count them as occurred.
+        """Return the events that are due by time `now` (s) and can occur; count them as occurred.
 
         Two kinds of events wait, and so do all events after them: the robot is given back only
         `at_rest`, with no action running, and in a step of its own; the mission is not resumed
@@ -75,7 +75,7 @@ class ScheduledEvents:
         return [event for _, event in self._events[first : self.occurred]]
 
     def is_give_back_waiting(self, now: float) -> bool:
-        """Return True if the robot should have been given back by `now` (s), and that waits."""
+        """Return True if the next event is a give-back that was due by `now` (s) and waits."""
         return self.pending and self._events[self.occurred][0] <= now and self._is_give_back_next
 
     @property
@@ -182,7 +182,7 @@ class SimulationState:
                         self.action.cancel(reason, interrupted=interrupted)
 
     def replay_entry(self, entry: Entry) -> None:
-        """Apply an entry of a journal, with the robot's odometry as it was then.
+        """Apply an entry of a journal, with the time and the robot's odometry of that entry.
 
         Raises Invalid if the entry belongs to another run.
         """
@@ -203,7 +203,11 @@ class SimulationState:
             ) from error
 
     def finish_replay(self) -> None:
-        """Restore the arrival path from the log after a replay, and end an action by hand."""
+        """Complete the state after a journal's entries were replayed.
+
+        The path by which the robot reached its pose is restored from the log, and an action by hand
+        that was running ends.
+        """
         if self.supervision.acting and self.action:
             self.action.cancel("the process that carried it out died", interrupted=True)
             self.lost_task_run = self.task_run(ActionStopped(self.action.task.name))
@@ -214,7 +218,7 @@ class SimulationState:
                 self.action.arrival_path = arrival_path
 
     def task_run(self, end: ActionEnd) -> TaskRun:
-        """Return the running action, which ends now, as a TaskRun for the run's record."""
+        """Return the running action, which ends now by `end`, as a TaskRun for the run's record."""
         assert self.action is not None
         odometry = self._vehicle.odometry
         run = self.action.to_task_run(end, self.now, odometry.distance, odometry.climbed)
@@ -246,7 +250,10 @@ class SimulationState:
         )
 
     def record(self, spec: RunSpec, present: Entry | None = None) -> RunRecord:
-        """Return the record of the run up to the end of its log, or up to the `present` entry."""
+        """Return the record of the run from its log, and from the `present` entry, if given.
+
+        That entry is of the present moment and not in the log.
+        """
         log = self.log if present is None else self.log.with_entry(present)
         return make_record(
             spec, self._vehicle.setup, self.machine, log, self._interruptions, self._rounds

@@ -25,8 +25,8 @@ _log = logging.getLogger(__name__)
 def run(spec: RunSpec) -> RunRecord:
     """Run the mission of a spec on its site and return the record.
 
-    This function can be pickled with a spec and sent to worker processes. Raises ArgoError as
-    `simulate` does.
+    Unlike `simulate` it has no options; it can be pickled with a spec and sent to worker processes.
+    Raises ArgoError as `simulate` does.
     """
     return simulate(spec)
 

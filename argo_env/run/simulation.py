@@ -65,7 +65,7 @@ _NO_POSES: PoseArray = np.empty((0, 5))
 
 
 def never() -> bool:
-    """Return False: the run is not interrupted."""
+    """Return False, as the default of `interrupted`: nobody interrupts the run."""
     return False
 
 
@@ -255,7 +255,7 @@ class Simulation(Closing):
         return _NO_POSES if passed is None else passed
 
     def handle(self, event: RunCommand) -> None:
-        """Execute a command from outside the run, now.
+        """Execute a command of a person or a program at the present time.
 
         Raises:
             Conflict: the run has ended, the robot is given back while an action still runs, the
@@ -296,7 +296,8 @@ class Simulation(Closing):
     def continuation_spec(self, mission: Mission, by_hand: Sequence[ByHand] = ()) -> RunSpec:
         """Return the spec of a run that continues from here with an edited mission.
 
-        In that run the robot has been given back. Its diagnostics name what no longer fits.
+        In that run the robot has been given back. The diagnostics of the spec name what no longer
+        fits the edited mission.
 
         Args:
             mission: the mission as a person has edited it while they had the robot.
@@ -384,7 +385,10 @@ class Simulation(Closing):
         self._stack.close()
 
     def _set_up(self, past: Sequence[Entry]) -> None:
-        """Set everything to the state in which the run begins or continues."""
+        """Set machine, log and robot to the state in which the run begins or continues.
+
+        `past` are the entries of the run so far; empty for a run that begins.
+        """
         state = self._state
         vehicle, beginning = self._vehicle, self._spec.beginning
         start = self._start_pose()
@@ -424,7 +428,10 @@ class Simulation(Closing):
         return BodyPose(pose.x, pose.y, pose.z, pose.yaw)
 
     def _ensure_begun(self) -> bool:
-        """Commit the first entry of this process if needed; return True if the run has ended."""
+        """Commit the entry with which this process begins or resumes the run, unless it has.
+
+        Returns True if the run has ended.
+        """
         if not self._begun:
             self._begun = True
             state = self._state
@@ -446,9 +453,10 @@ class Simulation(Closing):
         self._react(self._vehicle.advance(state.steps, state.now, state.action))
 
     def _count_uneventful_steps(self, until: float) -> int:
-        """Return for how many time steps, up to `until` (s), no event or fault can occur.
+        """Return for how many time steps, up to `until` (s), no scheduled event or fault is due.
 
-        What the robot notices by itself, and the end of its action, may come before.
+        The robot may notice something, or end its action, before that. With 0 or less, the next
+        step has to be made alone.
         """
         state, machine, vehicle = self._state, self._state.machine, self._vehicle
         if not isinstance(vehicle, Vehicle) or not vehicle.can_batch_steps:
@@ -501,7 +509,7 @@ class Simulation(Closing):
         return batch.poses_until(batch.steps - 1) if batch.steps else None
 
     def _react(self, sensed: Sensed) -> None:
-        """Commit entries of what a step has led to, and of the events that are due."""
+        """Commit entries of what a step has led to (`sensed`), and of the events that are due."""
         state, machine = self._state, self._state.machine
         now = state.now
         # Anomalies before the action's end: their reactions come first, and no next task starts.
@@ -540,7 +548,7 @@ class Simulation(Closing):
 
     @contextmanager
     def _lock_out_commands(self) -> Iterator[None]:
-        """Refuse commands while the run changes, and for good after an error in the change."""
+        """Refuse commands within the `with` block, and for good after an error in it."""
         outer, self._changing = self._changing, True
         try:
             yield

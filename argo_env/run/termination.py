@@ -29,8 +29,8 @@ def standstill_reason(
 ) -> str | None:
     """Return why the robot stands still for good at time `now` (s); None if it does not.
 
-    It is assumed that no further event is scheduled. A robot that is `acting` by hand does not
-    stand still, unless its emergency stop holds it.
+    For good means unless an event from outside occurs; the caller knows that none is scheduled. A
+    robot that is `acting` by hand does not stand still, unless its emergency stop holds it.
     """
     waits = not acting and machine.running is None and machine.next_deadline is None
     is_stopped = is_emergency_stopped(setup)
@@ -53,12 +53,15 @@ def is_emergency_stopped(setup: RunSetup) -> bool:
 
 
 def final_standstill_time(setup: RunSetup, log: RunLog) -> float:
-    """Return the time in s from which a robot that stands still now counts as doing so for good."""
+    """Return the time (s) from which a robot that stands still now does so for good.
+
+    It is infinite while a fault is still to begin or end.
+    """
     return _standstill_times(setup, log)[1]
 
 
 def _standstill_times(setup: RunSetup, log: RunLog) -> tuple[float, float]:
-    """Return the times in s since when a robot stands still, and from when on for good."""
+    """Return since when (s) a robot that stands still does so, and from when (s) for good."""
     since, schedule = log.last_event, setup.schedule
     if schedule is None or not schedule.faults:
         return since, since

@@ -48,7 +48,7 @@ def check_run(
 
 
 def require_machine(machine: Machine, spec: RunSpec) -> None:
-    """Raise Conflict for a machine that has been started, or is not the machine of the mission."""
+    """Raise Conflict for a machine that has been started, or is not that of the spec's mission."""
     if machine.configuration:
         raise Conflict("the machine has been started already: make another one for this run")
     progress = spec.beginning.progress if spec.beginning else None

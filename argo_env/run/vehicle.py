@@ -81,7 +81,7 @@ class StepBatch:
         self.steps = len(self._power)
 
     def poses_until(self, count: int) -> PoseArray:
-        """Return the robot's poses after the first `count` steps; no poses if it stands still."""
+        """Return the robot's pose after each of the first `count` steps, or none if it stands."""
         return self._poses[1 : 1 if self._ahead is None else count + 1]
 
     def pose_and_charge(self, step: int) -> tuple[PoseTuple, float | None]:
@@ -91,11 +91,11 @@ class StepBatch:
 
     @property
     def charge_range(self) -> tuple[float, float]:
-        """Least and greatest charge of the battery after the steps, 0 to 1."""
+        """Lowest and highest charge of the battery after the steps, 0 to 1."""
         return self._supply.charge_range(self._power)
 
     def advance_to(self, step: int, now: float) -> None:
-        """Set the robot to its state after `step` steps, at time `now` (s)."""
+        """Set the robot to its state after `step` steps of the batch, at time `now` (s)."""
         count = step - self._passed_steps
         if self._ahead is not None:
             assert isinstance(self._drive, Powertrain)
@@ -109,7 +109,10 @@ class StepBatch:
 
 
 def _running_sums(first: float, added: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the sums before the first step and after each, rounded as if added one by one."""
+    """Return `first` and, after each step, its sum with the values added so far.
+
+    The sums are rounded as if the values were added one by one.
+    """
     return np.cumsum(np.concatenate([[first], added]))
 
 
@@ -141,7 +144,7 @@ class Vehicle:
         self.update_faults(now)
 
     def apply_initial_state(self, initial: InitialState) -> None:
-        """Set the state at the start of a run that continues another run."""
+        """Set the robot's state at the start of a run that continues another run."""
         self.odometry.distance, self.odometry.climbed = initial.distance, initial.climbed
         if initial.charge is not None:
             self.supply.reset(initial.charge, initial.body_pose)
@@ -150,7 +153,10 @@ class Vehicle:
             self.avoid(closed)
 
     def restore_anomalies(self, reported: Sequence[tuple[Anomaly, BodyPose]], now: float) -> None:
-        """Restore anomalies found before time `now` (s), each with the robot's pose then."""
+        """Restore anomalies found before time `now` (s), each with the robot's pose then.
+
+        The watches do not report them again.
+        """
         self._perception.restore_anomalies(reported, now)
 
     def restore(self, last: Entry) -> None:
@@ -164,7 +170,7 @@ class Vehicle:
             self.setup.schedule.advance(now)
 
     def avoid(self, blockages: Sequence[Blockage]) -> None:
-        """Make later paths keep clear of these blockages as well."""
+        """Make paths planned from now on keep clear of these blockages, besides the known ones."""
         navigator = self.setup.navigator.with_blockages(blockages)
         self.setup = replace(self.setup, navigator=navigator)
 
@@ -198,7 +204,7 @@ class Vehicle:
 
     @property
     def can_batch_steps(self) -> bool:
-        """True if steps can be made in batches, because nothing can happen to the robot."""
+        """True if steps can be made in batches, because the robot can touch nothing at its pose."""
         drive = self.setup.drive
         return isinstance(drive, Powertrain) and drive.can_batch_steps
 
@@ -208,7 +214,7 @@ class Vehicle:
         return StepBatch(self.setup, self.odometry, self.supply, own, limit)
 
     def steps_with_updates(self, batch: StepBatch, first: int) -> set[int]:
-        """Return the numbers of the batch's steps in which a watch is updated.
+        """Return the numbers of the batch's steps in which a watch has to be updated.
 
         The first step of the batch has the number `first`.
         """
@@ -244,7 +250,10 @@ class Vehicle:
 
 
 def find_arrival_path(log: RunLog) -> Path | None:
-    """Return the last part of the path by which the robot reached its pose, from the log."""
+    """Return the last part of the path by which the robot reached its pose, from the log.
+
+    It is long enough to retreat along it. None if the log has no path.
+    """
     if not log.path:
         return None
     poses = (Pose(x=s.x, y=s.y, z=s.z, yaw=s.yaw) for s in reversed(log.path))

@@ -51,8 +51,8 @@ def run_headline(
 ) -> Headline:
     """Return the headline of a run with the given result.
 
-    `noticed` lists findings, contacts and mishaps in words, each once, by their name in the
-    singular.
+    `verdict`, `success`, `ended` and `only_failures` are those of the record's `Result`. `noticed`
+    lists what was noticed, in words, by its kind in the singular, such as `finding` or `contact`.
     """
     counts = ", ".join(
         f"{len(things)} {name}{'s' if len(things) > 1 else ''}"
@@ -74,7 +74,7 @@ def run_headline(
 
 
 def _summarize(things: Sequence[str]) -> str:
-    """Return the noticed things in one line: the first ones by name, the number of the others."""
+    """Return the noticed things in one line: the first kinds in words, the number of the others."""
     times = list(Counter(things).items())
     named = [thing if n == 1 else f"{thing}, {n} times" for thing, n in times[:_NAMED]]
     more = sum(n for _, n in times[_NAMED:])

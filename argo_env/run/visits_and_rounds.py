@@ -43,9 +43,9 @@ class VisitRun:
 
     @property
     def is_done(self) -> bool:
-        """True if the task has ended by itself without failing.
+        """True if the visit has ended because its task was done, or skipped by a person.
 
-        A group's time limit or a person can end a visit before that.
+        A failure, a group's time limit or the end of the mission can end a visit before that.
         """
         by_itself = self.end_entry is not None and self.end_entry.cause not in (
             Cause.TIMEOUT,
@@ -58,8 +58,8 @@ class VisitRun:
 def visits_from_trace(trace: Sequence[TraceEntry], since: float = 0.0) -> Iterator[VisitRun]:
     """Yield the visits of all tasks in a trace, in the order of time.
 
-    The visit of a task that waits for its round to be due begins with the round. The first task of
-    a restored machine had been visited for `since` (s) before.
+    The visit of a task that waits for its group's round to be due begins with the round. The first
+    visit of a restored machine had begun `since` (s) before it was restored.
     """
     task: str | None = None
     start = 0.0
@@ -77,7 +77,10 @@ def visits_from_trace(trace: Sequence[TraceEntry], since: float = 0.0) -> Iterat
 
 
 def wait_runs(mission: Mission, visits: Sequence[VisitRun], now: float) -> tuple[WaitRun, ...]:
-    """Return the visits, up to time `now` (s), of WAIT tasks that do wait for something."""
+    """Return the visits of WAIT tasks, without those that only join transitions.
+
+    A visit that has not ended is returned up to time `now` (s).
+    """
     tasks = {t.name: t for t in mission.tasks if t.action is Action.WAIT and not _is_junction(t)}
     return tuple(
         WaitRun(
@@ -97,7 +100,7 @@ def wait_runs(mission: Mission, visits: Sequence[VisitRun], now: float) -> tuple
 def window_runs(
     mission: Mission, visits: Sequence[VisitRun], earlier: Collection[str] = ()
 ) -> tuple[WindowRun, ...]:
-    """Return the visits of tasks with time windows, then the tasks that were not visited.
+    """Return the visits of tasks with time windows, then those of these tasks without a visit.
 
     Tasks in `earlier` were visited before this run, and are left out if they have no visit in it.
     """
@@ -215,7 +218,7 @@ class RoundTracker:
             self._groups[name] = _KnownRound(group.round, group.elapsed, index)
 
     def rounds(self) -> tuple[RoundRun, ...]:
-        """Return all rounds, in the order in which they could begin."""
+        """Return all rounds of groups so far, in the order in which they could begin."""
         return tuple(self._rounds)
 
     def _end(self, index: int, now: float, begun: float | None) -> None:
@@ -230,9 +233,10 @@ class RoundTracker:
 def _new_round(
     group: GroupProgress, rule: RepeatRule, since: float, now: float, waits: bool
 ) -> RoundRun:
-    """Return a round that could begin at `since` (s), at time `now` (s).
+    """Return the present round of a group, as the record has it, at time `now` (s).
 
-    `waits` states that the machine still waits until the round is due.
+    The round could begin at `since` (s), when the previous one had ended. `waits` states that the
+    machine still waits until the round is due.
     """
     # Seconds since the round was due, on the group's clock; negative before.
     overdue = group.elapsed - (group.round - 1) * rule.every
@@ -270,7 +274,7 @@ class InterruptionTracker:
             self._event, self._since = event, now
 
     def interruptions(self, now: float) -> tuple[Interruption, ...]:
-        """Return all interruptions, the current one up to time `now` (s)."""
+        """Return all interruptions so far, the current one up to time `now` (s)."""
         if self._since is None:
             return tuple(self._ended)
         return (*self._ended, Interruption(start=self._since, end=now, event=self._event))

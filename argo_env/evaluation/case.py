@@ -56,7 +56,10 @@ class PlanName:
         return self.label(())
 
     def label(self, others: Sequence["PlanName"]) -> str:
-        """Return a readable name: the mission, and each other part that differs in `others`."""
+        """Return a readable name: the mission, and each part in which one of `others` differs.
+
+        These parts are policy, site, robot, drive and sensor.
+        """
         parts = [self.mission]
         for name in ("policy", "site", "robot", "drive", "sensor"):
             own = getattr(self, name)

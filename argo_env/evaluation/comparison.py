@@ -36,12 +36,12 @@ class PlanComparison:
 
     @cached_property
     def successes(self) -> SuccessPairs:
-        """Counts of the pairs by which of the two plans succeeded, over all pairs."""
+        """Numbers of pairs of runs by which of the two plans succeeded: both, one or none."""
         return _successes(list(self.pairs))
 
     @cached_property
     def by_faults(self) -> dict[str, SuccessPairs]:
-        """Counts of the pairs by which of the two plans succeeded, by set of faults."""
+        """Numbers of pairs of runs by outcome, as in `successes`, by name of the set of faults."""
         names = dict.fromkeys(a.faults for a, _ in self.pairs)
         return {
             name: _successes([pair for pair in self.pairs if pair[0].faults == name])
@@ -52,8 +52,8 @@ class PlanComparison:
     def success(self) -> Difference:
         """Difference of the success rates, first plan minus second plan, over worlds.
 
-        Runs of one world with several sets of faults depend on each other and count as one. The
-        interval is valid whatever the true rates are.
+        Runs of one world with several sets of faults depend on each other and count as one. The 95
+        % interval is valid whatever the true rates are.
         """
         shares = _world_means(lambda row: float(row.success), list(self.pairs))
         estimate = mean_difference(*shares)
@@ -86,22 +86,22 @@ class PlanComparison:
 
     @cached_property
     def duration(self) -> Difference:
-        """Difference of the durations in s, first plan minus second plan, if both succeeded."""
+        """Mean difference of the durations in s, first plan minus second, where both succeeded."""
         both = [pair for pair in self.pairs if pair[0].success and pair[1].success]
         return mean_difference(*_world_means(lambda row: row.duration or 0.0, both))
 
     @cached_property
     def distance(self) -> Difference:
-        """Difference of the distances in m, first plan minus second plan, if both succeeded."""
+        """Mean difference of the distances in m, first plan minus second, where both succeeded."""
         both = [pair for pair in self.pairs if pair[0].success and pair[1].success]
         return mean_difference(*_world_means(lambda row: row.distance or 0.0, both))
 
     def power(self, gain: float) -> float:
         """Return the power of McNemar's exact test for this number of pairs.
 
-        That is the probability that the test shows that one plan succeeds more often by `gain`
-        (0 to 1). In addition, each plan is assumed to succeed alone in the share of pairs in which
-        the plan with fewer such pairs did so here.
+        That is the probability that the test shows a difference if one plan truly succeeds more
+        often by `gain` (0 to 1). In addition, each plan is assumed to succeed alone in the share of
+        pairs in which the plan with fewer such pairs did so here.
         """
         pairs = self.successes
         noise = min(pairs.first_only, pairs.second_only) / pairs.pairs if pairs.pairs else 0.0
@@ -110,7 +110,7 @@ class PlanComparison:
 
     @property
     def conclusion(self) -> str:
-        """Conclusion of the comparison in one sentence."""
+        """Conclusion of the comparison in one sentence; A is the first plan, B the second."""
         excludes_zero = self.success.low > 0.0 or self.success.high < 0.0
         is_significant = excludes_zero if self.any_time else self.p_value <= 0.05
         if is_significant:
@@ -191,7 +191,7 @@ def _only_plan(results: EvaluationResults) -> PlanName:
 
 
 def _world_means(value: Callable[[RunRow], float], pairs: _Pairs) -> NDArray[np.float64]:
-    """Return the mean of each plan's runs in each world, shape (2, worlds)."""
+    """Return, for each plan, the mean of a value of its runs in each world; shape (2, worlds)."""
     return world_means((a.seed, (value(a), value(b))) for a, b in pairs).reshape(-1, 2).T
 
 

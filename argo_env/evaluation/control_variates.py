@@ -83,10 +83,11 @@ def run_with_control_variate(
 ) -> tuple[EvaluationResults, tuple[ControlledMean, ...]]:
     """Run the evaluation, and run more worlds with the cheap `drive` if that pays.
 
-    Both drives run in the worlds of a pilot first, which measures their correlation and costs; the
-    measured cost is stored in the folder. The means are empty if too few worlds could be run with
-    both drives. Raises ArgoError for several plans at once, strata, too few worlds, or a cheap
-    drive that can't have the same faults.
+    Both drives run in the worlds of a pilot first, which measures their correlation and costs (wall
+    times of runs); the measured cost is stored in the folder. Returns the results with the plan's
+    own drive, and the estimated means of success and duration; these are empty if too few worlds
+    could be run with both drives. Raises ArgoError for several plans at once, strata, too few
+    worlds, or a cheap drive that can't have the same faults.
     """
     cheap = with_drive(plan, drive)
     pilot_seeds = plan.seeds[:PILOT]
@@ -142,7 +143,11 @@ def _with_seeds(plan: EvaluationPlan, seeds: Sequence[int]) -> EvaluationPlan:
 
 
 def _relative_cost(folder: Path, expensive: float, cheap: float) -> float:
-    """Return the cost of a cheap run relative to an expensive one, as the first pilot measured."""
+    """Return the cost of a cheap run relative to an expensive one, as the first pilot measured it.
+
+    It is read from the folder; if it is not there yet, it is the ratio of the pilot's wall times
+    `cheap` and `expensive` (s), and is stored.
+    """
     path = folder / _COST_FILE
     try:
         return _MeasuredCost.model_validate_json(read_bytes(path, "measured cost", 1_000)).cost
@@ -186,7 +191,10 @@ def _mean(
 
 
 def _by_world(results: EvaluationResults, quantity: str) -> dict[int, float]:
-    """Return, by seed, the weighted mean over the cases, for worlds in which all cases have run."""
+    """Return, by seed, the weighted mean of a quantity over the cases of a world.
+
+    Worlds in which not all cases could be run are left out.
+    """
     weights = {case.faults: case.weight for case in results.plan.cases}
     ran = (row for row in results.rows if row.is_completed)
     values = ((row.seed, row.faults, _QUANTITIES[quantity](row)) for row in ran)
@@ -194,7 +202,7 @@ def _by_world(results: EvaluationResults, quantity: str) -> dict[int, float]:
 
 
 def _estimate(values: NDArray[np.float64]) -> Estimate:
-    """Return the mean with its interval by Student's t distribution."""
+    """Return the mean of the values with its 95 % interval by Student's t distribution."""
     from scipy.stats import t
 
     n = len(values)

@@ -35,7 +35,7 @@ def may_be_caused_by(anomaly: Anomaly, fault: AnyFault, record: RunRecord, site:
 
 
 def find_reading(anomaly: Anomaly, record: RunRecord) -> Reading | None:
-    """Return the reading in which an abnormal value was found; None for any other anomaly."""
+    """Return the reading whose abnormal value is the anomaly; None for any other anomaly."""
     if not anomaly.is_reading:
         return None
     return next((reading for reading in record.readings if reading.t == anomaly.t), None)
@@ -55,8 +55,8 @@ class FaultDetection(Model):
 def detections(record: RunRecord, site: Site) -> tuple[FaultDetection, ...]:
     """Return the detection of each fault that occurred in a run on the site and can be found.
 
-    Among faults of one kind, each finding counts for one fault, in the order of time. It counts for
-    faults of two kinds if both have the same sign at the same location.
+    Among faults of one kind, each anomaly counts for one fault only, in the order of time. It
+    counts for faults of two kinds if both have the same sign at the same location.
     """
     assigned: set[tuple[str, int]] = set()
     found = []
@@ -89,7 +89,10 @@ class _GroundTruth:
     site: Site
 
     def was_abnormal(self, finding: Finding) -> bool:
-        """Return True if the checkpoint truly showed a value outside its nominal range."""
+        """Return True if the finding's checkpoint truly showed a value outside its nominal range.
+
+        That is its value without faults.
+        """
         reading = find_reading(finding, self.record)
         if reading is None:
             return False
@@ -118,7 +121,7 @@ class _GroundTruth:
         return finding.source == "camera" and conditions.sensor_noise > 0
 
     def is_caused_by(self, finding: Finding, fault: AnyFault) -> bool:
-        """Return True if the fault may be the cause of the finding."""
+        """Return True if the fault may be the cause of the finding, also by misread values."""
         if may_be_caused_by(finding, fault, self.record, self.site):
             return True
         # A faulty camera may misread any value.

@@ -76,7 +76,10 @@ def open_rows(
 
 
 def _continues(folder: Path, plan: EvaluationPlan) -> bool:
-    """Return True if the plan continues the evaluation in the folder, or the folder has none."""
+    """Return True if the plan can continue the evaluation in the folder, or there is none.
+
+    It can if it differs at most by more seeds and by its rule to stop.
+    """
     try:
         stored = read_plan(folder)
     except Invalid:
@@ -88,7 +91,7 @@ def _continues(folder: Path, plan: EvaluationPlan) -> bool:
 
 
 def write_plan(folder: Path, plan: EvaluationPlan, digest: str) -> None:
-    """Write the plan of an evaluation into its folder.
+    """Write the plan of an evaluation into its folder, with the hash of what it was made from.
 
     Raises Unavailable if the file can't be written.
     """
@@ -109,8 +112,8 @@ def write_file(path: Path, text: str) -> Path:
 def read_plan(folder: Path, digest: str | None = None) -> EvaluationPlan | None:
     """Return the plan stored in the folder, or None if there is none.
 
-    With a `digest`, a plan that was made from anything else also gives None, as does a plan of
-    another version of Argo. Without a `digest`, the latter raises Invalid.
+    With a `digest` (of `digest_contents`), a plan that was made from other contents also gives
+    None, as does a plan of another version of Argo. Without a `digest`, the latter raises Invalid.
     """
     try:
         content = read_bytes(folder / PLAN, "evaluation", _MAX_BYTES)
@@ -151,7 +154,8 @@ def sort_rows(plan: EvaluationPlan, rows: tuple[RunRow, ...]) -> tuple[RunRow, .
 def write_failing_specs(folder: Path, results: EvaluationResults) -> dict[str, Path]:
     """Write a spec file for each unsuccessful run, and return the paths by the rows' keys.
 
-    Each file repeats one run alone. All other spec files are removed.
+    A run can be repeated alone from its file. At most _MAX_FAILING files are written; all other
+    spec files are removed.
     """
     paths: dict[str, Path] = {}
     for row in results.rows:
@@ -177,7 +181,7 @@ def _remove_others(folder: Path, names: Collection[str]) -> None:
 
 
 def digest_contents(*contents: bytes) -> str:
-    """Return a hash of all contents that a plan is made from."""
+    """Return a hash of the contents of all files that a plan is made from."""
     digest = hashlib.sha256()
     for content in contents:
         digest.update(len(content).to_bytes(8) + content)

@@ -54,7 +54,7 @@ def write_part(folder: Path, rows: Sequence[RunRow]) -> Path:
 
 
 def read_parts(folder: Path) -> tuple[RunRow, ...]:
-    """Read the rows of all files, in the order in which they were written.
+    """Read the rows of all Parquet files in the folder, in the order in which they were written.
 
     Raises Unavailable if there are files, and pyarrow is missing or one of them can't be read.
     """

@@ -52,7 +52,7 @@ class EvaluationPlan(Model):
     repeated from its spec alone"""
 
     def with_changes(self, **fields: Any) -> "EvaluationPlan":
-        """Return a new plan with other values of `fields`.
+        """Return the plan with new values of the given fields.
 
         Use it instead of `model_copy`, which would copy the cached names that belong to the old
         cases.
@@ -80,7 +80,7 @@ class EvaluationPlan(Model):
                 yield self.planned_run(case, seed)
 
     def key(self, run: "PlannedRun") -> str:
-        """Return the run's key: a hash of all that it depends on.
+        """Return a run's key, by which its row is found: a hash of all that the run depends on.
 
         The names of its case and Argo's version are part of the hash.
         """
@@ -91,7 +91,7 @@ class EvaluationPlan(Model):
 
     @cached_property
     def _case_indices(self) -> dict[tuple["PlanName", str], int]:
-        """Indices of the cases, by plan and faults."""
+        """Indices of the cases, by name of the evaluated plan and name of the faults."""
         return {(case.plan, case.faults): k for k, case in enumerate(self.cases)}
 
     def case_index(self, row: "RunRow") -> int | None:
@@ -106,7 +106,10 @@ class EvaluationPlan(Model):
         return self.key(self.planned_run(case, row.seed)) == row.key
 
     def faults_for(self, case: str, seed: int) -> str:
-        """Return the name of the faults drawn for the seed's world, or of the case's faults."""
+        """Return the name of the faults in a run: those drawn for the world, else those of `case`.
+
+        `case` is the name of the case's set of faults.
+        """
         return self.drawn_faults(seed) or case
 
     def drawn_faults(self, seed: int) -> str:

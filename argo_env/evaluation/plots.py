@@ -65,7 +65,7 @@ def prepare_axes(ax: "Axes | None", height: float = 3.0, width: float = WIDTH) -
 
 
 def label_rows(ax: "Axes", names: list[str]) -> None:
-    """Divide the axes into a labelled row for each name, from top to bottom."""
+    """Divide the axes into rows from top to bottom, one with a label for each name."""
     ax.set_yticks(range(len(names)), [fit_label(name) for name in names], color=INK)
     ax.set_ylim(max(len(names), 1) - 0.5, -0.5)
     ax.spines["left"].set_visible(False)
@@ -73,7 +73,7 @@ def label_rows(ax: "Axes", names: list[str]) -> None:
 
 
 def annotate_row(ax: "Axes", y: float, text: str, colour: str = SOFT) -> None:
-    """Write a text to the right of the axes, at the height of a row."""
+    """Write a text to the right of the axes, at the height of row `y`, from 0 at the top."""
     ax.annotate(
         text, (1.02, y), xycoords=("axes fraction", "data"), ha="left", va="center",
         color=colour, fontsize=FONT - 1, annotation_clip=False,
@@ -88,12 +88,12 @@ def show_empty(ax: "Axes", why: str) -> "Axes":
 
 
 def plan_style(number: int) -> tuple[str, str]:
-    """Return the colour and the marker of a plan by its index."""
+    """Return the colour and the marker of the plan with this index in its evaluation."""
     return SERIES[number % len(SERIES)], MARKS[number % len(MARKS)]
 
 
 def _legend(ax: "Axes", handles: list["Line2D"], words: list[str]) -> None:
-    """Draw a legend of the lines above the axes, at the left."""
+    """Draw a legend above the axes, at the left: a sample of each line with its words."""
     ax.legend(
         handles, words, frameon=False, fontsize=FONT, labelcolor=INK, loc="lower left",
         bbox_to_anchor=(0.0, 1.0), borderaxespad=0.2,
@@ -101,10 +101,10 @@ def _legend(ax: "Axes", handles: list["Line2D"], words: list[str]) -> None:
 
 
 def fit_label(name: str, width: float = 1.65) -> str:
-    """Return a name as one line of text that fits into this width (inches) beside axes.
+    """Return a name, shortened if needed, as one line of at most this width (inches).
 
-    It is escaped and padded, so that matplotlib takes no part of it for a formula and legends do
-    not leave it out.
+    The name is escaped and padded, so that matplotlib takes no part of it for a formula and legends
+    do not leave it out.
     """
     from matplotlib.font_manager import FontProperties
     from matplotlib.textpath import TextToPath
@@ -140,7 +140,8 @@ class _Line:
 def forest_of_rates(results: EvaluationResults, ax: "Axes | None" = None) -> "Axes":
     """Draw each plan's success rate with its 95 % interval, and below it the rates by faults.
 
-    Each row has one line for each plan; the text at its right gives how many runs succeeded.
+    Each row has one line for each plan, with a text at its right: the rate over all faults, or how
+    many runs with the row's faults succeeded.
     """
     names, lines = _lines(results)
     plans = results.plan.plans
@@ -173,7 +174,7 @@ def forest_of_rates(results: EvaluationResults, ax: "Axes | None" = None) -> "Ax
 
 
 def _lines(results: EvaluationResults) -> tuple[list[str], list[_Line]]:
-    """Return the names of the rows, and the lines in them."""
+    """Return the names of a forest plot's rows, and the lines (intervals) in them."""
     plans = results.plan.plans
     groups = [results.by_faults(plan) for plan in plans]
     rates = [results.rate(plan) for plan in plans]
@@ -221,7 +222,7 @@ _DARKEST = 0.5
 def outcomes_by_faults(
     results: EvaluationResults, ax: "Axes | None" = None, plan: PlanName | None = None
 ) -> "Axes":
-    """Draw a heat map of the runs by set of faults and outcome; more runs are darker.
+    """Draw a heat map of the runs by set of faults and outcome; larger shares are darker.
 
     `plan` None stands for the runs of all plans.
     """
@@ -269,7 +270,8 @@ squeeze all runs to one side"""
 def durations(results: EvaluationResults, ax: "Axes | None" = None) -> "Axes":
     """Draw the share of each plan's runs that have succeeded by a time (empirical distribution).
 
-    Failed runs never succeed, so that a line may end below 100 %. Limits are thin lines.
+    Failed runs never succeed, so that a line may end below 100 %. The longest durations that the
+    missions allow are thin vertical lines.
     """
     plans = results.plan.plans
     curves = [duration_curve(results, plan) for plan in plans]
@@ -303,7 +305,10 @@ def durations(results: EvaluationResults, ax: "Axes | None" = None) -> "Axes":
 
 
 def _view(times: list[float], limits: list[float]) -> tuple[float, float]:
-    """Return the shown range of times in s: the ends of runs, and limits not far from them."""
+    """Return the shown range of times in s: from the first to the last end of a run or limit.
+
+    Limits far beyond the longest run are not shown.
+    """
     ends = [*times, *(limit for limit in limits if limit <= _FAR * max(times))]
     low, high = min(ends), max(ends)
     margin = 0.08 * max(high - low, 0.05 * high, 1.0)
@@ -318,7 +323,7 @@ def _round_times(low: float, high: float) -> list[float]:
 
 
 def _legend_of_curves(ax: "Axes", curves: list[DurationCurve], high: float) -> None:
-    """Draw the legend with each line's plan, its share of successful runs, and its limits.
+    """Draw the legend: each curve's plan, its share of successful runs, and its time limits.
 
     An arrow marks a limit to the right of the shown range, which ends at `high` (s).
     """
@@ -385,7 +390,7 @@ _MAX_HEIGHT = 6.5  # inches
 def failure_places(
     results: EvaluationResults, site: Site, floor: int, ax: "Axes | None" = None
 ) -> "Axes":
-    """Draw the drawing of a floor of the site, with a disc at each location where runs failed.
+    """Draw a floor of the site, with a disc at each location where runs failed.
 
     A larger disc stands for more failed runs, and has their number if there are several.
     Checkpoints are small squares with their numbers.
@@ -431,7 +436,7 @@ def failure_places(
 
 
 def _draw_scale(ax: "Axes", x0: float, y0: float) -> None:
-    """Draw a scale bar of 2 m at the lower left."""
+    """Draw a scale bar of 2 m at the point (x0, y0), the lower left of a floor."""
     ax.plot([x0, x0 + 2.0], [y0, y0], color=INK, lw=1.5, clip_on=False, zorder=7)
     ax.annotate(
         "2 m", (x0 + 2.0, y0), (4, 0), textcoords="offset points", va="center", color=INK,

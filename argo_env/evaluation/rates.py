@@ -66,8 +66,8 @@ def estimate_plan_rate(
     Args:
         evaluation: Evaluation that the plan belongs to.
         plan: Plan to rate.
-        rows: Rows of the evaluation. Runs that could not be carried out don't count; their number
-            is returned.
+        rows: Rows of the evaluation, also of other plans. Runs that could not be carried out don't
+            count; their number is returned.
         quantity: Property to count; a run for which it returns None does not count.
         any_time: Whether the interval must be valid whatever ended the evaluation, for example a
             person who saw the outcomes.
@@ -107,18 +107,19 @@ def estimate_plan_rate(
 
 
 def _outcomes(rows: Sequence[RunRow], quantity: Callable[[RunRow], bool | None]) -> list[bool]:
-    """Return the property's value for each run that counts."""
+    """Return the value of the quantity for each run that counts: for which it is not None."""
     return [value for row in rows if (value := quantity(row)) is not None]
 
 
 def estimate_run_rate(
     evaluation: EvaluationPlan, outcomes: Sequence[bool], any_time: bool = False
 ) -> tuple[Rate, IntervalMethod]:
-    """Compute the rate of independent runs, one in each world, with an interval valid at its end.
+    """Compute the rate of independent runs, one in each world, and the method of its interval.
 
-    The exact interval is valid if the number of runs or the width of the interval was fixed before.
-    It is not valid if the evaluation stopped at the decision of a requirement, which is the more
-    likely the farther the runs deviate from the truth, nor with `any_time`.
+    `outcomes` states which runs have the property. The exact interval is valid if the number of
+    runs or the width of the interval was fixed before. It is not valid if the evaluation stopped at
+    the decision of a requirement, which is the more likely the farther the runs deviate from the
+    truth, nor with `any_time`.
     """
     count, runs = sum(outcomes), len(outcomes)
     if not (evaluation.stopping.require or any_time):
@@ -131,7 +132,11 @@ def estimate_run_rate(
 def world_shares(
     rows: Sequence[RunRow], weights: dict[str, float], quantity: Callable[[RunRow], bool | None]
 ) -> dict[int, float]:
-    """Return, by seed, the weighted share of a plan's runs that have the property."""
+    """Return, by seed, the share of a plan's runs that have a property, weighted by case.
+
+    `rows` are those of one plan; `weights` are those of its cases by their faults; `quantity` is
+    the property, None for a run that does not count.
+    """
     return weighted_world_means(((row.seed, row.faults, quantity(row)) for row in rows), weights)
 
 
@@ -170,8 +175,8 @@ def judge_requirements(
 ) -> tuple[RequirementVerdict, ...]:
     """Return the present verdict on each requirement for each plan.
 
-    It may be called after each run: the probability that any verdict on one plan is ever wrong is
-    at most 5 %. Runs that could not be carried out count against the requirement.
+    It may be called after each run: for each plan, the probability that any of its verdicts is ever
+    wrong is at most 5 %. Runs that could not be carried out count against the requirement.
     """
     return tuple(
         RequirementVerdict(plan, str(requirement), verdict, *sequence.interval, sequence.runs)

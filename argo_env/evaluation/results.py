@@ -74,12 +74,12 @@ class EvaluationResults:
 
     @cached_property
     def outcomes(self) -> Counter[RunOutcome]:
-        """Number of runs by outcome."""
+        """Number of runs by outcome, over all plans."""
         return Counter(row.outcome for row in self.rows)
 
     @property
     def lost(self) -> int:
-        """Number of runs that could not be carried out."""
+        """Number of runs that could not be carried out, over all plans."""
         return self.outcomes[RunOutcome.ERROR] + self.outcomes[RunOutcome.DIED]
 
     @cached_property
@@ -92,12 +92,12 @@ class EvaluationResults:
         return tuple(row for row in self.rows if row.plan == plan)
 
     def rate(self, plan: PlanName, quantity: str = "success") -> PlanRate:
-        """Compute the rate of a quantity in a plan's runs, over all their faults."""
+        """Compute the rate of a quantity, by name, in a plan's runs with any faults."""
         return estimate_plan_rate(self.plan, plan, self.rows, QUANTITIES[quantity], self.cut_short)
 
     @cached_property
     def verdicts(self) -> tuple[RequirementVerdict, ...]:
-        """Verdicts on all requirements, for each plan."""
+        """Verdict on each requirement for each plan, at the end of these rows."""
         return judge_requirements(self.plan, self.rows)
 
     def by_faults(self, plan: PlanName) -> tuple[GroupRate, ...]:
@@ -115,7 +115,10 @@ class EvaluationResults:
 
     @cached_property
     def delays(self) -> dict[str, list[float | None]]:
-        """Delays in s until each fault was found, by kind of fault; None if it was not found."""
+        """Delays in s until the robot found each fault that occurred, by kind of fault.
+
+        They are those of all runs; the delay is None for a fault that was not found.
+        """
         delays: dict[str, list[float | None]] = {}
         for row in self.rows:
             for detection in row.detections:
@@ -123,7 +126,7 @@ class EvaluationResults:
         return dict(sorted(delays.items()))
 
     def by_seeds(self, plan: PlanName, blocks: int = 10) -> tuple[GroupRate, ...]:
-        """Compute a plan's success rates by blocks of seeds, which should differ by chance only.
+        """Compute a plan's success rates in blocks of seeds; they should differ by chance only.
 
         There are at most `blocks` blocks, and each but the last has at least 10 seeds.
         """
@@ -203,7 +206,10 @@ class DurationCurve:
         return self.shares[-1] if self.shares else 0.0
 
     def time_at(self, share: float) -> float | None:
-        """Return the time in s by which this share (0 to 1) has succeeded; None if it never has."""
+        """Return the time in s by which this share (0 to 1) of the runs has succeeded.
+
+        It is None if fewer runs succeed.
+        """
         k = bisect_left(self.shares, share - 1e-9)
         return self.times[k] if k < len(self.times) else None
 
@@ -251,7 +257,10 @@ class FailureCluster:
 
 
 def cluster_failures(rows: Iterable[RunRow]) -> tuple[FailureCluster, ...]:
-    """Group failed runs by location, in the order of floors and then of most failures first."""
+    """Return the clusters of failed runs at most half a metre apart, by floor.
+
+    On a floor, the cluster with the most failures comes first.
+    """
     clusters: list[FailureCluster] = []
     for row in rows:
         if row.success or row.place is None or row.floor is None:

@@ -138,7 +138,7 @@ def make_empty_row(
 ) -> RunRow:
     """Return a row without measured values, for a run that has none or for `make_row` to complete.
 
-    `reason` states what is missing or went wrong.
+    `reason` states what is missing for success, or what went wrong.
     """
     return RunRow(
         key=key,
@@ -156,7 +156,7 @@ def make_empty_row(
 
 
 def _failure_fields(record: RunRecord) -> dict[str, object]:
-    """Return the row's fields on where a run failed.
+    """Return the fields of a failed run's row that say where it failed.
 
     These are the first failed task and the robot's position when it failed, or else the last task
     and the position at the end of the run.

@@ -46,7 +46,7 @@ class WorkOrder:
 
 
 def execute_run(order: WorkOrder, site: OpenedSite | None = None) -> RunRow:
-    """Execute the run and return its row.
+    """Execute the run of a work order and return its row.
 
     The site is the one that the spec names, unless one is given. An error of the simulator is an
     outcome too: one of many thousand runs must not end the evaluation.
@@ -97,12 +97,12 @@ class EvaluationProgress:
 
     @property
     def completed_runs(self) -> int:
-        """Number of runs that have ended."""
+        """Number of runs that have ended, also those whose rows were stored before."""
         return sum(counts.total() for counts in self.outcomes.values())
 
     @property
     def remaining(self) -> float | None:
-        """Longest remaining time in s at the present rate; None before the first run has ended."""
+        """Longest remaining time in s at the present pace; None before a run has been executed."""
         executed = self.completed_runs - self.stored_runs
         return (self.max_runs - self.completed_runs) * self.seconds / executed if executed else None
 
@@ -147,7 +147,7 @@ class EvaluationRunner:
 
     @property
     def progress(self) -> EvaluationProgress:
-        """Progress at this moment."""
+        """Progress of the evaluation at this moment."""
         per_seed = 1 if self._plan.strata else len(self._plan.cases)
         return EvaluationProgress(
             {plan: counts.copy() for plan, counts in self._outcomes.items()},
@@ -245,7 +245,8 @@ def batches(plan: EvaluationPlan, rows: Sequence[RunRow]) -> Iterator[Iterator[P
     """Yield the runs of an evaluation in batches.
 
     The caller must have added the rows of all previous batches to `rows` when it takes the next
-    batch. Decisions to stop therefore don't depend on which run was the quickest.
+    batch: they decide whether the evaluation stops. So that does not depend on which run was the
+    quickest.
     """
     if plan.strata:
         yield from _by_strata(plan, rows)

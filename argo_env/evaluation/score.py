@@ -76,7 +76,7 @@ class ScoringRules(Model):
 
     @property
     def most(self) -> float:
-        """Largest possible score in points."""
+        """Largest possible score in points: the sum of the weights."""
         return self.reliability.weight + self.robustness.weight + self.safety.weight
 
 

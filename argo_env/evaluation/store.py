@@ -75,7 +75,7 @@ class RowStore(Closing):
 
     @property
     def rows(self) -> dict[str, RunRow]:
-        """All rows, by their keys."""
+        """All rows in the folder, by their keys."""
         return self._rows
 
     def add(self, row: RunRow) -> None:
@@ -178,7 +178,7 @@ class LoggedRows:
 
 
 def read_log(folder: Path) -> LoggedRows:
-    """Read the rows of the log in a folder, without an incomplete last line."""
+    """Read the rows of the log in a folder; skip damaged lines and an incomplete last line."""
     try:
         content = (folder / LOG).read_bytes()
     except FileNotFoundError:

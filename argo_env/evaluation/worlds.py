@@ -15,7 +15,7 @@ from argo_env.site import Site
 
 
 def _parse_range(value: object) -> object:
-    """Return the two ends of a range; a single number is both ends."""
+    """Return a range as its two ends; a single number becomes both ends."""
     ends = (value, value) if _is_number(value) else value
     if not isinstance(ends, list | tuple) or len(ends) != 2 or not all(map(_is_number, ends)):
         raise ValueError("give a number, or the smallest and the largest, as [0.8, 1.0]")
@@ -137,7 +137,10 @@ class Variation(_Ranges):
         return None if drawn is None else drawn.name
 
     def values_for(self, seed: int) -> dict[str, float]:
-        """Return the values drawn for the world of a seed, by name, without noise and steps."""
+        """Return the values drawn for the world of a seed, by name, for the row of a run.
+
+        Noise and sudden changes of checkpoints' values are left out.
+        """
         values = {n: v for n, v in self._conditions(seed).items() if n != "values"}
         for id, ranges in self.values.items():
             if ranges.start is not None:

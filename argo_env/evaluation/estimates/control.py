@@ -49,7 +49,7 @@ class ControlVariate:
 
     @property
     def cheap_runs(self) -> float:
-        """Number of cheap runs for each expensive run with which `gain` is largest, at least 1.
+        """Number of cheap runs for each expensive run at which `gain` is largest; 1 or more.
 
         It is infinite for a perfect correlation.
         """
@@ -60,9 +60,10 @@ class ControlVariate:
 
     @property
     def gain(self) -> float:
-        """Cost of expensive runs alone for the same accuracy, relative to the cost with cheap runs.
+        """Factor by which cheap runs reduce the cost of an estimate of the same accuracy.
 
-        Below 1, cheap runs do not pay.
+        That is the cost of expensive runs alone over the cost with cheap runs. Below 1, cheap runs
+        do not pay.
         """
         r2, k = self.correlation**2, self.cheap_runs
         if math.isinf(k):
@@ -71,7 +72,7 @@ class ControlVariate:
 
     @property
     def pays(self) -> bool:
-        """True if the gain is above 1.1."""
+        """True if the gain is above 1.1, so that cheap runs are worth their trouble."""
         return self.gain > 1.1
 
 

@@ -123,7 +123,7 @@ class Difference:
 
     @property
     def is_significant(self) -> bool:
-        """True if the difference is significant at the level of 95 %."""
+        """True if the difference is significant: its p-value is at most 5 %."""
         return self.p_value <= 1.0 - LEVEL
 
 
@@ -169,7 +169,10 @@ def _permutation_p_value(differences: NDArray[np.float64], rng: np.random.Genera
 
 
 def _resample_batches(pairs: int) -> list[int]:
-    """Split RESAMPLES into batches that fit into memory, and return their sizes."""
+    """Return the sizes of batches of resamples that fit into memory; RESAMPLES in all.
+
+    A resample has `pairs` values.
+    """
     most = max(1, _BATCH_SIZE // pairs)
     return [min(most, RESAMPLES - first) for first in range(0, RESAMPLES, most)]
 

@@ -44,7 +44,7 @@ class Rate:
 
 
 def clopper_pearson(count: int, runs: int, level: float = LEVEL) -> Rate:
-    """Compute a rate with its exact interval.
+    """Compute a rate, `count` of `runs`, with its exact interval (Clopper-Pearson).
 
     The interval contains the true share with a probability of at least `level`, whatever that share
     is, if the number of runs does not depend on their outcomes (C. J. Clopper and E. S. Pearson,
@@ -58,10 +58,10 @@ def clopper_pearson(count: int, runs: int, level: float = LEVEL) -> Rate:
 
 
 def wilson(count: int, runs: int, level: float = LEVEL) -> Rate:
-    """Compute a rate with an approximate interval, for display while runs are still executed.
+    """Compute a rate, `count` of `runs`, with an approximate interval, for display during runs.
 
-    Its coverage is `level` on average only, so that nothing is claimed by it (E. B. Wilson, Journal
-    of the American Statistical Association 22 (1927), 209-212).
+    The coverage of the interval is `level` on average only, so that nothing is claimed by it (E. B.
+    Wilson, Journal of the American Statistical Association 22 (1927), 209-212).
     """
     _check(count, runs, level)
     if not runs:
@@ -103,7 +103,7 @@ class Estimate:
 
 
 def stratified_rate(strata: Sequence[Stratum], level: float = LEVEL) -> Estimate:
-    """Estimate the overall rate from independent runs of each stratum.
+    """Estimate the rate over all strata by weight, from independent runs of each stratum.
 
     The interval combines the exact intervals of the strata: the weighted distances of their ends
     from the rates add up in squares (G. Y. Zou, W. Huang and X. Zhang, Computational Statistics and
@@ -144,10 +144,10 @@ def allocation(strata: Sequence[Stratum], runs: int) -> tuple[int, ...]:
 
 
 def world_means(values: Iterable[tuple[int, float | tuple[float, ...]]]) -> NDArray[np.float64]:
-    """Return the mean of the values in each world.
+    """Return the mean of the values in each world, shape (worlds,), or (worlds, k) for tuples.
 
-    Each value of a run, or tuple of values of a pair of runs, comes with its world's seed. The
-    worlds are in the order of their first values.
+    `values` are pairs: the seed of a world, and a value of a run there or a tuple of values of a
+    pair of runs. The worlds are in the order of their first values.
     """
     worlds: dict[int, list[float | tuple[float, ...]]] = defaultdict(list)
     for seed, value in values:
@@ -160,8 +160,9 @@ def weighted_world_means(
 ) -> dict[int, float]:
     """Return, by seed, the weighted mean over the cases that count in a world.
 
-    Each value comes with its seed and its case; a case whose value is None does not count. Worlds
-    in which a case is missing, or no case counts, are left out.
+    Each item has a world's seed, a case's name and the case's value in that world; a case whose
+    value is None does not count. `weights` are those of the cases by name. Worlds in which a case
+    is missing, or no case counts, are left out.
     """
     worlds: dict[int, dict[str, float | None]] = defaultdict(dict)
     for seed, case, value in values:

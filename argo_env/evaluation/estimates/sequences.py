@@ -61,7 +61,7 @@ class ConfidenceSequence:
 
     @property
     def interval(self) -> tuple[float, float]:
-        """Interval of all means that the outcomes do not refute."""
+        """Interval of all means that the outcomes so far do not refute; 0 to 1 without outcomes."""
         if not self._counts:
             return 0.0, 1.0
         mean = sum(value * n for value, n in self._counts.items()) / self.runs
@@ -70,8 +70,8 @@ class ConfidenceSequence:
     def _bound(self, refuted: float, possible: float, up: bool) -> float:
         """Return the last mean from `possible` towards `refuted` that the outcomes don't refute.
 
-        It is found by bisection and rounded towards `refuted`. With `up`, means are refuted as too
-        low, otherwise as too high.
+        The mean is found by bisection and rounded towards `refuted`. With `up`, means are refuted
+        as too low, otherwise as too high.
         """
         if refuted == possible:
             return possible

@@ -12,7 +12,7 @@ class WorkerDiedError(Exception):
     """Raised when a worker process ended before its call did; the message is the known reason."""
 
     def __init__(self, reason: str, killed: bool = False) -> None:
-        """Store the reason, and whether another process killed the worker, as far as known."""
+        """Store the reason of the death, and whether another process is known to have killed it."""
         super().__init__(reason)
         self.killed = killed
 
@@ -30,10 +30,10 @@ class WorkerBackend(Protocol):
     """whether a dying worker loses its own call only, so that the call is known"""
 
     def submit(self, function: Callable[[Any], Any], argument: Any) -> Any:
-        """Send a call to the workers and return its handle."""
+        """Send a call of the function to the workers, and return the handle of the call."""
 
     def wait(self, calls: Sequence[Any]) -> Sequence[Any]:
-        """Wait until some of these calls have ended, and return the handles of those."""
+        """Wait until one or more of these calls have ended, and return the handles of those."""
 
     def result(self, call: Any) -> Any:
         """Return the result of a call that has ended; raise its exception, or WorkerDiedError."""
@@ -49,7 +49,7 @@ _CONNECT_TIMEOUT = 5.0  # s
 
 
 def require_listener(address: str, cluster: str) -> None:
-    """Raise an error if no server listens at the address of a `cluster`, such as `Ray`.
+    """Raise an error if no server listens at an address; `cluster` is its kind, such as `Ray`.
 
     Raises Invalid for a malformed address, Unavailable if no server listens there.
     """

@@ -34,7 +34,10 @@ class Chunk:
 
 
 def execute_chunk(chunk: Chunk) -> tuple[tuple[CallOutcome, ...], float]:
-    """Execute the calls in a worker; return their outcomes and the time of all calls in s."""
+    """Execute the calls of a chunk; return their outcomes and the time of all of them in s.
+
+    Workers call this function.
+    """
     start = time.perf_counter()
     outcomes = []
     for argument in chunk.arguments:
@@ -53,19 +56,19 @@ class ChunkSize:
         """moving average of the time of a call in s; None before the first measurement"""
 
     def update(self, count: int, seconds: float) -> None:
-        """Update the moving average: `count` calls took this many seconds."""
+        """Update the moving average of a call's time: `count` calls took `seconds` together."""
         mean = seconds / count
         self._mean = mean if self._mean is None else 0.8 * self._mean + 0.2 * mean
 
     @property
     def limit(self) -> int:
-        """Number of calls that take about a quarter of a second; 1 before any measurement."""
+        """Number of calls that take about a quarter of a second; 1 before the first measurement."""
         if self._mean is None:
             return 1
         return max(1, min(_MAX_CHUNK, int(_CHUNK_TIME / max(self._mean, 1e-6))))
 
     def next_size(self, waiting: Sequence[Any], workers: int) -> int:
-        """Return the number of waiting calls for the next chunk, which leaves calls for all."""
+        """Return the number of calls in the next chunk, so that all workers get some."""
         return min(self.limit, max(1, len(waiting) // workers))
 
 
@@ -135,7 +138,7 @@ class Pool(Closing):
         self._waiting.append(_Call(ticket, argument))
 
     def as_completed(self) -> Iterator[CompletedCall]:
-        """Yield the calls in the order in which they complete, until none is pending.
+        """Yield the calls with their results as they complete, until none is pending.
 
         More calls may be submitted meanwhile.
         """

@@ -26,7 +26,10 @@ class ProcessBackend:
     isolates_deaths = False
 
     def __init__(self, workers: int, context: ForkServerContext | None = None) -> None:
-        """Start the workers by the context; without one, each worker imports all modules itself."""
+        """Start the workers; without a `context`, each worker imports all modules itself.
+
+        A `context` is a fork server that has imported them.
+        """
         self.workers = workers
         # Loky's context removes its semaphores silently, even if this process is killed.
         self._context = LokyContext()

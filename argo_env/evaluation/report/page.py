@@ -177,7 +177,7 @@ def _in_yaml(variation: Variation) -> str:
 
 
 def _with_faults(results: EvaluationResults) -> list[PlanName]:
-    """Return the plans that were run with several sets of faults."""
+    """Return the names of the plans that were run with several sets of faults."""
     return [plan for plan in results.plan.plans if len(results.by_faults(plan)) > 1]
 
 

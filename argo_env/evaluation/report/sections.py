@@ -47,7 +47,7 @@ class PlanSection:
 
 
 def plan_sections(results: EvaluationResults) -> list[PlanSection]:
-    """Return the section of each plan, in the order of the plans."""
+    """Return a report's section for each evaluated plan, in the order of the plans."""
     plans = results.plan.plans
     return [
         PlanSection(
@@ -63,7 +63,7 @@ def plan_sections(results: EvaluationResults) -> list[PlanSection]:
 
 
 def other_rates(results: EvaluationResults) -> list[tuple[str, str, PlanRate]]:
-    """Return the rates of all quantities but success: description, plan and rate.
+    """Return the rates of all quantities but success, as description, name of the plan, and rate.
 
     Quantities that make no sense are left out: detections without faults, and late ends without a
     limit.
@@ -96,7 +96,7 @@ _DESCRIPTIONS = {
 
 
 def _count_worlds(results: EvaluationResults, plan: PlanName) -> int:
-    """Return the number of worlds with runs of the plan that count."""
+    """Return the number of worlds that count for the plan's success rate."""
     ran = [row for row in results.rows_for(plan) if row.is_completed]
     weights = {case.faults: case.weight for case in results.plan.cases if case.plan == plan}
     if results.plan.strata or len(weights) == 1:
@@ -126,9 +126,10 @@ class FloorFailures:
 
 
 def failing_runs(results: EvaluationResults, folder: Path) -> list[tuple[RunRow, str, str]]:
-    """Return each unsuccessful run with its plan and the file in the folder that repeats it.
+    """Return each unsuccessful run: its row, the name of its plan, and the path of its spec file.
 
-    The file's path is quoted for a shell.
+    The run can be repeated from that file, which lies in the folder. The path is quoted for a
+    shell.
     """
     plans = results.plan.plans
     return [
@@ -138,9 +139,10 @@ def failing_runs(results: EvaluationResults, folder: Path) -> list[tuple[RunRow,
 
 
 def reasons(results: EvaluationResults) -> list[tuple[tuple[str, str], int, list[str]]]:
-    """Return the reasons of unsuccessful runs: plan and reason, number of runs, and their faults.
+    """Return the reasons of unsuccessful runs, each with its plan, number of runs and faults.
 
-    The most frequent reasons come first. Reasons that differ only in seconds are merged.
+    An item is ((name of the plan, reason), number of runs, names of their faults). The most
+    frequent reasons come first. Reasons that differ only in seconds are merged.
     """
     plans = results.plan.plans
     groups: dict[tuple[str, str], list[tuple[str, str]]] = {}
@@ -172,7 +174,7 @@ def _merge(similar: list[str]) -> str:
 
 
 def floors_with_failures(results: EvaluationResults) -> list[FloorFailures]:
-    """Return the floors on which runs failed, with their pictures, site by site."""
+    """Return the floors on which runs failed, with a drawing of each, site by site."""
     floors = []
     failing = [row for row in results.failing if row.place and row.floor is not None]
     for reference, robot in dict.fromkeys((row.site, row.robot) for row in failing):
@@ -191,7 +193,10 @@ def floors_with_failures(results: EvaluationResults) -> list[FloorFailures]:
 
 
 def _open(reference: str, robot: str) -> tuple[Site | None, str]:
-    """Open the site, or return why it can't be opened; its file may have been removed since."""
+    """Return the site and an empty text, or None and the reason why it can't be opened.
+
+    Its file may have been removed since the evaluation.
+    """
     try:
         return open_site(reference, load_robot(robot)).site, ""
     except ArgoError as error:

@@ -20,7 +20,7 @@ def share_interval(low: float, high: float) -> str:
 
 
 def chance(p_value: float) -> str:
-    """Return a p-value as text; empty for NaN, which stands for an unknown one."""
+    """Return a p-value as text with three decimals; empty for NaN: no valid p-value."""
     if math.isnan(p_value):
         return ""
     return f"{p_value:.3f}" if p_value >= 0.001 else "below 0.001"
@@ -44,12 +44,12 @@ def time_or(seconds: float | None, otherwise: str) -> str:
 
 
 def counted(number: int, what: str) -> str:
-    """Return a number with its noun, such as `1 run` or `2 runs`."""
+    """Return a number with its noun, such as `1 run` or `2 runs`; `what` is the singular."""
     return f"{number} {what}{'' if number == 1 else 's'}"
 
 
 def evaluation_headline(results: EvaluationResults) -> tuple[str, str]:
-    """Return the headline of a report and its rating: `good`, `bad` or `notice`.
+    """Return the headline of an evaluation's report and its rating: `good`, `bad` or `notice`.
 
     The headline states whether the requirements are met or, without any, how many runs succeeded.
     """
@@ -90,7 +90,7 @@ def why_sequence(results: EvaluationResults, several: bool) -> list[str]:
 
 
 def meaning(results: EvaluationResults, plan: PlanName) -> str:
-    """Return sentences that explain what the rate of a plan means."""
+    """Return sentences that explain what a plan's success rate and its interval mean."""
     rate = results.rate(plan)
     if not rate.runs:
         return "Nothing is known: no run was carried out."

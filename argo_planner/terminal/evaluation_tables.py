@@ -15,7 +15,7 @@ from argo_env.evaluation.comparison import PlanComparison
 from argo_env.evaluation.control_variates import ControlledMean
 from argo_env.evaluation.estimates.pairs import Difference
 from argo_env.evaluation.rates import Decision, IntervalMethod
-from argo_env.evaluation.report.texts import why_sequence
+from argo_env.evaluation.report.texts import in_percent, why_sequence
 from argo_env.evaluation.results import EvaluationResults, GroupRate
 from argo_env.evaluation.row import RunOutcome
 from argo_env.evaluation.score import ScoringRules, mean_score
@@ -71,7 +71,7 @@ def show_results(
         of = f" for {verdict.plan.label(results.plan.plans)}" if len(results.plan.plans) > 1 else ""
         console.print(
             f"[{style}]{verdict.requirement}{escape(of)}: {verdict.verdict}[/] "
-            f"(between {_percent(verdict.low)} and {_percent(verdict.high)}, "
+            f"(between {in_percent(verdict.low)} and {in_percent(verdict.high)}, "
             f"{verdict.worlds} worlds)",
             soft_wrap=True,
         )
@@ -87,11 +87,11 @@ def show_means(means: Sequence[ControlledMean], drive: str | None, console: Cons
         control = mean.control
         console.print(
             f"{mean.quantity.capitalize()} with the help of the drive {drive}: correlation "
-            f"{control.correlation:.2f}, its runs take {_percent(control.cost)} of the time"
+            f"{control.correlation:.2f}, its runs take {in_percent(control.cost)} of the time"
             + ("" if control.pays else "; using it does not pay off"),
             soft_wrap=True,
         )
-        shown = _percent if mean.quantity == "success" else _seconds
+        shown = in_percent if mean.quantity == "success" else _seconds
         if mean.controlled is None:
             if control.pays:
                 console.print(
@@ -128,8 +128,8 @@ def _plans(results: EvaluationResults) -> Table:
         table.add_row(
             escape(plan.label(results.plan.plans)),
             str(len(rows)),
-            _percent(rate.value),
-            f"{_percent(rate.low)} to {_percent(rate.high)}{star}",
+            in_percent(rate.value),
+            f"{in_percent(rate.low)} to {in_percent(rate.high)}{star}",
             str(counts[RunOutcome.FAILURE] or ""),
             str(counts[RunOutcome.ERROR] or ""),
             str(counts[RunOutcome.DIED] or ""),
@@ -159,8 +159,8 @@ def _groups(title: str, what: str, groups: tuple[GroupRate, ...]) -> Table:
         table.add_row(
             escape(group.name),
             str(group.rate.runs + lost),
-            _percent(group.rate.value),
-            f"{_percent(group.rate.low)} to {_percent(group.rate.high)}"
+            in_percent(group.rate.value),
+            f"{in_percent(group.rate.low)} to {in_percent(group.rate.high)}"
             if group.one_run_per_world
             else "",
             str(group.outcomes[RunOutcome.FAILURE] or ""),
@@ -249,7 +249,3 @@ def _chance(p_value: float) -> str:
     if math.isnan(p_value):
         return ""
     return f"{p_value:.3f}" if p_value >= 0.001 else "< 0.001"
-
-
-def _percent(share: float) -> str:
-    return "" if math.isnan(share) else f"{100 * share:.1f} %"

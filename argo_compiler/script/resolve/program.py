@@ -205,7 +205,7 @@ def _behind(node: ProgramNode) -> ProgramNode | None:
 
 
 def depth(block: ProgramBlock) -> int:
-    """How many blocks are nested."""
+    """Return the number of nested blocks, at the deepest point."""
     deepest, waiting = 0, [(block, 1)]
     while waiting:
         block, level = waiting.pop()

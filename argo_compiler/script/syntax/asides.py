@@ -289,7 +289,7 @@ class Asides:
         return bool(_MANNERS & {*types}) or self.orders(text) or types[:1] in _SINGLE
 
     def sets_aside(self, heading: ScriptText) -> bool:
-        """Whether a heading can mean that the lines below it are not tasks, or not always."""
+        """Return True if a heading may exclude the lines below it, always or in some cases."""
         types = self.understanding.types(heading)
         timed = types[:1] in (("BEFORE",), ("AFTER",)) or _CLOCK.search(heading.content) is not None
         return timed or _limits(heading, "set_aside", "past")

@@ -197,7 +197,10 @@ def read_routes(results: Sequence[Path], name: str) -> dict[int, list[Route]]:
         except OSError as error:
             raise NotFound(f"{path} can't be read: {error.strerror}") from None
         except (ValueError, KeyError, TypeError):
-            raise Invalid(f"{path} is not a result of `python -m baselines.evaluate`") from None
+            raise Invalid(
+                f"{path} is not a result of `python -m baselines.evaluate`; name a file that this "
+                "command wrote"
+            ) from None
     return routes
 
 

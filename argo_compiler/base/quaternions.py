@@ -28,7 +28,7 @@ def to_yaw(x: float, y: float, z: float, w: float, planned: float = 0.0) -> floa
     if length == 0:
         raise ValueError("is a quaternion of length 0; no turn is (0, 0, 0, 1)")
     if math.hypot(x, y) > TILT * length:
-        raise ValueError("is tilted; a pose of the robot has a heading only")
+        raise ValueError("is tilted, but the robot's pose can only be turned about the z axis")
     z, w = z / length, w / length
     sine, cosine = to_quaternion(planned)
     # A quaternion and its negative are the same turn.

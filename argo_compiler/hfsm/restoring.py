@@ -170,7 +170,7 @@ def _groups(leaf: LeafNode, progress: Progress) -> list[GroupNode]:
     groups = [*leaf.groups][::-1]
     if [group.name for group in groups] != [known.group for known in progress.groups]:
         raise Conflict(
-            f"the progress has task '{leaf.name}' in other groups than the mission; {_OTHER}"
+            f"task '{leaf.name}' is in other groups in the progress than in the mission; {_OTHER}"
         )
     return groups
 

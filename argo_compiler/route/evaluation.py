@@ -45,10 +45,14 @@ def evaluate(problem: RouteProblem, route: Tour) -> RouteEvaluation:
     Raises Invalid if the route names a visit or a charger that does not exist.
     """
     if not set(route.order) <= set(range(problem.size)):
-        raise Invalid(f"the route has an unknown visit: there are {problem.size} visits, from 0")
+        raise Invalid(
+            "the route has a visit that does not exist: use the numbers of the problem's "
+            f"{problem.size} visits, which are counted from 0"
+        )
     if not set(route.charges.values()) <= set(range(len(problem.chargers))):
         raise Invalid(
-            f"the route uses an unknown charger: there are {len(problem.chargers)} chargers, from 0"
+            "the route uses a charger that does not exist: use the numbers of the problem's "
+            f"{len(problem.chargers)} chargers, which are counted from 0"
         )
     return _Simulation(problem, route).evaluation()
 

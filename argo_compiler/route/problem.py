@@ -141,7 +141,7 @@ class RouteProblem:
     def __post_init__(self) -> None:
         """Raise Invalid if the parts do not fit together."""
         for flaw in _flaws(self):
-            raise Invalid(f"this is not a route problem: {flaw}")
+            raise Invalid(f"the route problem has a mistake: {flaw}; correct it")
         self.travel.setflags(write=False)
         if self.battery is not None:
             self.battery.energy.setflags(write=False)

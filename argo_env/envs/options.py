@@ -25,16 +25,16 @@ def read_options(model: type[Options], given: Any, env: str) -> Options:
 
     Raises ArgoError that names the wrong options and the available ones.
     """
-    known = f"there are: {', '.join(model.model_fields)}"
+    known = f"available options: {', '.join(model.model_fields)}"
     if not isinstance(given, Mapping):
-        raise Invalid(f"options of {env} are a dictionary, not {given!r}; {known}")
+        raise Invalid(f"the options of {env} are a dictionary, not {given!r}; {known}")
     data = {name: _without_numpy(value) for name, value in given.items()}
     try:
         return model.model_validate(data)
     except ValidationError as error:
         errors = _relevant_errors(model, error.errors(include_url=False))
         wrong = "; ".join(_describe_error(model, one, data) for one in errors)
-        raise Invalid(f"options of {env}: {wrong}; {known}") from None
+        raise Invalid(f"wrong options of {env}: {wrong}; {known}") from None
 
 
 def check_scenario(env: str, scenario: Any) -> None:

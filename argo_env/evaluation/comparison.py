@@ -176,7 +176,9 @@ def find_plan(results: EvaluationResults, name: str) -> PlanName:
     if not matches:
         raise NotFound(f"{results.plan.name} has no plan `{name}`; there are: {known}")
     if len(matches) > 1:
-        raise Conflict(f"{results.plan.name}: several plans match `{name}`: {known}")
+        raise Conflict(
+            f"`{name}` can be several plans of {results.plan.name}; name one of: {known}"
+        )
     return matches[0]
 
 

@@ -118,7 +118,10 @@ class MissingPlate(Fault):
             centre = ((x0 + x1) / 2, (y0 + y1) / 2)
         floor, (x, y) = _choose_position(site, rng, self.floor, centre, lowest=2)
         if not floor.railed:
-            raise Invalid(f"floor {floor.number} is a slab on the ground and has no plates")
+            raise Invalid(
+                f"floor {floor.number} is a slab on the ground and has no plates; "
+                "choose a higher floor"
+            )
         half = PLATE / 2
         drawn = tuple(round(v, 3) for v in (x - half, y - half, x + half, y + half))
         resolved = self._copy_with(floor=floor.number, rect=self.rect or drawn)

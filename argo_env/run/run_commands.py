@@ -169,7 +169,10 @@ def check_scheduled_events(
     """Raise Invalid for scheduled events and times (s) that can't occur in a run of the mission."""
     for t, event in events:
         if not isinstance(event, LoggedEvent):
-            raise Invalid(f"{event!r} is not an event as data: convert it with `logged_events`")
+            raise Invalid(
+                f"{event!r} is not a `LoggedEvent`: convert events and their times with "
+                "`logged_events`"
+            )
         try:
             require_event_time(t)
             _check(event, mission, site)

@@ -47,7 +47,10 @@ class Family(Model):
     def _buildable(cls, size: tuple[int, int]) -> tuple[int, int]:
         least, most = _SIZE
         if not all(least <= edge <= most for edge in size):
-            raise ValueError(f"both edges of `size` have to be {least} to {most} m")
+            raise ValueError(
+                "both lengths in `size`, from west to east and from south to north, have to be "
+                f"{least} to {most} m"
+            )
         return size
 
     @property

@@ -97,7 +97,7 @@ ANALYSIS = {
         "Do it earlier, or let its window end later.",
     ),
     "analysis.window-missed": error(
-        "No execution path without failures reaches a task within its window.",
+        "A task ends after its window on every execution path, even if nothing fails.",
         "Do it earlier, or let its window end later.",
     ),
 }

@@ -31,7 +31,8 @@ EXPORT = {
         "Export with the site that has the checkpoint.",
     ),
     "export.isar-reaction": error(
-        "Missions of isar have no reactions.", "Remove it; isar's own state machine reacts."
+        "The mission has a reaction; missions of isar have none.",
+        "Remove the reaction; isar's own state machine reacts to events.",
     ),
     "export.isar-task": error(
         "A task has a property that isar's tasks do not have.",

@@ -8,8 +8,8 @@ ISAR = {
         "Check whether the mission is complete without it.",
     ),
     "isar.home": error(
-        "The isar mission does not state where home is.",
-        "Give the pose of home in the site's frame.",
+        "A task of the isar mission returns home, but has no usable pose of the home.",
+        "Give the task the pose of the home in the site's frame, or remove the task.",
     ),
     "isar.inspection": error(
         "A task of the isar mission has no inspection.", "State what is to be inspected."

@@ -164,8 +164,8 @@ SCRIPT = {
         "The script is empty.", "Name a file with a mission sheet or a mission protocol."
     ),
     "script.empty-name": error(
-        "The quotation marks before a command are empty.",
-        "Write a name there, or leave them out.",
+        "The quotation marks before an order are empty.",
+        "Write a name between them, or remove them.",
     ),
     "script.empty-floor": warning(
         "One of several floors has no checkpoint of the requested kind.",
@@ -346,8 +346,9 @@ SCRIPT = {
     ),
     "script.rounds": error("A patrol has no rounds.", "Give it at least one round."),
     "script.route": error(
-        "A mission can't do this only under a condition.",
-        "Write it as a step of its own, or go to a step, drive or measure.",
+        "An order is not possible here, or can't depend on a condition.",
+        "Write it as a step of its own; only some orders, such as to go to a step, to drive or to "
+        "measure, can depend on a condition.",
     ),
     "script.second-reaction": error(
         "Two lines define the reaction to the same event.", "Leave one of the two out."
@@ -375,7 +376,7 @@ SCRIPT = {
     ),
     "script.speed-unused": warning(
         "A speed is given for the drive from a task, but the mission ends with this task.",
-        "Give the speed to the task that the drive leads to.",
+        "Remove the speed, or give it to the task that the drive leads to.",
     ),
     "script.spared": error(
         "The script asks for a checkpoint, and elsewhere states that it is not to be checked.",

@@ -129,8 +129,10 @@ def _speeds(lowered: Lowered, names: Sequence[str], diagnostics: Diagnostics) ->
     left = {j for froms in sources for j in froms}
     for i, item in enumerate(items):
         if item.do.leaving is not None and i not in left:
-            message = "the mission ends here, so this speed of the drive away has no effect"
-            hint = "write `at 0.3 m/s` for the path to a task"
+            message = (
+                "the mission ends with this task, so the speed of the drive after it has no effect"
+            )
+            hint = "remove it, or give the drive to a task its speed, as in `at 0.3 m/s`"
             diagnostics.warning("speed-unused", message, item.do.source, hint)
         if item.do.action is Action.WAIT:
             continue

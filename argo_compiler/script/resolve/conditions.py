@@ -116,8 +116,13 @@ class ConditionResolver:
     def _subjects(self, test: Test) -> Sequence[CheckpointInfo]:
         """Which checkpoints are asked for; `it` is the only one whose unit is that of the value."""
         if test.subject is not None and test.subject.but:
-            message = "the exception can have any value, or must not satisfy this"
-            hint = "write `if #1 is above 5 and #4 is at most 5`, or remove the exception"
+            message = (
+                "the excepted checkpoint can have any value, or must not satisfy the condition"
+            )
+            hint = (
+                "if any value is allowed, remove the exception; otherwise write "
+                "`if #1 is above 5 and #4 is at most 5`"
+            )
             if not any(isinstance(noun, AllOf) for noun in test.subject.nouns):
                 self.diagnostics.refuse("condition", message, test.subject.span, hint)
         match test.subject:

@@ -349,6 +349,8 @@ def _until(said: SaidCondition, order: ScriptOrder, context: Context) -> tuple[C
     found = context.conditions.alternatives(said)
     if len(found) > 1:
         message = "a round can end when all conditions are satisfied, not when one of several is"
-        hint = "join them with `and`, or leave the round with `if ..., go to step 7`"
+        hint = (
+            "join them with `and` if all are meant, or leave the round with `if ..., go to step 7`"
+        )
         context.diagnostics.refuse("condition", message, order.span, hint)
     return found[0]

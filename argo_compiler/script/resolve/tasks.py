@@ -129,7 +129,8 @@ class TaskMaker:
         conditions = self.context.conditions.alternatives(until)
         if len(conditions) > 1:
             message = "a wait can end when all conditions are satisfied, not when one of several is"
-            diagnostics.refuse("wait", message, until.span, "join them with `and`")
+            hint = "join them with `and` if all are meant, or wait for one of them only"
+            diagnostics.refuse("wait", message, until.span, hint)
         return WaitRule(event=event, conditions=conditions[0] if conditions else (), limit=limit)
 
     def patrol_rounds(self, order: orders.Patrol) -> tuple[list[ProgramRound], list[Do]]:

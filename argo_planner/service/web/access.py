@@ -150,7 +150,9 @@ def read_tokens(path: Path) -> tuple[AccessToken, ...]:
     if not tokens:
         raise Invalid(f"{path} has no tokens: write one per line, such as `SECRET plan Ann`")
     if len({token.secret for token in tokens}) < len(tokens):
-        raise Invalid(f"{path} has a token twice: write each token once")
+        raise Invalid(
+            f"{path} has the same token on two lines: remove one of them, or give it another token"
+        )
     return tuple(tokens)
 
 

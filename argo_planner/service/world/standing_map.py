@@ -139,7 +139,10 @@ def standing_map(
     """
     z = site.site.floor(floor).z
     if not 0 <= heading < HEADINGS:
-        raise Invalid(f"there is no heading {heading}: give a number from 0 to {HEADINGS - 1}")
+        raise Invalid(
+            f"there is no heading {heading}: give a number from 0 (along the x axis) to "
+            f"{HEADINGS - 1}, counter-clockwise"
+        )
     codes = _ground_codes(site, tuple(obstacles))
     surface = site.navigator.surface
     bases = np.array([f.z for f in site.site.spec.floors]) - 0.1  # as `Site.floor_at`

@@ -227,7 +227,7 @@ class TestProgress:
         ("progress", "message"),
         [
             (Progress(active="Z"), "'Z', which the mission does not have"),
-            (Progress(active="B"), "'B' in other groups"),
+            (Progress(active="B"), "'B' is in other groups"),
             (
                 Progress(active="A", waiting=(Waiting(event=EventKind.GAS_LEAK),)),
                 "gas_leak, which the mission does not have",

@@ -123,7 +123,7 @@ def test_a_round_must_not_be_interrupted() -> None:
 )
 def test_parts_that_do_not_fit_are_refused(wrong: dict, words: str) -> None:  # type: ignore[type-arg]
     parts = {"visits": (A, B), "travel": np.zeros((3, 3), np.int64), **wrong}
-    with pytest.raises(ArgoError, match="this is not a route problem") as raised:
+    with pytest.raises(ArgoError, match="the route problem has a mistake") as raised:
         RouteProblem(**parts)
     assert words in str(raised.value)
     assert NEVER > 0
@@ -144,7 +144,7 @@ def test_a_charge_within_a_round_is_a_violation() -> None:
 
 @pytest.mark.parametrize("route", [Tour((2,)), Tour((-1, 0)), Tour((0, 1), {0: 1})])
 def test_a_route_of_another_problem_is_refused(route: Tour) -> None:
-    with pytest.raises(Invalid, match=r"unknown (visit|charger)"):
+    with pytest.raises(Invalid, match=r"a (visit|charger) that does not exist"):
         evaluate(RouteProblem((Visit("a"), Visit("b")), np.ones((3, 3), np.int64)), route)
 
 

@@ -208,7 +208,11 @@ def bounds(mission: Mission, name: str) -> list[Bounds]:
             ["the previous task"],
         ),
         ("Check 1 and 8. If 1 is higher than 8, go home.", "ambiguous-number", ["8 bar", "(#8)"]),
-        ("Check 1, 8. If 1 but not 8 is above 4, go home.", "condition", ["the exception"]),
+        (
+            "Check 1, 8. If 1 but not 8 is above 4, go home.",
+            "condition",
+            ["the excepted checkpoint"],
+        ),
         ("First floor\n- check #1\n- check #5", "checkpoint-mismatch", ["not on floor 1"]),
         ("Third floor:\n1. Check all valves on floor 2.", "ambiguous-floor", ["two floors"]),
         ("> 1. Check #1\n> 2. Check #4\nCheck #8.", "ambiguous-quote", ["quoted"]),

@@ -15,7 +15,7 @@ def where(floor: int | None, place: Vector) -> str:
     return f"floor {floor} at ({x:.2f}, {y:.2f}, {z:.2f})"
 
 
-def told_apart(first: float, second: float) -> tuple[str, str]:
+def distinct_texts(first: float, second: float) -> tuple[str, str]:
     """Return two numbers as texts, with the fewest decimals (up to 5) that show a difference."""
     for digits in range(6):
         texts = f"{first:.{digits}f}", f"{second:.{digits}f}"

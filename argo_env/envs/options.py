@@ -12,7 +12,7 @@ from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.base.model import Model
 from argo_compiler.files.fields import field_hint
 from argo_compiler.files.json_places import format_path
-from argo_env.files.yaml_messages import error_message, path_in_data
+from argo_env.files.yaml_messages import error_message, strip_discriminators
 
 Options = TypeVar("Options", bound=Model)
 
@@ -89,7 +89,7 @@ def _without_numpy(value: Any) -> Any:
 
 def _describe_error(model: type[Model], error: ErrorDetails, data: Any) -> str:
     """Return the place of an error, what is wrong there, and the remedy."""
-    path = path_in_data(error["loc"], data)
+    path = strip_discriminators(error["loc"], data)
     place, context = f"`{format_path(path)}`", error.get("ctx", {})
     if error["type"] == "extra_forbidden":
         return f"{place}: there is no such option ({field_hint(model, error['loc'])})"

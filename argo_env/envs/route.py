@@ -195,7 +195,7 @@ class RouteEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
         if failed:
             self._failing[node] -= 1
         else:
-            self._missing -= instance.effect[node]
+            self._missing -= instance.missing_decrease[node]
             self._prizes[node] = 0.0
         self._place = node
         self._route.append(node)
@@ -259,7 +259,7 @@ class RouteEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
     def _observe(self) -> Observation:
         instance, place = self._known, self._place
         # Single numbers are arrays too, as NumPy takes twice as long with scalars.
-        mask = np.less_equal(instance.need_rows[place], self._time_left)
+        mask = np.less_equal(instance.time_to_dock_via_rows[place], self._time_left)
         mask &= np.equal(self._missing, _ZERO)
         mask[DOCK] = True
         self._mask = mask

@@ -125,7 +125,7 @@ class RouteVectorEnv(Copyable, VectorEnv[Observation, NDArray[np.int64], NDArray
         rewards = pool.prizes[self._chosen, nodes]
         size = self._missing.shape[1]
         self._time += pool.arrival[self._known * (size + 1) + self._place, nodes]
-        effect = pool.effect.take(self._chosen * size + nodes, axis=0)
+        effect = pool.missing_decrease.take(self._chosen * size + nodes, axis=0)
         if pool.noisy:
             failed = self._apply_failures(nodes, rewards, effect)
         else:
@@ -286,7 +286,7 @@ class RouteVectorEnv(Copyable, VectorEnv[Observation, NDArray[np.int64], NDArray
         row = self._known * (self._missing.shape[1] + 1) + place
         budget = pool.budget[chosen, None]
         left = budget - self._time[:, None]
-        mask = pool.need.take(row, axis=0) <= left
+        mask = pool.time_to_dock_via.take(row, axis=0) <= left
         mask &= self._missing == 0
         mask[:, DOCK] = True
         self._mask = mask

@@ -71,12 +71,12 @@ class InstancePool:
     arrival: NDArray[np.float32]
     """this and the next two have the rows of all instances one below the other, each instance once
     for each stage"""
-    need: NDArray[np.float32]
+    time_to_dock_via: NDArray[np.float32]
     travel: NDArray[np.float32]
     home: NDArray[np.float32]
     """one row for each stage of each instance"""
     before: NDArray[np.int8]
-    effect: NDArray[np.int16]
+    missing_decrease: NDArray[np.int16]
     """numbers that the visit of a node subtracts from `missing`, shape (m * (n + 1), n + 1)"""
     missing: NDArray[np.int16]
     prizes: NDArray[np.float64]
@@ -264,11 +264,11 @@ def _make_pool(
         one_per_env=one_per_env,
         stages=stages,
         arrival=np.concatenate([_arrival_at_rest(k) for k in known]),
-        need=np.concatenate([k.need for k in known]),
+        time_to_dock_via=np.concatenate([k.time_to_dock_via for k in known]),
         travel=np.concatenate([k.travel for k in known]),
         home=np.stack([k.home for k in known]),
         before=np.stack([m.before for m in instances]).astype(np.int8),
-        effect=np.concatenate([m.effect for m in instances]),
+        missing_decrease=np.concatenate([m.missing_decrease for m in instances]),
         missing=np.stack([m.before.sum(axis=0, dtype=np.int16) for m in instances]),
         prizes=np.stack([m.prizes for m in instances]),
         budget=np.array([m.budget for m in instances], dtype=np.float32),

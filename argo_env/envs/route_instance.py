@@ -61,7 +61,7 @@ class RouteInstance:
         return home
 
     @cached_property
-    def need(self) -> NDArray[np.float32]:
+    def time_to_dock_via(self) -> NDArray[np.float32]:
         """Time (s) of a visit and of the path to the dock after it, shape of `arrival`."""
         home = self.arrival[: self.size, DOCK].copy()
         home[DOCK] = 0.0
@@ -78,7 +78,7 @@ class RouteInstance:
         return np.asarray(self.before.sum(axis=0, dtype=np.int16))
 
     @cached_property
-    def effect(self) -> NDArray[np.int16]:
+    def missing_decrease(self) -> NDArray[np.int16]:
         """Numbers that the visit of a node (row) subtracts from `missing`, shape (n + 1, n + 1).
 
         It subtracts 1 from each node that must come after it, and adds VISITED to its own number,
@@ -89,9 +89,9 @@ class RouteInstance:
         return effect
 
     @cached_property
-    def need_rows(self) -> list[NDArray[np.float32]]:
+    def time_to_dock_via_rows(self) -> list[NDArray[np.float32]]:
         """Rows of `need`."""
-        return list(self.need)
+        return list(self.time_to_dock_via)
 
     @cached_property
     def travel_rows(self) -> list[NDArray[np.float32]]:

@@ -91,7 +91,7 @@ def contents() -> Contents:
     return Contents(sites, sum(map(len, sizes)), sum(map(sum, sizes)))
 
 
-def write_problem() -> str | None:
+def unwritable_reason() -> str | None:
     """Return the reason why the cache's folder can't be written to, or None if it can."""
     from tempfile import TemporaryFile
 

@@ -10,7 +10,7 @@ from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity, Span, with_excerpts
 from argo_compiler.files.fields import field_hint
 from argo_compiler.files.json_places import JsonPath, format_path
-from argo_env.files.yaml_messages import error_message, path_in_data
+from argo_env.files.yaml_messages import error_message, strip_discriminators
 
 MAX_FINDINGS = 20
 
@@ -145,7 +145,7 @@ def _wrong_fields(
     for fault in faults:
         if fault["type"] == "too_short" and fault["loc"] in faulty:
             continue  # it is too short only because its items are wrong
-        path = fault.get("ctx", {}).get("path") or path_in_data(fault["loc"], data)
+        path = fault.get("ctx", {}).get("path") or strip_discriminators(fault["loc"], data)
         message, hint = error_message(fault, path), _list_hint(model, fault["loc"])
         unknown = fault["type"] == "extra_forbidden"
         if unknown:

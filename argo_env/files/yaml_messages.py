@@ -50,7 +50,7 @@ def _name(path: JsonPath) -> str:
     return f"`{format_path(path[names[-1] :])}`" if names else "it"
 
 
-def path_in_data(path: JsonPath, data: Any) -> JsonPath:
+def strip_discriminators(path: JsonPath, data: Any) -> JsonPath:
     """Return pydantic's path of an error without the discriminator values that it adds for unions.
 
     What remains is the path in the data. The discriminator is the field `kind`.

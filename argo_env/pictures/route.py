@@ -119,7 +119,9 @@ def _path_points(
                 points.append(PathPoint(t + takes * k / count, p.x, p.y, site.floor_at(p.z)))
             t += takes
         here = path.end
-        points.append(PathPoint(t + travel.work(task), here.x, here.y, site.floor_at(here.z)))
+        points.append(
+            PathPoint(t + travel.action_duration(task), here.x, here.y, site.floor_at(here.z))
+        )
     return points
 
 

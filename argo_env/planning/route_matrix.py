@@ -29,7 +29,7 @@ _PLANNING = "planning the paths between tasks"
 _ORIGINS = 8  # number of poses from which the most frequent viewing pose of a checkpoint is found
 
 
-def plan_mission(
+def make_mission_problem(
     mission: Mission,
     navigator: Navigator,
     requirements: Requirements,
@@ -82,7 +82,7 @@ def mission_travel(
             columns = sorted(with_velocity.union(nearest))
             costs = _plan_from(origin, [goals[k] for k in columns], travel)
             time[row, columns], energy[row, columns] = costs
-    work = np.array([travel.work(task) for task in goals])
+    work = np.array([travel.action_duration(task) for task in goals])
     return TravelMatrix(
         tuple(task.name for task in tasks),
         np.rint(time / travel.time_step),
@@ -163,6 +163,6 @@ def _estimate_on_lattice(
         raise Unreachable(f"the paths between the tasks can't be found: {error}") from None
     drive = times[np.ix_([index[p] for p in origins], [index[p] for p in end_poses])]
     step, power = travel.time_step, navigator.robot.power
-    work = np.array([travel.work(task) for task in goals])
+    work = np.array([travel.action_duration(task) for task in goals])
     drive = np.maximum(np.ceil(drive / step - 1e-6) * step, step)
     return drive + work, (drive * power.climbing + work * power.measuring) / 3600.0

@@ -140,7 +140,7 @@ class SiteTravel:
             raise Unreachable(path.reason)
         return path.start
 
-    def work(self, task: Task) -> float:
+    def action_duration(self, task: Task) -> float:
         """Return the duration of a task's action without the drive, in s."""
         measures = task.action is Action.MEASURE
         return self._round_up(self._robot.sensor.measuring_time) if measures else 0.0
@@ -164,7 +164,7 @@ class SiteTravel:
         key = origin, goal, task.action, velocity
         if key not in self._legs:
             path = self._find_path(origin, goal)
-            work = self.work(task)
+            work = self.action_duration(task)
             self._legs[key] = path if isinstance(path, NoPath) else self._leg(path, velocity, work)
         return self._legs[key]
 

@@ -10,7 +10,7 @@ from argo_compiler.hfsm import Cause, Outcome, Progress, TraceEntry
 from argo_compiler.il import Action, Mission
 from argo_compiler.il.docked import is_at_dock
 from argo_compiler.il.reserved import RESERVED_NAMES
-from argo_env.formatting import told_apart
+from argo_env.formatting import distinct_texts
 from argo_env.run.log import RunLog
 from argo_env.run.machine import Machine
 from argo_env.run.record import (
@@ -109,7 +109,7 @@ def judge(
         if names:
             missing.append(f"{failure}: {', '.join(names)}")
     if limit is not None and now > limit:
-        took, most = told_apart(now, limit)
+        took, most = distinct_texts(now, limit)
         missing.append(f"it took {took} s of at most {most} s")
     if docked is False and last.ended:
         other = next((a for a, dock in docks.items() if is_at_dock(last.body_pose, dock)), None)

@@ -22,7 +22,7 @@ from argo_env.site.spec import (
     SiteSpec,
     VesselSpec,
 )
-from argo_env.site.stairs import build_flight, mouths, railing, railing_offset
+from argo_env.site.stairs import build_flight, flight_end_areas, railing, railing_offset
 
 DOCK_DISTANCE = 0.62  # m from the centre of a docked robot to the face of its station
 MOUNT_LENGTH = 0.2  # m from the face of a checkpoint back to what carries it
@@ -321,7 +321,7 @@ def _stair_mouths(spec: SiteSpec) -> list[tuple[float, Rect]]:
         for tower in spec.towers
         for floor in spec.floors[:-1]
         for flight in tower.flights
-        for mouth in mouths(flight, floor.z)
+        for mouth in flight_end_areas(flight, floor.z)
     ]
 
 

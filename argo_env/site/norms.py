@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterator
 from itertools import pairwise
 
-from argo_env.site.spec import LEDGE, FloorSpec, SiteSpec, TowerSpec, away
+from argo_env.site.spec import LEDGE, FloorSpec, SiteSpec, TowerSpec, distance_to_rect
 
 PITCH = (20.0, 45.0)  # deg, of a flight
 GOING = (0.21, 0.31)  # m
@@ -85,7 +85,7 @@ def _checkpoints(floor: FloorSpec) -> Iterator[str]:
                 f"checkpoint {checkpoint.id}: it is {height:.3g} m high; the rules ask for "
                 f"{HEIGHT[0]:g} to {HEIGHT[1]:g} m"
             )
-        beside = min(away(rect, x, y) for rect in floor.walkways.values())
+        beside = min(distance_to_rect(rect, x, y) for rect in floor.walkways.values())
         if beside > BESIDE + _TOLERANCE:
             yield (
                 f"checkpoint {checkpoint.id}: it is {beside:.3g} m beside the walkway; the rules "

@@ -50,7 +50,7 @@ def _ordered(rect: tuple[float, float, float, float]) -> tuple[float, float, flo
 Rect = Annotated[tuple[Coordinate, Coordinate, Coordinate, Coordinate], AfterValidator(_ordered)]
 
 
-def away(rect: Rect, x: float, y: float) -> float:
+def distance_to_rect(rect: Rect, x: float, y: float) -> float:
     """Return the distance (m) of a point from a rectangle, 0 within it."""
     return math.hypot(max(rect[0] - x, 0.0, x - rect[2]), max(rect[1] - y, 0.0, y - rect[3]))
 

@@ -100,7 +100,9 @@ def build_flight(flight: FlightSpec, prefix: str, base_z: float) -> tuple[Elemen
     )
 
 
-def mouths(flight: FlightSpec, base_z: float) -> tuple[tuple[float, Rect], tuple[float, Rect]]:
+def flight_end_areas(
+    flight: FlightSpec, base_z: float
+) -> tuple[tuple[float, Rect], tuple[float, Rect]]:
     """Return the height (m) and the area without railing where the flight joins the decks.
 
     The first value is that of its foot, the second that of its head.

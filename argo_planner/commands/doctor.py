@@ -41,7 +41,7 @@ def doctor_command(
 
 def _empty_cache() -> None:
     """Empty the cache; raise Unavailable if files remain, or its folder is not writable."""
-    before, problem = cache.contents().size, cache.write_problem()
+    before, problem = cache.contents().size, cache.unwritable_reason()
     cache.clear()
     if problem is not None or cache.contents().files:
         raise Unavailable(

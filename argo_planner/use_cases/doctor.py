@@ -85,7 +85,7 @@ def examine() -> Examination:
             entries=contents.sites,
             size=contents.size,
             limit=cache.MAX_SIZE,
-            write_problem=cache.write_problem(),
+            write_problem=cache.unwritable_reason(),
         ),
         extras=tuple(
             Extra(

@@ -28,7 +28,7 @@ from argo_compiler.route.suggestion import suggest_route
 from argo_env.files.yaml_file import parse_yaml
 from argo_env.formatting import clock
 from argo_env.planning.opening import OpenedSite
-from argo_env.planning.route_matrix import plan_mission
+from argo_env.planning.route_matrix import make_mission_problem
 from argo_env.planning.travel import SiteTravel
 from argo_env.run.record import Reordering
 from argo_env.seeding import generator
@@ -133,7 +133,7 @@ def suggest_order(
     requirements = requirements or Requirements()
     try:
         require_known(mission, requirements)  # before all paths are planned, which takes long
-        planned = plan_mission(mission, site.navigator, requirements, site.travel)
+        planned = make_mission_problem(mission, site.navigator, requirements, site.travel)
     except DiagnosticError as error:
         raise DiagnosticError(name, error.diagnostics) from None
     except ArgoError as error:

@@ -13,8 +13,8 @@ from argo_env.planning.checking import unpatrolled_floors
 from argo_env.planning.flaws.flaw import JOINT_GAP, Flaw, Mark, obstructions_between, position_text
 from argo_env.planning.flaws.safe_states import SafeStates
 from argo_env.planning.patrols import MIN_SPACING, patrol_corners
-from argo_env.site.spec import LEDGE, FloorSpec, TowerSpec, away
-from argo_env.site.stairs import mouths
+from argo_env.site.spec import LEDGE, FloorSpec, TowerSpec, distance_to_rect
+from argo_env.site.stairs import flight_end_areas
 
 TURNING_SPACE = 1.4  # m, edge of a square in which the robot turns easily
 MIN_WIDTH = 0.7  # m, recommended least width of walkways, stairs and paths
@@ -134,7 +134,7 @@ def _tower_end_flaw(tower: TowerSpec, below: FloorSpec, floor: FloorSpec) -> Fla
     ]
     for flight in tower.flights:
         for verb, (z, (x0, y0, x1, y1)) in zip(
-            ("begins", "ends"), mouths(flight, below.z), strict=True
+            ("begins", "ends"), flight_end_areas(flight, below.z), strict=True
         ):
             x, y = (x0 + x1) / 2, (y0 + y1) / 2
             marks = (Mark(floor.number if verb == "ends" else below.number, x, y),)
@@ -150,7 +150,7 @@ def _tower_end_flaw(tower: TowerSpec, below: FloorSpec, floor: FloorSpec) -> Fla
                     marks,
                 )
             gap, part, name = min(
-                (away(rect, x, y), part, name)
+                (distance_to_rect(rect, x, y), part, name)
                 for name, rects in joined
                 for part, rect in rects.items()
             )
@@ -169,7 +169,7 @@ def _climb_flaw(states: SafeStates, tower: TowerSpec, below: FloorSpec, floor: F
     robot = states.lattice.robot
     for flight in tower.flights:
         min_width = 2 * (robot.footprint.half_width + MARGIN)
-        _, (x0, y0, x1, y1) = mouths(flight, below.z)[0]
+        _, (x0, y0, x1, y1) = flight_end_areas(flight, below.z)[0]
         marks = (Mark(below.number, (x0 + x1) / 2, (y0 + y1) / 2),)
         if flight.width < min_width:
             return Flaw(
@@ -222,7 +222,7 @@ def _highest_reached(
     corners = [
         corner
         for flight in tower.flights
-        for _, (x0, y0, x1, y1) in mouths(flight, below.z)
+        for _, (x0, y0, x1, y1) in flight_end_areas(flight, below.z)
         for corner in ((x0, y0), (x1, y1))
     ]
     low, high = np.min(corners, axis=0), np.max(corners, axis=0)
@@ -254,8 +254,8 @@ def _patrol_flaw(navigator: Navigator, floor: FloorSpec) -> Flaw:
     for name, (x, y) in zip(_CORNERS, ((x0, y0), (x1, y0), (x1, y1), (x0, y1)), strict=True):
         if any(math.dist((x, y), corner[:2]) < MIN_SPACING for corner in corners):
             continue
-        part, rect = min(floor.walkways.items(), key=lambda item: away(item[1], x, y))
-        if away(rect, x, y) > TURNING_SPACE:
+        part, rect = min(floor.walkways.items(), key=lambda item: distance_to_rect(item[1], x, y))
+        if distance_to_rect(rect, x, y) > TURNING_SPACE:
             continue  # no deck there
         x, y = min(max(x, rect[0]), rect[2]), min(max(y, rect[1]), rect[3])
         marks.append(Mark(floor.number, float(x), float(y)))

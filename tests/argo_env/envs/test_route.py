@@ -38,7 +38,7 @@ def choose(env, rng, far=False):
         return DOCK
     if far:
         known = env.instance.known_at(env._time())
-        return int(allowed[np.argmax(known.need[env._place, allowed])])
+        return int(allowed[np.argmax(known.time_to_dock_via[env._place, allowed])])
     return int(rng.choice(allowed))
 
 

@@ -263,7 +263,7 @@ def test_a_folder_that_can_not_be_used_breaks_nothing(yard_file, tmp_path, monke
     anew = digest_of_results(Navigator(load_site(yard_file), load_robot()))
     monkeypatch.setattr(cache, "cache_folder", lambda: tmp_path / where)
     assert digest_of_results(open_site(yard_file).navigator) == anew
-    assert cache.write_problem()
+    assert cache.unwritable_reason()
     assert cache.contents() == cache.Contents(0, 0, 0)
     cache.clear()
     cache.evict()

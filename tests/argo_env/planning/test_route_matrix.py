@@ -11,7 +11,7 @@ from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.reorder.rewriting import apply_route
 from argo_compiler.route import Tour, evaluate
 from argo_env.navigation import Navigator
-from argo_env.planning.route_matrix import mission_travel, plan_mission
+from argo_env.planning.route_matrix import make_mission_problem, mission_travel
 from argo_env.planning.travel import SiteTravel
 from argo_env.run.record import Reordering
 from tests.yard import (
@@ -46,7 +46,7 @@ def test_ways_between_places_take_as_long_as_driven(yard):
         }
     )
     for written in (plain, slow):
-        planned = plan_mission(written, yard, Requirements())
+        planned = make_mission_problem(written, yard, Requirements())
         for order in ((0, 1, 2), (2, 0, 1), (1, 2, 0)):
             predicted = evaluate(planned.problem, Tour(order)).duration * planned.problem.unit
             changed = apply_route(planned, Tour(order))
@@ -55,7 +55,7 @@ def test_ways_between_places_take_as_long_as_driven(yard):
 
 def test_a_mission_with_checkpoints_takes_about_as_long(yard):
     written = mission(measure(1), waypoint("A", 5.5, 2), measure(3), measure(2), order=Order.ANY)
-    planned = plan_mission(written, yard, Requirements())
+    planned = make_mission_problem(written, yard, Requirements())
     for order in ((0, 1, 2, 3), (3, 2, 1, 0), (1, 3, 0, 2)):
         predicted = evaluate(planned.problem, Tour(order)).duration * planned.problem.unit
         assert driven(apply_route(planned, Tour(order)), yard) == pytest.approx(predicted, rel=0.1)
@@ -78,16 +78,16 @@ def test_many_places_are_reckoned_over_the_lattice(yard, monkeypatch):
 
 def test_a_small_battery_brings_in_the_docking_stations(yard):
     weak = Navigator(yard.site, yard.robot.model_copy(update={"battery": 1.5}))
-    planned = plan_mission(around(), weak, Requirements())
+    planned = make_mission_problem(around(), weak, Requirements())
     assert planned.problem.chargers == ("docking station 1",)
     assert planned.problem.battery is not None
-    assert plan_mission(around(), yard, Requirements()).problem.battery is None
+    assert make_mission_problem(around(), yard, Requirements()).problem.battery is None
 
 
 def test_a_task_that_can_not_be_carried_out_is_named(yard):
     written = mission(measure(1), waypoint("far", 60, 60), measure(3))
     with pytest.raises(ArgoError, match="can't carry out task 'far'"):
-        plan_mission(written, yard, Requirements())
+        make_mission_problem(written, yard, Requirements())
 
 
 def test_an_area_is_where_a_mission_without_a_pose_starts(yard):

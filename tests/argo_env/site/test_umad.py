@@ -12,7 +12,7 @@ from argo_compiler.base.errors import NotFound
 from argo_env.site.build import DOCK_DISTANCE
 from argo_env.site.shapes import Role
 from argo_env.site.site import site_names
-from argo_env.site.stairs import mouths
+from argo_env.site.stairs import flight_end_areas
 
 CHECKPOINTS = [
     (1, "pressure gauge", "pressure gauge 1", 1),
@@ -52,7 +52,7 @@ def all_mouths(site):
         for tower in site.spec.towers
         for floor in site.spec.floors[:-1]
         for flight in tower.flights
-        for mouth in mouths(flight, floor.z)
+        for mouth in flight_end_areas(flight, floor.z)
     ]
 
 
@@ -138,7 +138,7 @@ def test_landings_are_at_least_800_mm(umad):
         for below in umad.spec.floors[:-1]:
             for flight in tower.flights:
                 yaw = math.radians(flight.yaw)
-                foot, head = mouths(flight, below.z)
+                foot, head = flight_end_areas(flight, below.z)
                 for (z, rect), sign in ((foot, -1), (head, 1)):
                     middle = (rect[0] + rect[2]) / 2, (rect[1] + rect[3]) / 2
                     for along in np.arange(0.05, 0.8, 0.1):

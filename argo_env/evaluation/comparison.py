@@ -59,7 +59,7 @@ class PlanComparison:
         estimate = mean_difference(*shares)
         if not self.pairs:
             return estimate
-        if self.has_one_pair_per_world and not self.any_time:
+        if self.has_independent_pairs and not self.any_time:
             low, high = self.successes.interval()
         else:
             sequence = ConfidenceSequence()
@@ -77,10 +77,10 @@ class PlanComparison:
         """
         if self.any_time:
             return math.nan
-        return self.successes.p_value if self.has_one_pair_per_world else self.success.p_value
+        return self.successes.p_value if self.has_independent_pairs else self.success.p_value
 
     @property
-    def has_one_pair_per_world(self) -> bool:
+    def has_independent_pairs(self) -> bool:
         """True if each world has one pair; only then the pairs are independent of each other."""
         return len({a.seed for a, _ in self.pairs}) == len(self.pairs)
 

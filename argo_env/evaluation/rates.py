@@ -194,7 +194,7 @@ def _decisions(
         weights = {case.faults: case.weight for case in evaluation.cases if case.plan == plan}
         for requirement in required:
             sequence = ConfidenceSequence(level=1.0 - 0.05 / len(required))
-            sequence.add(world_shares(plan_rows, weights, requirement.value_in).values())
+            sequence.add(world_shares(plan_rows, weights, requirement.evaluate_quantity).values())
             above = sequence.runs > 0 and sequence.is_above(requirement.share)
             below = sequence.runs > 0 and sequence.is_below(requirement.share)
             verdict = Decision.OPEN

@@ -34,7 +34,7 @@ class RateRequirement(Model):
     def __str__(self) -> str:
         return f"{self.quantity} {'>=' if self.at_least else '<='} {self.share:g}"
 
-    def value_in(self, row: "RunRow") -> bool | None:
+    def evaluate_quantity(self, row: "RunRow") -> bool | None:
         """Return True if a run has the required quantity; None if the run does not count.
 
         A run that could not be carried out gets the value that counts against the requirement.

@@ -88,7 +88,7 @@ def require_libraries() -> None:
         raise Unavailable(f"recordings need {', '.join(missing)}: {install_line('recording')}")
 
 
-def check_recording(file: Path) -> None:
+def check_recording_path(file: Path) -> None:
     """Raise ArgoError if no recording can be written to the file; call it before a long run.
 
     The reason is its suffix, its folder, or an extra that is not installed.
@@ -114,9 +114,9 @@ def recording_to(
         warn: function that is called with a warning when data are lost.
 
     Raises:
-        ArgoError: as `check_recording` does, or if the file can't be made.
+        ArgoError: as `check_recording_path` does, or if the file can't be made.
     """
-    check_recording(file)
+    check_recording_path(file)
     # These modules import packages of the extra.
     from argo_env.recording.run_recorder import RunRecorder
     from argo_env.recording.writer import RecordingWriter

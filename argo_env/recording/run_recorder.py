@@ -138,7 +138,7 @@ class RunRecorder(Observer):
         path = robot_folder() / robot.urdf
         model = read_model(path)
         self._setup = setup
-        self._writer.describe(
+        self._writer.write_metadata(
             "argo",
             {
                 "version": VERSION,

@@ -48,7 +48,7 @@ class TopicWriter:
     def attach(self, name: str, media_type: str, content: str | bytes, t: float = 0.0) -> None:
         """Write a file that belongs to the run; by default do nothing."""
 
-    def describe(self, name: str, facts: Mapping[str, str]) -> None:
+    def write_metadata(self, name: str, facts: Mapping[str, str]) -> None:
         """Write metadata with this name; by default do nothing."""
 
     def flush_if_due(self, t: float) -> None:

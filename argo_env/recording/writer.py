@@ -44,7 +44,7 @@ class RecordingWriter(TopicWriter):
         self._writer.add_attachment(nanoseconds(t), nanoseconds(t), name, media_type, data)
         self._mark_intact()
 
-    def describe(self, name: str, facts: Mapping[str, str]) -> None:
+    def write_metadata(self, name: str, facts: Mapping[str, str]) -> None:
         """Add metadata with this name: texts by key."""
         self._writer.add_metadata(name, dict(facts))
 

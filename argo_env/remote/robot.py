@@ -336,7 +336,7 @@ class RemoteRobot:
         end = own.to_action_end(ended, reading is not None and not reading.normal)
         return Sensed(end, reading, tuple(found))
 
-    def entry_fields(self) -> dict[str, Any]:
+    def state_for_entry(self) -> dict[str, Any]:
         pose, odometry = self._drive.pose, self.odometry
         return {
             "pose": (pose.x, pose.y, pose.z, pose.yaw, pose.pitch),
@@ -345,7 +345,7 @@ class RemoteRobot:
             "charge": self.supply.charge,
         }
 
-    def clear_reported(self) -> None:
+    def clear_mishaps_and_contacts(self) -> None:
         """No-op: a remote robot reports no contacts or mishaps."""
 
     def _await_state(self, patience: float) -> None:

@@ -11,11 +11,17 @@ from argo_compiler.hfsm import Hfsm
 from argo_compiler.il import Action, Mission
 from argo_compiler.il.reserved import RETURN_TASK
 from argo_env.formatting import clock
-from argo_env.report.machine import is_drawable, machine
-from argo_env.report.plan import elevation, floor_plan, visited_floors
-from argo_env.report.rounds import blocks, repeat_rules, waits, with_readings, with_waits
+from argo_env.report.machine import draw_machine, is_drawable
+from argo_env.report.plan import draw_floor, draw_side_view, visited_floors
+from argo_env.report.rounds import (
+    blocks_by_group,
+    merge_waits,
+    repeat_rules,
+    rounds_with_readings,
+    waits,
+)
 from argo_env.report.svg import Node, clean, drawing, markup, node
-from argo_env.report.timeline import charge_curve, lacks_measuring_times, timeline
+from argo_env.report.timeline import draw_charge_curve, draw_timeline, lacks_measuring_times
 from argo_env.report.track import colour
 from argo_env.run.record import Anomaly, Reading, RunRecord
 from argo_env.site import Site
@@ -27,7 +33,7 @@ BAR = 130.0  # px, width of the scale of a reading
 def page(record: RunRecord, site: Site) -> str:
     """Return the whole report as one HTML page that needs no other file."""
     floors = visited_floors(record)
-    task_blocks = blocks(record)
+    task_blocks = blocks_by_group(record)
     idle_times = waits(record)
     others = [str(f.number) for f in site.spec.floors if f.number not in floors]
     return _template().render(
@@ -40,18 +46,18 @@ def page(record: RunRecord, site: Site) -> str:
         missed=record.missed_faults,
         failed=[t for t in record.tasks if t.outcome == "failed"],
         readings=[(reading, markup(_bar(reading))) for reading in record.readings],
-        timeline=markup(timeline(record)) if record.tasks or record.waits else None,
+        timeline=markup(draw_timeline(record)) if record.tasks or record.waits else None,
         waits=idle_times,
-        rounds=with_readings(record),
+        rounds=rounds_with_readings(record),
         rules=repeat_rules(record),
-        charge=None if (curve := charge_curve(record)) is None else markup(curve),
-        plans=[(n, markup(floor_plan(site, record, n))) for n in floors],
+        charge=None if (curve := draw_charge_curve(record)) is None else markup(curve),
+        plans=[(n, markup(draw_floor(site, record, n))) for n in floors],
         unvisited=others,
-        elevation=markup(elevation(site, record)) if record.path else None,
+        elevation=markup(draw_side_view(site, record)) if record.path else None,
         ramp=", ".join(colour(i / 6) for i in range(7)),
-        blocks=list(zip(task_blocks, with_waits(task_blocks, idle_times), strict=True)),
+        blocks=list(zip(task_blocks, merge_waits(task_blocks, idle_times), strict=True)),
         docking=_docking(record.mission),
-        machine=markup(machine(record.hfsm)) if is_drawable(record.hfsm) else None,
+        machine=markup(draw_machine(record.hfsm)) if is_drawable(record.hfsm) else None,
         has_failure_transitions=any(leaf.failure or leaf.missed for leaf in record.hfsm.leaves),
         mermaid=to_mermaid(record.hfsm),
     )
@@ -59,7 +65,7 @@ def page(record: RunRecord, site: Site) -> str:
 
 def machine_page(hfsm: Hfsm) -> str:
     """Return a page that shows only the diagram of a machine for which `is_drawable` is true."""
-    return f"<!DOCTYPE html><style>{_style()}</style><main>{markup(machine(hfsm))}</main>"
+    return f"<!DOCTYPE html><style>{_style()}</style><main>{markup(draw_machine(hfsm))}</main>"
 
 
 @cache

@@ -70,7 +70,7 @@ def is_drawable(hfsm: Hfsm) -> bool:
     return len(hfsm.leaves) + len(hfsm.composites) <= MAX_STATES
 
 
-def machine(hfsm: Hfsm) -> Node:
+def draw_machine(hfsm: Hfsm) -> Node:
     """Draw the state machine as SVG.
 
     The drawing has one element of the CSS class `state` for each leaf and composite, and one of the

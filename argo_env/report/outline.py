@@ -50,7 +50,7 @@ def height_range(solid: Solid) -> tuple[float, float]:
     return solid.center[2] - half, solid.center[2] + half
 
 
-def on_floor(element: Element, z: float, storey: float) -> tuple[Solid, ...]:
+def solids_on_floor(element: Element, z: float, storey: float) -> tuple[Solid, ...]:
     """Return the solids of the element that a plan of the floor at height `z` (m) shows.
 
     For decks and the ground their top decides. A flight of stairs, a handrail or a railing is shown

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from argo_compiler.il import EventKind
-from argo_env.report.outline import DRAWING_ORDER, Point, height_range, on_floor, outline
+from argo_env.report.outline import DRAWING_ORDER, Point, height_range, outline, solids_on_floor
 from argo_env.report.svg import Node, drawing, node, polyline
-from argo_env.report.timeline import finding_mark
-from argo_env.report.track import arrow_heads, flag, stretches, track
+from argo_env.report.timeline import draw_finding
+from argo_env.report.track import draw_arrow_heads, draw_flag, draw_track, stretches
 from argo_env.run.record import PathSample, RunRecord
 from argo_env.site import Site, SiteCheckpoint
 from argo_env.site.shapes import Element, Role, Solid
@@ -41,14 +41,14 @@ class Canvas:
         """Return the position in px of a point in m; the second axis points up."""
         return MARGIN + (x - self.x0) * self.scale, MARGIN + (self.y1 - y) * self.scale
 
-    def solids(self, role: Role, solids: Iterable[Solid], axes: tuple[int, int]) -> Node:
+    def draw_solids(self, role: Role, solids: Iterable[Solid], axes: tuple[int, int]) -> Node:
         """Draw the solids of one role as a single path."""
         shapes = (
             polyline((self.at(*p) for p in outline(solid, axes)), closed=True) for solid in solids
         )
         return node("path", d="".join(shapes), class_=f"site-{role}")
 
-    def elements(
+    def draw_elements(
         self, shown: Iterable[tuple[Role, tuple[Solid, ...]]], axes: tuple[int, int]
     ) -> list[Node]:
         """Draw all solids, lower roles first."""
@@ -57,10 +57,10 @@ class Canvas:
         for role in DRAWING_ORDER:
             solids = [solid for r, group in parts if r is role for solid in group]
             if solids:
-                drawn.append(self.solids(role, solids, axes))
+                drawn.append(self.draw_solids(role, solids, axes))
         return drawn
 
-    def frame(self, names: tuple[str, str]) -> list[Node]:
+    def draw_axes(self, names: tuple[str, str]) -> list[Node]:
         """Draw the frame with coordinates every 2 m along both axes."""
         left, top = self.at(self.x0, self.y1)
         right, bottom = self.at(self.x1, self.y0)
@@ -79,7 +79,7 @@ class Canvas:
         marks.append(_text(left, top - 8, f"{names[1]} in m", "axis"))
         return marks
 
-    def scale_bar(self) -> Node:
+    def draw_scale_bar(self) -> Node:
         """Draw a bar of 1 m above the frame's right end."""
         right, top = self.at(self.x1, self.y1)
         return node(
@@ -112,10 +112,10 @@ def visited_floors(record: RunRecord) -> list[int]:
     return sorted({sample.floor for sample in record.path})
 
 
-def floor_plan(site: Site, record: RunRecord, number: int) -> Node:
+def draw_floor(site: Site, record: RunRecord, number: int) -> Node:
     """Draw one floor from above: site, checkpoints, path, start, end, contacts and findings."""
     floor_z = next(f.z for f in site.spec.floors if f.number == number)
-    shown = [(e.role, on_floor(e, floor_z, site.spec.storey)) for e in site.elements]
+    shown = [(e.role, solids_on_floor(e, floor_z, site.spec.storey)) for e in site.elements]
     parts = stretches(record.path, number)
     corners = [p for _, solids in shown for s in solids for p in outline(s, (0, 1))]
     corners += [(s.x, s.y) for part in parts for s in part]
@@ -125,7 +125,7 @@ def floor_plan(site: Site, record: RunRecord, number: int) -> Node:
     marks = [_checkpoint(canvas, c, measured) for c in site.checkpoints if c.floor == number]
     contacts = [_cross(canvas, c.x, c.y) for c in record.contacts if site.floor_at(c.z) == number]
     findings = [
-        finding_mark(*canvas.at(at[0], at[1]), k, "found" if a.place else "noticed")
+        draw_finding(*canvas.at(at[0], at[1]), k, "found" if a.place else "noticed")
         for k, a in enumerate(record.anomalies, start=1)
         if (at := a.place or a.noticed_from) is not None
         and a.floor == number
@@ -135,25 +135,25 @@ def floor_plan(site: Site, record: RunRecord, number: int) -> Node:
         canvas.width,
         canvas.height,
         f"Plan of floor {number} with the driven path",
-        *canvas.frame(("x", "y")),
-        *canvas.elements(shown, (0, 1)),
+        *canvas.draw_axes(("x", "y")),
+        *canvas.draw_elements(shown, (0, 1)),
         *_path(canvas, parts, record),
         *marks,
         *contacts,
         *findings,
         _north(canvas),
-        canvas.scale_bar(),
+        canvas.draw_scale_bar(),
         class_="drawing plan",
     )
 
 
 def _path(canvas: Canvas, parts: list[list[PathSample]], record: RunRecord) -> list[Node]:
     end = record.path[-1].t if record.path else 0.0
-    drawn = track(parts, lambda s: (s.x, s.y), canvas.at, end, _ASIDE)
+    drawn = draw_track(parts, lambda s: (s.x, s.y), canvas.at, end, _ASIDE)
     length = sum(math.dist((a.x, a.y), (b.x, b.y)) for part in parts for a, b in pairwise(part))
     if length <= _ARROWS_UP_TO:
         for part in parts:
-            drawn += arrow_heads(part, canvas.at, 1.6, _ASIDE)
+            drawn += draw_arrow_heads(part, canvas.at, 1.6, _ASIDE)
     return drawn + _flags(canvas, parts, record)
 
 
@@ -162,11 +162,11 @@ def _flags(canvas: Canvas, parts: list[list[PathSample]], record: RunRecord) -> 
     first, last = record.path[0], record.path[-1]
     flags = []
     if parts and parts[0][0] is first:
-        flags.append(flag(canvas.at(first.x, first.y), "S", "start"))
+        flags.append(draw_flag(canvas.at(first.x, first.y), "S", "start"))
     if parts and parts[-1][-1] is last:
         x, y = canvas.at(last.x, last.y)
         near = flags and math.dist((first.x, first.y), (last.x, last.y)) < 0.4
-        flags.append(flag((x + (20 if near else 0), y), "E", "end"))
+        flags.append(draw_flag((x + (20 if near else 0), y), "E", "end"))
     return flags
 
 
@@ -208,7 +208,7 @@ _ELEVATION_SCALE = 34.0  # px for 1 m
 _SHOWN = frozenset({Role.GROUND, Role.DECK, Role.STAIR, Role.VESSEL, Role.STRUCTURE})
 
 
-def elevation(site: Site, record: RunRecord) -> Node:
+def draw_side_view(site: Site, record: RunRecord) -> Node:
     """Draw the site from the south, with x to the right and z up, and the path."""
     shown = [
         (e.role, e.solids)
@@ -221,7 +221,7 @@ def elevation(site: Site, record: RunRecord) -> Node:
     canvas = Canvas(min(xs) - 0.3, min(zs), max(xs) + 0.3, max(zs) + 0.3, _ELEVATION_SCALE)
     parts = stretches(record.path, None)
     end = record.path[-1].t if record.path else 0.0
-    drawn = track(parts, lambda s: (s.x, s.z), canvas.at, end)
+    drawn = draw_track(parts, lambda s: (s.x, s.z), canvas.at, end)
     labels = [
         node(
             "text",
@@ -236,17 +236,17 @@ def elevation(site: Site, record: RunRecord) -> Node:
         first, last = record.path[0], record.path[-1]
         end_at = canvas.at(last.x, last.z)
         near = abs(first.x - last.x) < 0.5 and abs(first.z - last.z) < 0.5
-        drawn.append(flag(canvas.at(first.x, first.z), "S", "start"))
-        drawn.append(flag((end_at[0] + (20 if near else 0), end_at[1]), "E", "end"))
+        drawn.append(draw_flag(canvas.at(first.x, first.z), "S", "start"))
+        drawn.append(draw_flag((end_at[0] + (20 if near else 0), end_at[1]), "E", "end"))
     return drawing(
         canvas.width,
         canvas.height,
         "Side view from the south with the driven path",
-        *canvas.frame(("x", "z")),
-        *canvas.elements(shown, (0, 2)),
+        *canvas.draw_axes(("x", "z")),
+        *canvas.draw_elements(shown, (0, 2)),
         *labels,
         *drawn,
-        canvas.scale_bar(),
+        canvas.draw_scale_bar(),
         class_="drawing side",
     )
 

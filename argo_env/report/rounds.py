@@ -130,7 +130,7 @@ class Block:
         return self.rounds[-1][-1].end
 
 
-def blocks(record: RunRecord) -> tuple[Block, ...]:
+def blocks_by_group(record: RunRecord) -> tuple[Block, ...]:
     """Return the runs of a record in blocks, in their order.
 
     If a group consists of nothing but another group, the rounds of the inner one count as well. The
@@ -161,7 +161,7 @@ def blocks(record: RunRecord) -> tuple[Block, ...]:
     return tuple(result)
 
 
-def with_waits(
+def merge_waits(
     blocks: Sequence[Block], waits: Sequence[Wait]
 ) -> tuple[tuple[tuple[TaskRun | Wait, ...], ...], ...]:
     """Return for each block its rounds, with the waits in them, all sorted by their start."""
@@ -178,7 +178,7 @@ def with_waits(
     return tuple(result)
 
 
-def with_readings(record: RunRecord) -> list[tuple[RoundRun, str]]:
+def rounds_with_readings(record: RunRecord) -> list[tuple[RoundRun, str]]:
     """Return the rounds with a due time or an end condition, each with a text of its readings.
 
     The text gives the last values before the end of the round, for the checkpoints of the condition

@@ -7,7 +7,7 @@ import numpy as np
 
 from argo_compiler.il import Action
 from argo_env.formatting import clock
-from argo_env.report.rounds import blocks
+from argo_env.report.rounds import blocks_by_group
 from argo_env.report.svg import Node, drawing, node, polyline, shorten, simplify
 from argo_env.run.record import RunRecord, TaskRun
 
@@ -19,7 +19,7 @@ HEAD = 60.0  # px above the first row, for the rounds
 _STEPS = (1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600)
 
 
-def timeline(record: RunRecord) -> Node:
+def draw_timeline(record: RunRecord) -> Node:
     """Draw all runs of tasks, with the rounds of groups above and the measurements as dots."""
     begun = [(run.start, run.task) for run in record.tasks]
     begun += [(wait.start, wait.task) for wait in record.waits]
@@ -27,7 +27,7 @@ def timeline(record: RunRecord) -> Node:
     end = max([record.result.duration, *(run.end for run in record.tasks), 1.0])
     px = (WIDTH - LABELS - 20) / end
     bottom = HEAD + ROW * len(rows)
-    parts = time_axis(end, px, HEAD, bottom) + _rounds(record, px, bottom)
+    parts = draw_time_axis(end, px, HEAD, bottom) + _rounds(record, px, bottom)
     parts += _interruptions(record, px, bottom)
     for name, row in rows.items():
         y = HEAD + ROW * row
@@ -125,7 +125,7 @@ def _windows(record: RunRecord, rows: dict[str, int], px: float) -> Iterator[Nod
         yield node("path", d=line, title=title, class_="window" if run.hard else "window soft")
 
 
-def time_axis(end: float, px: float, top: float, bottom: float) -> list[Node]:
+def draw_time_axis(end: float, px: float, top: float, bottom: float) -> list[Node]:
     """Draw lines from `top` to `bottom` at round times up to `end` (s), with `px` for 1 s."""
     step = next((s for s in _STEPS if s * px >= 60), 3600 * math.ceil(60 / (3600 * px)))
     marks = []
@@ -173,12 +173,12 @@ def _anomalies(record: RunRecord, px: float, bottom: float) -> list[Node]:
         title = f"{number} {what}: {anomaly.detail}, {clock(anomaly.t)}"
         marks.append(node("path", d=line, title=title, class_="found-line"))
         if x > free_from:
-            marks.append(finding_mark(x, HEAD - 8, number, "found"))
+            marks.append(draw_finding(x, HEAD - 8, number, "found"))
             free_from = x + 16
     return marks
 
 
-def finding_mark(x: float, y: float, number: int, class_: str) -> Node:
+def draw_finding(x: float, y: float, number: int, class_: str) -> Node:
     """Draw a diamond about a position in px, with the number of a finding.
 
     `class_` is `found` at the place of the finding, and `noticed` at the place from which the robot
@@ -195,7 +195,7 @@ def finding_mark(x: float, y: float, number: int, class_: str) -> Node:
 def _rounds(record: RunRecord, px: float, bottom: float) -> list[Node]:
     """Draw the rounds of each visit to a group as bands of alternating shades, with numbers."""
     marks = []
-    for block in blocks(record):
+    for block in blocks_by_group(record):
         if block.group is None:
             continue
         left, width = LABELS + block.start * px, (block.end - block.start) * px
@@ -221,7 +221,7 @@ TOP = 12.0  # px above it
 LOW = 20.0  # %, below which the robot reports a low battery
 
 
-def charge_curve(record: RunRecord) -> Node | None:
+def draw_charge_curve(record: RunRecord) -> Node | None:
     """Draw the charge in percent on the time axis of the timeline.
 
     Returns None if the record has fewer than two samples with a charge.
@@ -239,7 +239,7 @@ def charge_curve(record: RunRecord) -> Node | None:
     line = np.array([at(*point) for point in points])
     curve = line[simplify(line, 0.3)].tolist()
     area = [(curve[0][0], bottom), *curve, (curve[-1][0], bottom)]
-    marks = time_axis(end, px, TOP, bottom)
+    marks = draw_time_axis(end, px, TOP, bottom)
     for percent in (0, 50, 100):
         x, y = at(0.0, percent)
         marks.append(node("path", d=f"M{x:.1f},{y:.1f}H{WIDTH - 20:g}", class_="row"))

@@ -36,7 +36,7 @@ def stretches(path: Sequence[PathSample], floor: int | None) -> list[list[PathSa
     return [list(samples) for wanted, samples in runs if wanted]
 
 
-def track(
+def draw_track(
     parts: Sequence[Sequence[PathSample]],
     plane: Callable[[PathSample], Point],
     at: Callable[[float, float], Point],
@@ -94,7 +94,7 @@ def shift_right(points: NDArray[np.float64], aside: float) -> NDArray[np.float64
     return np.asarray(points + aside * right)
 
 
-def arrow_heads(
+def draw_arrow_heads(
     samples: Sequence[PathSample],
     at: Callable[[float, float], Point],
     spacing: float,
@@ -117,7 +117,7 @@ def arrow_heads(
     return heads
 
 
-def flag(center: Point, text: str, class_: str) -> Node:
+def draw_flag(center: Point, text: str, class_: str) -> Node:
     """Draw a round mark with a letter, for the start or the end, about a position in px."""
     return node(
         "g",

@@ -297,7 +297,7 @@ class WindowOutcome(StrEnum):
     NOT_VISITED = "not visited"
 
 
-class WindowRun(Model):
+class WindowVisit(Model):
     """Visit of a task that has a time window, or the lack of one."""
 
     task: str
@@ -429,7 +429,7 @@ class RunRecord(Model):
     interruptions: tuple[Interruption, ...] = ()
     waits: tuple[WaitRun, ...] = ()
     """visits of WAIT tasks, in the order of time"""
-    windows: tuple[WindowRun, ...] = ()
+    windows: tuple[WindowVisit, ...] = ()
     """visits of tasks with time windows, and tasks with windows that were not visited"""
     rounds: tuple[RoundRun, ...] = ()
     """rounds of groups, in the order in which they could begin"""
@@ -497,7 +497,7 @@ class RunRecord(Model):
         )
 
     @property
-    def late(self) -> tuple[WindowRun, ...]:
+    def late(self) -> tuple[WindowVisit, ...]:
         """Visits of tasks that ended after the task's soft time window."""
         return tuple(run for run in self.windows if run.kept is WindowOutcome.LATE)
 

@@ -20,7 +20,7 @@ from argo_env.run.record import (
     TaskRun,
     TraceStep,
     WindowOutcome,
-    WindowRun,
+    WindowVisit,
 )
 from argo_env.run.run_setup import RunSetup
 from argo_env.run.spec import RunSpec
@@ -30,8 +30,8 @@ from argo_env.run.visits_and_rounds import (
     RoundTracker,
     VisitRun,
     visits_from_trace,
+    visits_with_windows,
     wait_runs,
-    window_runs,
 )
 
 _ENDINGS = {
@@ -70,7 +70,7 @@ def judge(
     outcome: Outcome | None,
     trace: Sequence[TraceEntry],
     visits: Sequence[VisitRun],
-    windows: Sequence[WindowRun],
+    windows: Sequence[WindowVisit],
     earlier: Progress,
 ) -> Result:
     """Determine the result of a mission.
@@ -207,7 +207,7 @@ def make_record(
     trace = tuple(machine.trace)
     progress = spec.beginning.progress if spec.beginning else Progress(active=None)
     visits = tuple(visits_from_trace(trace, progress.since))
-    windows = window_runs(spec.mission, visits, {tally.task for tally in progress.tallies})
+    windows = visits_with_windows(spec.mission, visits, {tally.task for tally in progress.tallies})
     result = judge(
         spec.mission,
         site.docks,

@@ -120,11 +120,11 @@ class AnyRobot(Protocol):
     def advance(self, step: int, now: float, action: RobotAction | None) -> Sensed:
         """Let time step number `step` pass, up to `now` (s), with `action` running, if any."""
 
-    def entry_fields(self) -> dict[str, Any]:
+    def state_for_entry(self) -> dict[str, Any]:
         """Return the fields of an entry of the log that hold the robot's state.
 
         These are its pose, distance, climb and charge, and its mishaps and contacts.
         """
 
-    def clear_reported(self) -> None:
-        """Clear the mishaps and ended contacts that `entry_fields` has already reported."""
+    def clear_mishaps_and_contacts(self) -> None:
+        """Clear the mishaps and ended contacts that `state_for_entry` has already reported."""

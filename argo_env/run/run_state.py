@@ -135,7 +135,7 @@ class SimulationState:
             events=tuple(LoggedEvent.from_event(self._with_abnormality(event)) for event in events),
             task=task,
             sample=sample,
-            **self._vehicle.entry_fields(),
+            **self._vehicle.state_for_entry(),
         )
 
     def apply(self, entry: Entry) -> None:

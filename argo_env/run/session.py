@@ -15,7 +15,7 @@ from argo_env.run.journal import Header, Journal, create_journal
 from argo_env.run.observer import Observer
 from argo_env.run.record import RunRecord
 from argo_env.run.robot import RobotAction
-from argo_env.run.simulation import LoggedEvents, Simulation, never
+from argo_env.run.simulation import LoggedEvents, Simulation, never_interrupted
 from argo_env.run.spec import RunSpec
 from argo_env.run.validation import CheckedRun, check_run
 
@@ -40,7 +40,7 @@ def simulate(
     replace: bool = False,
     gui: bool = False,
     pace: float | None = None,
-    interrupted: Callable[[], bool] = never,
+    interrupted: Callable[[], bool] = never_interrupted,
 ) -> RunRecord:
     """Run the mission of a spec to its end and return the record. Equal specs give equal records.
 
@@ -85,7 +85,7 @@ def resume(
     events: LoggedEvents = (),
     gui: bool = False,
     pace: float | None = None,
-    interrupted: Callable[[], bool] = never,
+    interrupted: Callable[[], bool] = never_interrupted,
 ) -> RunRecord:
     """Resume the run of a journal and return the record of the complete run.
 
@@ -129,7 +129,7 @@ def continue_run(
     events: LoggedEvents = (),
     gui: bool = False,
     pace: float | None = None,
-    interrupted: Callable[[], bool] = never,
+    interrupted: Callable[[], bool] = never_interrupted,
 ) -> RunRecord:
     """Resume the run of a journal that `Journal.require_unchanged` has accepted."""
     spec = journal.header.spec

@@ -64,7 +64,7 @@ _MAX_BATCH = 5_000
 _NO_POSES: PoseArray = np.empty((0, 5))
 
 
-def never() -> bool:
+def never_interrupted() -> bool:
     """Return False, as the default of `interrupted`: nobody interrupts the run."""
     return False
 
@@ -345,7 +345,7 @@ class Simulation(Closing):
         self._spec = self._spec.model_copy(update={"mission": machine.mission})
         self._state.execute(commands)
 
-    def run(self, interrupted: Callable[[], bool] = never) -> RunRecord:
+    def run(self, interrupted: Callable[[], bool] = never_interrupted) -> RunRecord:
         """Continue to the end of the run and return its record.
 
         A robot that stands still and waits for an event that is not scheduled ends the run as well,
@@ -354,7 +354,7 @@ class Simulation(Closing):
         """
         if not self.ended:
             self._require_usable()
-        step_by_step = interrupted is not never or any(
+        step_by_step = interrupted is not never_interrupted or any(
             overrides(observer, "on_step") for observer in self._observers
         )
         advance = self.step if step_by_step else self.fast_forward
@@ -541,7 +541,7 @@ class Simulation(Closing):
         with self._lock_out_commands():
             for observer in self._observers:
                 observer.on_entry(entry)
-            self._vehicle.clear_reported()
+            self._vehicle.clear_mishaps_and_contacts()
             self._state.apply(entry)
             for observer in self._observers:
                 observer.on_change(entry, self.machine)

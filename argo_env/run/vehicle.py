@@ -226,7 +226,7 @@ class Vehicle:
         found = self._perception.update(step, now, self.setup.drive.pose)
         return Sensed(found=found) if found else _NOTHING_SENSED
 
-    def entry_fields(self) -> dict[str, Any]:
+    def state_for_entry(self) -> dict[str, Any]:
         """Return the robot's state, as fields of an entry of the log.
 
         These are pose, distance, climb, charge and open contacts, and the mishaps and ended
@@ -243,8 +243,8 @@ class Vehicle:
             "touching": odometry.touching,
         }
 
-    def clear_reported(self) -> None:
-        """Clear the mishaps and ended contacts that `entry_fields` has already reported."""
+    def clear_mishaps_and_contacts(self) -> None:
+        """Clear the mishaps and ended contacts that `state_for_entry` has already reported."""
         self.odometry.ended_contacts.clear()
         self.odometry.mishaps.clear()
 

@@ -8,7 +8,7 @@ from argo_compiler.hfsm.conditions import wait_text
 from argo_compiler.hfsm.progress import GroupProgress
 from argo_compiler.il import Action, EventKind, Mission, Task
 from argo_env.run.machine import Machine
-from argo_env.run.record import Interruption, RoundRun, WaitRun, WindowOutcome, WindowRun
+from argo_env.run.record import Interruption, RoundRun, WaitRun, WindowOutcome, WindowVisit
 
 VISIT_ENDS = frozenset(
     {
@@ -97,9 +97,9 @@ def wait_runs(mission: Mission, visits: Sequence[VisitRun], now: float) -> tuple
     )
 
 
-def window_runs(
+def visits_with_windows(
     mission: Mission, visits: Sequence[VisitRun], earlier: Collection[str] = ()
-) -> tuple[WindowRun, ...]:
+) -> tuple[WindowVisit, ...]:
     """Return the visits of tasks with time windows, then those of these tasks without a visit.
 
     Tasks in `earlier` were visited before this run, and are left out if they have no visit in it.
@@ -135,7 +135,7 @@ def _end_reason(visit: VisitRun) -> str | None:
     return visit.failure or visit.end_entry.detail or visit.end_entry.why
 
 
-def _window_run(task: Task, visit: VisitRun | None) -> WindowRun:
+def _window_run(task: Task, visit: VisitRun | None) -> WindowVisit:
     window = task.window
     assert window is not None
     end = None if visit is None else visit.end
@@ -150,7 +150,7 @@ def _window_run(task: Task, visit: VisitRun | None) -> WindowRun:
         outcome = WindowOutcome.LATE if is_late else WindowOutcome.KEPT
     elif end is not None:
         outcome = WindowOutcome.LEFT
-    return WindowRun(
+    return WindowVisit(
         task=task.name,
         earliest=window.earliest,
         latest=window.latest,

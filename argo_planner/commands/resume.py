@@ -12,7 +12,7 @@ from rich.markup import escape
 from argo_compiler.base.errors import Invalid
 from argo_env.files.folders import make_folder
 from argo_env.planning.opening import open_site
-from argo_env.recording.files import check_recording
+from argo_env.recording.files import check_recording_path
 from argo_env.run.journal import open_journal
 from argo_env.run.session import continue_run
 from argo_env.run.spec import logged_events
@@ -66,7 +66,7 @@ def resume_command(
         raise Invalid(f"{journal} is a folder; name the journal in it: {journal / JOURNAL}")
     check_outputs([journal], [recording, render], (), force)
     if recording:
-        check_recording(recording)
+        check_recording_path(recording)
     if render:
         from argo_env.pictures import check_film
 

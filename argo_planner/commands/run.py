@@ -92,9 +92,9 @@ class _Outputs:
 
             check_film(self.render)
         if self.recording:
-            from argo_env.recording.files import check_recording
+            from argo_env.recording.files import check_recording_path
 
-            check_recording(self.recording)
+            check_recording_path(self.recording)
         if self.journal_path and os.path.exists(self.journal_path):
             require_free(self.journal_path, self.force)
 

@@ -15,7 +15,7 @@ from argo_env.evaluation.comparison import PlanComparison
 from argo_env.evaluation.control_variates import ControlledMean
 from argo_env.evaluation.estimates.pairs import Difference
 from argo_env.evaluation.rates import Decision, IntervalMethod
-from argo_env.evaluation.report.texts import in_percent, why_sequence
+from argo_env.evaluation.report.texts import explain_sequence, in_percent
 from argo_env.evaluation.results import EvaluationResults, GroupRate
 from argo_env.evaluation.row import RunOutcome
 from argo_env.evaluation.score import ScoringRules, mean_score
@@ -139,7 +139,7 @@ def _plans(results: EvaluationResults) -> Table:
     notes = []
     several = len(results.plan.cases) > len(results.plan.plans) and not results.plan.strata
     if IntervalMethod.SEQUENCE in methods:
-        notes += ["* " + " ".join(why_sequence(results, several))]
+        notes += ["* " + " ".join(explain_sequence(results, several))]
     elif IntervalMethod.STRATA in methods:
         notes.append("* weighted by the probabilities of the faults")
     if results.lost:
@@ -216,7 +216,7 @@ def show_comparison(compared: PlanComparison, console: Console) -> None:
                     soft_wrap=True,
                 )
     console.print(f"[bold]{escape(compared.conclusion)}[/]", soft_wrap=True)
-    if compared.has_one_pair_per_world and not compared.any_time:
+    if compared.has_independent_pairs and not compared.any_time:
         console.print(
             f"With this number of pairs, a difference of 5 % is detected with a probability of "
             f"{100 * compared.power(0.05):.0f} %, one of 2 % with "

@@ -19,7 +19,7 @@ from argo_env.run.record import (
     RunRecord,
     TaskRun,
     WindowOutcome,
-    WindowRun,
+    WindowVisit,
 )
 from argo_planner.terminal.record_tables import show_record
 from tests.yard import record_of
@@ -188,7 +188,7 @@ def test_waits_at_the_end_are_shown(record: RunRecord) -> None:
 
 def test_visits_in_which_nothing_ran_as_the_window_was_over_are_counted(record: RunRecord) -> None:
     windows = tuple(
-        WindowRun(
+        WindowVisit(
             task=task, earliest=0.0, latest=90.0, hard=True, visited=visited, ended=ended, kept=kept
         )
         for task, visited, ended, kept in (

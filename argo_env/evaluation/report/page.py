@@ -26,18 +26,18 @@ from argo_env.evaluation.plots import (
 )
 from argo_env.evaluation.report.picture import render_plot
 from argo_env.evaluation.report.sections import (
+    describe_evaluation,
     failing_runs,
+    failure_reasons,
     floors_with_failures,
-    how_it_was_made,
     other_rates,
     plan_sections,
-    reasons,
 )
 from argo_env.evaluation.report.texts import (
-    chance,
-    counted,
     evaluation_headline,
+    format_p_value,
     in_percent,
+    number_with_noun,
     share_interval,
     time_or,
 )
@@ -81,7 +81,7 @@ def evaluation_page(results: EvaluationResults, folder: Path) -> str:
     names = {plan: section.name for plan, section in zip(plans, sections, strict=True)}
     rates = "; ".join(f"{s.name} {in_percent(s.rate.value) or 'no run'}" for s in sections)
     delays = results.delays
-    all_reasons = reasons(results)
+    all_reasons = failure_reasons(results)
     blocks = [(names[plan], results.by_seeds(plan)) for plan in plans]
     return _template("evaluation.html.j2").render(
         name=results.plan.name,
@@ -107,7 +107,7 @@ def evaluation_page(results: EvaluationResults, folder: Path) -> str:
         else None,
         curves=[(names[plan], duration_curve(results, plan)) for plan in plans],
         delays=render_plot(
-            f"Delays until {counted(len(delays), 'kind')} of faults were found",
+            f"Delays until {number_with_noun(len(delays), 'kind')} of faults were found",
             lambda: detection_delays(results),
         )
         if delays
@@ -124,7 +124,7 @@ def evaluation_page(results: EvaluationResults, folder: Path) -> str:
         added=results.plan.added,
         blocks=[(name, groups) for name, groups in blocks if len(groups) > 1],
         one_run_per_world=all(group.one_run_per_world for _, groups in blocks for group in groups),
-        made=how_it_was_made(results),
+        made=describe_evaluation(results),
         variation=_in_yaml(results.plan.variation),
     )
 
@@ -209,8 +209,8 @@ def _template(name: str) -> Template:
         finalize=lambda value: clean(value) if type(value) is str else value,
     )
     filters: dict[str, Callable[..., Any]] = {
-        "clock": clock, "percent": in_percent, "chance": chance, "counted": counted,
-        "time": time_or,
+        "clock": clock, "percent": in_percent, "chance": format_p_value,
+        "counted": number_with_noun, "time": time_or,
     }  # fmt: skip
     environment.filters.update(filters)
     style = (here / "style.css").read_text(encoding="utf-8")

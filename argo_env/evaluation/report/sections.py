@@ -19,7 +19,7 @@ from argo_env.evaluation.plots import failure_places
 from argo_env.evaluation.quantities import QUANTITIES
 from argo_env.evaluation.rates import PlanRate, success, world_shares
 from argo_env.evaluation.report.picture import render_plot
-from argo_env.evaluation.report.texts import counted, meaning, number_ranges
+from argo_env.evaluation.report.texts import explain_rate, number_ranges, number_with_noun
 from argo_env.evaluation.results import (
     EvaluationResults,
     FailureCluster,
@@ -54,7 +54,7 @@ def plan_sections(results: EvaluationResults) -> list[PlanSection]:
             plan.label(plans),
             results.rate(plan),
             _count_worlds(results, plan),
-            meaning(results, plan),
+            explain_rate(results, plan),
             results.by_faults(plan),
             Counter(row.outcome for row in results.rows_for(plan)),
         )
@@ -138,7 +138,7 @@ def failing_runs(results: EvaluationResults, folder: Path) -> list[tuple[RunRow,
     ]
 
 
-def reasons(results: EvaluationResults) -> list[tuple[tuple[str, str], int, list[str]]]:
+def failure_reasons(results: EvaluationResults) -> list[tuple[tuple[str, str], int, list[str]]]:
     """Return the reasons of unsuccessful runs, each with its plan, number of runs and faults.
 
     An item is ((name of the plan, reason), number of runs, names of their faults). The most
@@ -207,11 +207,11 @@ def _draw_floor(results: EvaluationResults, site: Site, floor: int) -> Markup | 
     if floor not in {level.number for level in site.spec.floors}:
         return None
     failed = sum(row.floor == floor for row in results.rows)
-    alt = f"Drawing of floor {floor} of {site.name}: {counted(failed, 'run')} failed there"
+    alt = f"Drawing of floor {floor} of {site.name}: {number_with_noun(failed, 'run')} failed there"
     return render_plot(alt, lambda: failure_places(results, site, floor))
 
 
-def how_it_was_made(results: EvaluationResults) -> list[tuple[str, list[str]]]:
+def describe_evaluation(results: EvaluationResults) -> list[tuple[str, list[str]]]:
     """Return what was run, as names with values: missions, sites, faults, seeds and so on."""
     plan = results.plan
     cases = plan.cases
@@ -238,7 +238,7 @@ def how_it_was_made(results: EvaluationResults) -> list[tuple[str, list[str]]]:
     if plan.stopping.width is not None:
         stopping.append(f"when all intervals are no wider than {100 * plan.stopping.width:g} %")
     if stopping:
-        interval = f"checked after every {counted(plan.stopping.every, 'seed')}"
+        interval = f"checked after every {number_with_noun(plan.stopping.every, 'seed')}"
         made.append(("Stops", [*stopping, interval]))
     made.append(("Argo", [__version__]))
     return made

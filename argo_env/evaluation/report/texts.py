@@ -19,7 +19,7 @@ def share_interval(low: float, high: float) -> str:
     return f"{100 * low:.1f} to {100 * high:.1f} %"
 
 
-def chance(p_value: float) -> str:
+def format_p_value(p_value: float) -> str:
     """Return a p-value as text with three decimals; empty for NaN: no valid p-value."""
     if math.isnan(p_value):
         return ""
@@ -43,7 +43,7 @@ def time_or(seconds: float | None, otherwise: str) -> str:
     return otherwise if seconds is None else clock(seconds)
 
 
-def counted(number: int, what: str) -> str:
+def number_with_noun(number: int, what: str) -> str:
     """Return a number with its noun, such as `1 run` or `2 runs`; `what` is the singular."""
     return f"{number} {what}{'' if number == 1 else 's'}"
 
@@ -68,7 +68,7 @@ def evaluation_headline(results: EvaluationResults) -> tuple[str, str]:
     return f"{len(results.failing)} of {len(results.rows)} runs are no success", "notice"
 
 
-def why_sequence(results: EvaluationResults, several: bool) -> list[str]:
+def explain_sequence(results: EvaluationResults, several: bool) -> list[str]:
     """Return sentences on why the interval of a rate is a confidence sequence.
 
     `several` is True if each world has several runs of the plan.
@@ -89,7 +89,7 @@ def why_sequence(results: EvaluationResults, several: bool) -> list[str]:
     return [*sentences, "The interval is a confidence sequence, which allows for that."]
 
 
-def meaning(results: EvaluationResults, plan: PlanName) -> str:
+def explain_rate(results: EvaluationResults, plan: PlanName) -> str:
     """Return sentences that explain what a plan's success rate and its interval mean."""
     rate = results.rate(plan)
     if not rate.runs:
@@ -99,7 +99,7 @@ def meaning(results: EvaluationResults, plan: PlanName) -> str:
             how = "The interval is exact (Clopper-Pearson)."
         case IntervalMethod.SEQUENCE:
             several = sum(case.plan == plan for case in results.plan.cases) > 1
-            how = " ".join(why_sequence(results, several))
+            how = " ".join(explain_sequence(results, several))
             if rate.lost and several:
                 how += " Worlds in which a run could not be carried out are left out."
         case _:

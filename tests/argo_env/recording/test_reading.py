@@ -11,7 +11,7 @@ from mcap.writer import Writer
 
 from argo_compiler.base.errors import ArgoError
 from argo_env.recording import files
-from argo_env.recording.files import check_recording, recording_to
+from argo_env.recording.files import check_recording_path, recording_to
 from argo_env.recording.reader import read_recording
 from argo_env.report import write_report
 from argo_env.run.journal import open_journal
@@ -217,11 +217,11 @@ def test_a_file_that_can_not_be_written_is_an_error(tmp_path: Path, monkeypatch)
         ("no/run.mcap", "folder .* does not exist"),
     ):  # fmt: skip
         with pytest.raises(ArgoError, match=message):
-            check_recording(tmp_path / name)
+            check_recording_path(tmp_path / name)
     assert sorted(p.name for p in tmp_path.iterdir()) == ["folder.mcap"], "nothing is made yet"
     monkeypatch.setattr(files, "find_spec", lambda name: None if name == "mcap" else object())
     with pytest.raises(ArgoError, match=r"need mcap: pip install .*\[recording\]"):
-        check_recording(tmp_path / "run.mcap")
+        check_recording_path(tmp_path / "run.mcap")
 
 
 def test_the_recording_of_a_failed_run_can_be_read(yard, tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from argo_compiler.base.model import Pose
 from argo_compiler.il import EventKind, Mission
 from argo_env.faults.plant import GasLeakFault, PlatformAlarm
 from argo_env.report.html import page
-from argo_env.report.timeline import charge_curve
+from argo_env.report.timeline import draw_charge_curve
 from argo_env.report.track import shift_right
 from argo_env.run.record import Anomaly, Interruption
 from tests.mission_writing import drive
@@ -147,13 +147,13 @@ def test_remarks_about_the_mission_suit_any_source(simple, site):
 
 def test_no_curve_without_a_battery(simple):
     bare = charged(simple, lambda _: None)
-    assert charge_curve(bare) is None
+    assert draw_charge_curve(bare) is None
 
 
 @pytest.mark.parametrize("charges", [lambda s: 1 - s, lambda s: s, lambda _: 0.5])
 def test_the_curve_stays_in_its_frame_and_states_both_ends(simple, site, charges):
     record = charged(simple, charges)
-    curve = charge_curve(record)
+    curve = draw_charge_curve(record)
     first, last = 100 * charges(0.0), 100 * charges(1.0)
     assert f"{first:.1f} % at the start, {last:.1f} % at the end" in curve.get("aria-label")
     line = next(e for e in curve.iter() if e.get("class") == "charge").get("d")

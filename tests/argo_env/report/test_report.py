@@ -10,8 +10,8 @@ from argo_compiler.base.errors import ArgoError
 from argo_compiler.il import Group, Mission
 from argo_env.report import write_report
 from argo_env.report.html import page
-from argo_env.report.machine import MAX_STATES, machine
-from argo_env.report.rounds import blocks
+from argo_env.report.machine import MAX_STATES, draw_machine
+from argo_env.report.rounds import blocks_by_group
 from argo_env.run.record import RoundRun, RunRecord
 from tests.mission_writing import measure
 from tests.yard import in_order
@@ -172,7 +172,7 @@ def test_scripts_can_not_put_markup_into_the_page(site, make):
 
 
 def test_machine_shows_every_state_and_transition(record):
-    drawing = machine(record.hfsm)
+    drawing = draw_machine(record.hfsm)
     assert len(classes(drawing, "leaf")) == len(record.hfsm.leaves)
     assert len(classes(drawing, "composite")) == len(record.hfsm.composites)
     # One more, for the start of the mission.
@@ -182,7 +182,7 @@ def test_machine_shows_every_state_and_transition(record):
 
 
 def test_labels_of_transitions_are_apart(record):
-    labels = [w.find("text") for w in classes(machine(record.hfsm), "way")]
+    labels = [w.find("text") for w in classes(draw_machine(record.hfsm), "way")]
     heights = sorted(float(t.get("y")) for t in labels if t is not None)
     assert heights
     assert all(b - a >= 14 for a, b in pairwise(heights))
@@ -226,5 +226,5 @@ def test_jumps_and_inner_rounds_begin_no_round(make):
         RoundRun(group=g, number=n, since=record.tasks[k].start, began=record.tasks[k].start)
         for g, n, k in began
     )
-    (block,) = blocks(record.model_copy(update={"rounds": rounds}))
+    (block,) = blocks_by_group(record.model_copy(update={"rounds": rounds}))
     assert [len(runs) for runs in block.rounds] == [5, 3]

@@ -23,7 +23,7 @@ class NonCopyable:
 
 
 class Closing(NonCopyable, ABC):
-    """Context that closes itself at its end."""
+    """Base of objects with a `close`, which also the end of a `with` block calls."""
 
     @abstractmethod
     def close(self) -> None:

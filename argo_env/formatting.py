@@ -4,7 +4,7 @@ from argo_env.site.shapes import Vector
 
 
 def clock(seconds: float) -> str:
-    """Return a time in s as minutes and seconds, such as 04:59."""
+    """Return a time in s as text in minutes and seconds, such as `04:59`."""
     whole = round(seconds)
     return f"{whole // 60:02d}:{whole % 60:02d}"
 
@@ -16,7 +16,10 @@ def where(floor: int | None, place: Vector) -> str:
 
 
 def distinct_texts(first: float, second: float) -> tuple[str, str]:
-    """Return two numbers as texts, with the fewest decimals (up to 5) that show a difference."""
+    """Return two numbers as texts, both with the fewest decimals (0 to 5) that make them differ.
+
+    Equal numbers get no decimals.
+    """
     for digits in range(6):
         texts = f"{first:.{digits}f}", f"{second:.{digits}f}"
         if texts[0] != texts[1] or first == second:

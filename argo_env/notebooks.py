@@ -17,7 +17,11 @@ _HEIGHT = 640  # px of a report
 
 
 def mission_html(mission: "Mission") -> str:
-    """Return a table of a mission's tasks, with the name and the limits of the mission above it."""
+    """Return an HTML table of a mission's tasks.
+
+    Above it are the mission's designation, its number of tasks and, if it has one, its maximum
+    duration.
+    """
     title, limits = mission.designation or "Mission", [f"{len(mission.tasks)} tasks"]
     if mission.max_duration is not None:
         limits.append(f"at most {mission.max_duration:g} s")
@@ -39,7 +43,7 @@ def _cells(task: "Task") -> str:
 
 
 def machine_html(machine: "Hfsm") -> str:
-    """Return the diagram of a machine, or its Mermaid text if it is too large to be drawn."""
+    """Return HTML that shows a state machine's diagram, or its Mermaid text if it is too large."""
     from argo_compiler.export import to_mermaid
     from argo_env.report.html import machine_page
     from argo_env.report.machine import is_drawable
@@ -50,7 +54,7 @@ def machine_html(machine: "Hfsm") -> str:
 
 
 def record_html(record: "RunRecord") -> str:
-    """Return the report of a run, or only its headline if its site can't be opened by name."""
+    """Return HTML with the report of a run, or only its headline if its site can't be opened."""
     from argo_compiler.base.errors import ArgoError
     from argo_env.planning.opening import open_site
     from argo_env.report.html import page
@@ -79,7 +83,10 @@ _HTML_FUNCTIONS: dict[tuple[str, str], Callable[[Any], str]] = {
 
 
 def register_with_ipython() -> None:
-    """Register the functions with IPython, if this process runs it."""
+    """Make IPython show missions, state machines and records as HTML.
+
+    Outside of IPython this does nothing.
+    """
     ipython = sys.modules.get("IPython")
     shell = ipython.get_ipython() if ipython is not None else None
     if shell is not None:

@@ -16,9 +16,9 @@ def generator(seed: int, *purpose: str | int) -> np.random.Generator:
 
 
 def draw(rng: np.random.Generator, low: float, high: float, decimals: int) -> float:
-    """Draw a number from `low` to `high`, rounded to `decimals` places.
+    """Draw a number uniformly from `low` to `high`, and round it to `decimals` places.
 
-    It has more decimals if no number with so few lies in the range.
+    If that leads out of the range, it is rounded to the fewest places that do not.
     """
     drawn = float(rng.uniform(low, high))
     rounded = (round(drawn, digits) for digits in range(decimals, 17))

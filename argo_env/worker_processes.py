@@ -58,11 +58,11 @@ class _Context(ForkServerContext):
 
 
 def context_with(*modules: str) -> ForkServerContext:
-    """Return a context whose processes start at once, because their modules are loaded already.
+    """Return a `multiprocessing` context whose processes have loaded `modules` when they start.
 
-    Each process is forked from a fork server that has loaded `modules` and what driving needs. The
-    fork server starts with the first process, does nothing else, and ends with this process, which
-    has only one of this kind.
+    Each process is forked from a fork server that has loaded `modules` and those that driving
+    needs. The fork server starts with the first process, does nothing else, and ends with this
+    process. There is only one: after it has started, it does not load the modules of other calls.
     """
     context = _Context()
     context.set_forkserver_preload([*modules, *NEEDED_TO_DRIVE])
@@ -73,7 +73,8 @@ def end_with_parent(parent: int | None = None) -> None:
     """Ignore SIGINT, and end this process when its parent ends, even if the parent is killed.
 
     Args:
-        parent: process id of the parent, if `multiprocessing` did not start this process.
+        parent: process id of the parent, for a process that `multiprocessing` did not start. If it
+            is None for such a process, SIGINT is ignored and nothing else happens.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     known_parent = multiprocessing.parent_process()

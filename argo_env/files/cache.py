@@ -31,6 +31,7 @@ class Contents:
     """Number and size of the entries in the cache."""
 
     sites: int
+    """entries of sites; those of robots only count in `files` and `size`"""
     files: int
     size: int
     """bytes"""
@@ -48,9 +49,10 @@ def cache_folder() -> Path:
 
 
 def entry_for(content: Iterable[str], kind: str = SITES) -> Parts:
-    """Return the entry whose key is a hash of `content`: all texts that its parts depend on.
+    """Return the cache's entry for these texts, which may still be empty.
 
-    The entry is marked as used now. If there is no usable cache folder, the entry stores nothing.
+    Its key is a hash of `content`, which are all texts that its parts depend on. The entry is
+    marked as used now. If there is no usable cache folder, the entry stores nothing.
     """
     sink = hashlib.blake2b(digest_size=16)
     for piece in content:
@@ -92,7 +94,10 @@ def contents() -> Contents:
 
 
 def unwritable_reason() -> str | None:
-    """Return the reason why the cache's folder can't be written to, or None if it can."""
+    """Return the reason why the cache's folder can't be written to, or None if it can.
+
+    To find out, it makes the folder if there is none, and writes a temporary file.
+    """
     from tempfile import TemporaryFile
 
     try:

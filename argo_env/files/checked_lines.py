@@ -13,13 +13,13 @@ from typing import Any
 
 
 def checked_line(data: Mapping[str, Any]) -> bytes:
-    """Return the object as a line with its checksum and line end."""
+    """Return the line that stores an object: a checksum, the object as JSON, and a line end."""
     payload = json.dumps(data, ensure_ascii=False, separators=(",", ":")).encode()
     return b"%08x %s\n" % (zlib.crc32(payload), payload)
 
 
 def checked_object(line: bytes) -> dict[str, Any] | None:
-    """Return the object in a line, which is given without its line end.
+    """Return the object that `checked_line` stored in a line, given without its line end.
 
     Returns None if the checksum does not match or the line holds no JSON object.
     """
@@ -40,9 +40,9 @@ def write_all(file: int, data: bytes) -> None:
 
 
 def truncate_if_possible(file: int, size: int) -> None:
-    """Truncate the file to the size (bytes), to remove a line that was written in part.
+    """Truncate an open file to `size` bytes, to remove a line that was written in part.
 
-    If the disk refuses, the damaged line stays, and its checksum does not match.
+    If that fails, no error is raised: the damaged line stays, and its checksum does not match.
     """
     try:
         os.ftruncate(file, size)
@@ -51,7 +51,10 @@ def truncate_if_possible(file: int, size: int) -> None:
 
 
 def sync_folder(folder: Path) -> None:
-    """Sync the folder, so that the names of its files are on disk as well. Raises OSError."""
+    """Sync the folder, so that the names of its files are on disk as well.
+
+    Raises OSError if that fails.
+    """
     file = os.open(folder, os.O_RDONLY)
     try:
         os.fsync(file)

@@ -42,7 +42,8 @@ def make_folder(path: Path) -> None:
 def reporting_write_errors(path: Path, content: str = "", remedy: str = "") -> Iterator[None]:
     """Raise Unavailable for an OSError in the body, which writes to `path`.
 
-    The message names `content`, such as `the film`, and ends with the `remedy`.
+    The message names `content`, such as `the film`, and ends with the `remedy`, which begins with
+    its punctuation, as in `; choose another place`.
     """
     try:
         yield

@@ -29,9 +29,9 @@ _log = logging.getLogger(__name__)
 class Parts:
     """Named arrays and texts in a folder on disk.
 
-    A part that can't be read counts as missing, and a part that can't be written is not stored: a
-    cache is never the reason why something fails. Any number of processes may read and write at the
-    same time.
+    A part that is damaged or can't be read counts as missing, and a part that can't be written is
+    not stored: a cache is never the reason why something fails. Any number of processes may read
+    and write at the same time.
     """
 
     def __init__(self, folder: Path | None, key: str) -> None:
@@ -43,7 +43,7 @@ class Parts:
         self._key = key
 
     def load_or_make(self, name: str, make: "Callable[[], Mapping[str, NDArray[Any]]]") -> Arrays:
-        """Return the arrays of a part; if it is missing, `make` makes it, and it is stored."""
+        """Return the arrays of a part; if it can't be read, make and store them."""
         arrays = self.load_arrays(name)
         if arrays is None:
             arrays = dict(make())
@@ -51,20 +51,20 @@ class Parts:
         return arrays
 
     def load_arrays(self, name: str) -> "Arrays | None":
-        """Return the arrays of a part, which are read-only; None if it is missing or damaged."""
+        """Return the arrays of a part by their names, read-only; None if it can't be read."""
         return self._load(f"{name}.npz", _read_arrays)
 
     def store_arrays(self, name: str, arrays: "Mapping[str, NDArray[Any]]") -> None:
-        """Write arrays as a part."""
+        """Store arrays as a part, in place of one of the same name."""
         if self._folder is not None:
             self._store(self._folder, f"{name}.npz", _npz(arrays))
 
     def load_text(self, name: str) -> str | None:
-        """Return the text of a part, or None if it is missing or damaged."""
+        """Return the text of a part, or None if it can't be read."""
         return self._load(f"{name}.txt", _read_text)
 
     def store_text(self, name: str, text: str) -> None:
-        """Write a text as a part."""
+        """Store a text as a part, in place of one of the same name."""
         if self._folder is not None:
             self._store(self._folder, f"{name}.txt", text.encode())
 
@@ -124,7 +124,7 @@ def _npz(arrays: "Mapping[str, NDArray[Any]]") -> memoryview:
 
 
 def _is_intact(file: BinaryIO, identity: bytes) -> bool:
-    """Return whether the file's checksum fits its content and the identity of the part."""
+    """Return True if the file's checksum fits its content and the identity of the part."""
     check, remaining = zlib.crc32(identity), os.fstat(file.fileno()).st_size - _CHECKSUM
     while remaining > 0 and (chunk := file.read(min(remaining, _CHUNK))):
         check, remaining = zlib.crc32(chunk, check), remaining - len(chunk)

@@ -12,7 +12,7 @@ def _root(folder: str) -> Path:
 
 
 def scenarios() -> Path:
-    """Return the folder that has one folder for each site."""
+    """Return the folder of the shipped sites, which has one folder for each site."""
     return _root("scenarios")
 
 

@@ -54,10 +54,12 @@ def parse_yaml(
         not_yaml: code of the diagnostic for a text that is not YAML.
         duplicate_key: code of the diagnostic for a key that occurs twice in one mapping.
         wrong_field: code of the diagnostics for values that the model rejects.
-        no_field: hints for fields that only some kinds have, by the field's name.
+        no_field: hints for fields below the top of the file that only some kinds of items have, by
+            the field's name; such a hint replaces the usual one if the field is unknown there.
 
     Raises:
-        DiagnosticError: the text describes no such model; it holds all errors.
+        DiagnosticError: the text describes no such model; it holds all duplicate keys, and the
+            first 20 wrong fields.
     """
     try:
         tree, repeated, data = _compose(text)
@@ -77,9 +79,15 @@ def parse_yaml(
 def error_at_paths(
     text: str, source_name: str, code: str, messages: Mapping[JsonPath, str]
 ) -> DiagnosticError:
-    """Return the error with these messages, each located at its path in a YAML file's text.
+    """Return an error with these messages, each located at its path in a YAML file's text.
 
     It is for errors that are found after the whole file has been parsed.
+
+    Args:
+        text: content of the file.
+        source_name: name of the file in messages.
+        code: code of all diagnostics.
+        messages: messages by the path of the value that they are about.
     """
     tree, _, _ = _compose(text)
     flaws = [

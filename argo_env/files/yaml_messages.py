@@ -35,7 +35,10 @@ _HAS_TO_BE = {
 
 
 def error_message(error: ErrorDetails, path: JsonPath) -> str:
-    """Return the message for an error in the value at a path of the file."""
+    """Return the message for one of pydantic's errors, about the value at a path of the file.
+
+    Errors of types for which there is no text here keep pydantic's own.
+    """
     name, kind = _name(path), error["type"]
     if kind == "missing":
         return f"{name} is missing"

@@ -15,13 +15,19 @@ if TYPE_CHECKING:
 
 
 def make_catalog(navigator: "Navigator") -> Catalog:
-    """Return the catalogue of the navigator's site; its patrols have poses that can be reached."""
+    """Return the catalogue of the navigator's site, with a patrol for each floor.
+
+    Raises ArgoError if a floor has no patrol.
+    """
     floors = stage_items("looking for patrols of all floors", navigator.site.spec.floors)
     return _catalog(navigator.site, {f.number: patrol(navigator, f.number) for f in floors})
 
 
 def load_catalog(site: Site, parts: Parts) -> Catalog | None:
-    """Return the catalogue of a site with the patrols cached in `parts`; None if one is missing."""
+    """Return the catalogue of a site with patrols from the disk cache; None if one is not there.
+
+    `parts` is the site's entry of the cache.
+    """
     patrols = {}
     for floor in site.spec.floors:
         poses = load_patrol(parts, floor.number)

@@ -7,7 +7,10 @@ from argo_env.planning.patrols import patrol
 
 
 def unpatrolled_floors(navigator: Navigator) -> list[int]:
-    """Return the floors without a patrol that can be reached from the docking stations and back."""
+    """Return the numbers of the floors on which the robot can't reach enough poses for a patrol.
+
+    A pose can be reached if the robot gets there from the docking stations and back.
+    """
     floors = stage_items("looking for patrols of all floors", navigator.site.spec.floors)
     return [f.number for f in floors if not _has_patrol(navigator, f.number)]
 
@@ -21,9 +24,9 @@ def _has_patrol(navigator: Navigator, floor: int) -> bool:
 
 
 def unseen_checkpoints(navigator: Navigator) -> list[int]:
-    """Return the ids of checkpoints without a viewing pose that the docking stations lead to.
+    """Return the ids of the checkpoints that can't be read from any pose that can be reached.
 
-    A pose counts only if the robot can also return from it.
+    A pose can be reached if the robot gets there from the docking stations and back.
     """
     checkpoints = stage_items("looking for views of all checkpoints", navigator.site.checkpoints)
     return [c.id for c in checkpoints if not navigator.can_view(c.id)]

@@ -13,12 +13,12 @@ _ROUNDS = 8  # maximum number of times that unreadable checkpoints are moved, fo
 
 
 def generate(family: Family, robot: RobotSpec | None = None) -> Navigator:
-    """Return the navigator of the site that a family's parameters define.
+    """Generate the site that a family's parameters define, and return its navigator.
 
     The robot can get from every docking station to every floor and to a viewing pose of every
-    checkpoint, and back. If a draw is not like that, its checkpoints are moved; if that does not
-    help, the next draw is taken. The parameters alone determine the result. It is not cached:
-    `open_site` caches it.
+    checkpoint, and back. Checkpoints that it can't read are moved; if that does not help, or if it
+    can't reach a floor, another layout is drawn. Equal arguments give the same site. It is not
+    cached: `open_site` caches it.
 
     Args:
         family: Parameters of the site.

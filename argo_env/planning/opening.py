@@ -60,7 +60,10 @@ class OpenedSite:
 
     @staticmethod
     def from_site(site: Site, robot: RobotSpec | None = None) -> "OpenedSite":
-        """Open a site that was made in memory, for a robot (None: the tracker)."""
+        """Return an opened site for a site that was made in memory.
+
+        Equal sites that nothing has altered share one object. `robot` None: the tracker.
+        """
         robot = robot or load_robot()
         if site.altered is None:
             return _open_spec(site.spec, robot)
@@ -68,7 +71,7 @@ class OpenedSite:
 
     @staticmethod
     def from_navigator(navigator: "Navigator") -> "OpenedSite":
-        """Open the site of a navigator that was made in memory, with that navigator."""
+        """Return an opened site for the site of this navigator, which it uses."""
         opened = OpenedSite(None, navigator.site, navigator.robot, navigator.parts)
         opened.navigator = navigator
         return opened
@@ -113,9 +116,9 @@ class OpenedSite:
         return hashlib.blake2b(text.encode(), digest_size=16).hexdigest()
 
     def prepare(self) -> "OpenedSite":
-        """Compute what all paths share, so that no later call takes the time for it.
+        """Compute now what all paths share, so that no later call takes the time for it.
 
-        Returns the site itself. Raises ArgoError if the robot can't drive on it.
+        Returns this object. Raises ArgoError if the robot can't drive on the site.
         """
         self.navigator.prepare()
         return self
@@ -178,7 +181,10 @@ def open_site(reference: str = "umad", robot: RobotSpec | None = None) -> Opened
 
 
 def forget_sites() -> None:
-    """Remove all sites from memory, except where they are still in use."""
+    """Empty the cache of opened sites in memory; those that are in use remain usable.
+
+    The next `open_site` makes a new object. The cache on disk stays.
+    """
     with _lock:
         _slots.clear()
 

@@ -1,4 +1,4 @@
-"""Patrols: a round on each floor that the robot can drive."""
+"""Patrols: poses on a floor, one near each corner, between which the robot can drive a round."""
 
 import json
 import math
@@ -13,15 +13,14 @@ if TYPE_CHECKING:
     from argo_env.navigation import Navigator
     from argo_env.site import Site
 
-MIN_SPACING = 2.0  # m, least distance between two poses of a patrol
+MIN_SPACING = 2.0  # m, minimum distance between two poses of a patrol
 
 
 def patrol(navigator: "Navigator", floor: int) -> tuple[Pose, ...]:
-    """Return the patrol of a floor, from the cache or computed.
+    """Return the poses of a floor's patrol, from the disk cache or computed and stored there.
 
-    It has the reachable position nearest to each corner, counter-clockwise from the south-west.
-    Each pose is turned towards the next one. Raises ArgoError if fewer than three positions are
-    MIN_SPACING apart from each other.
+    They are at the positions of `patrol_corners`, counter-clockwise from the south-west, and each
+    is turned towards the next one. Raises ArgoError if there are fewer than three positions.
     """
     poses = load_patrol(navigator.parts, floor)
     if poses is None:
@@ -32,7 +31,10 @@ def patrol(navigator: "Navigator", floor: int) -> tuple[Pose, ...]:
 
 
 def load_patrol(parts: Parts, floor: int) -> tuple[Pose, ...] | None:
-    """Return the patrol of a floor that is cached in `parts`; None if there is none."""
+    """Return the poses of a floor's patrol from the disk cache; None if it is not there.
+
+    `parts` is the site's entry of the cache.
+    """
     corners = parts.load_text(_part_name(floor))
     return None if corners is None else _patrol_poses(json.loads(corners))
 
@@ -64,10 +66,12 @@ def _corners(navigator: "Navigator", floor: int) -> list[tuple[float, float, flo
 
 
 def patrol_corners(navigator: "Navigator", floor: int) -> list[tuple[float, float, float]]:
-    """Return the reachable positions (m) nearest to the corners of a floor.
+    """Return the positions (x, y, z in m) for a patrol that are nearest to a floor's corners.
 
-    A position that is closer than MIN_SPACING to an earlier one is left out. Fewer than three make
-    no patrol.
+    The corners are those of the rectangle around its walkways. At each position the robot can turn
+    all round inside this rectangle, and it can get there from the docking stations and back. There
+    are at most four, counter-clockwise from the south-west: a position that is closer than
+    MIN_SPACING to an earlier one is left out.
     """
     import numpy as np  # not needed for patrols from the cache
 

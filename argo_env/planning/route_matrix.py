@@ -35,12 +35,18 @@ def make_mission_problem(
     requirements: Requirements,
     travel: SiteTravel | None = None,
 ) -> MissionProblem:
-    """Return the route problem of a mission on a site.
+    """Return the route problem of a mission, whose travel times are those on the navigator's site.
+
+    Args:
+        mission: Mission whose tasks may change places.
+        navigator: Navigator of the site.
+        requirements: Requirements on the new order of tasks.
+        travel: Travel times on the site; None: they are computed.
 
     Raises:
         DiagnosticError: `check` finds errors in the mission.
-        ArgoError: Its order can't be changed, the robot can't carry out a task, or a requirement
-            names something that the mission does not have.
+        ArgoError: The order of the tasks can't be changed, the robot can't execute a task, or a
+            requirement names something that the mission does not have.
     """
     travel = travel or SiteTravel(navigator)
     planned = route_problem(mission, mission_travel(mission, navigator, travel), requirements)
@@ -52,16 +58,17 @@ def make_mission_problem(
 def mission_travel(
     mission: Mission, navigator: Navigator, travel: SiteTravel, chargers: bool = False
 ) -> TravelMatrix:
-    """Return times and energies between the tasks of a mission, in time steps of the drive.
+    """Return the travel times and energies between the tasks of a mission.
 
-    The pose from which the robot reads a checkpoint depends on where it comes from; the matrix uses
-    the most frequent one. Raises ArgoError if the robot can't carry out a task.
+    The matrix's unit of time is a time step of the drive. The pose from which the robot reads a
+    checkpoint depends on where it comes from; the matrix uses the most frequent one. Raises
+    ArgoError if the robot can't execute a task.
 
     Args:
         mission: Mission whose tasks are the rows and columns, apart from START.
         navigator: Navigator of the site.
         travel: Travel times on the site.
-        chargers: Whether the docking stations are rows and columns as well.
+        chargers: True if the docking stations are rows and columns as well.
     """
     tasks = [task for task in mission.tasks if task.action is not Action.START]
     docks = sorted(navigator.site.docks.items()) if chargers else []

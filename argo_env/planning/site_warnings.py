@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 
 
 def view_warnings(mission: Mission, site: "OpenedSite") -> Iterator[Diagnostic]:
-    """Yield a warning for each MEASURE task from whose pose the checkpoint is not visible.
+    """Yield a warning for each MEASURE task with a pose from which its checkpoint can't be read.
 
-    Everything is taken to be where the site's description has it. Poses that can't be reached are
-    left out, as the analysis reports them.
+    Everything is taken to be where the site's description has it. Tasks whose pose can't be reached
+    get no warning, as the analysis reports them; nor do those without a pose.
     """
     known = {str(checkpoint.id) for checkpoint in site.site.checkpoints}
     for task in mission.tasks:
@@ -65,7 +65,8 @@ def _find_obstruction(task: Task, pose: Pose, navigator: "Navigator") -> str | N
 def speed_warnings(mission: Mission, robot: "RobotSpec") -> Iterator[Diagnostic]:
     """Yield a warning for each task whose velocity is above the robot's own speed.
 
-    All other travel times are computed with the robot's own speed.
+    The robot's own speed is the one with which travel times are computed for tasks without a
+    velocity.
     """
     for task in mission.tasks:
         if task.velocity is None or task.velocity <= robot.speed:

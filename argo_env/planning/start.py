@@ -7,10 +7,10 @@ from argo_compiler.il import Action, Mission
 
 
 def start_pose(mission: Mission, docks: Mapping[int, Pose]) -> Pose:
-    """Return the pose of the mission's START task, or the dock of its starting area.
+    """Return the pose of the mission's START task or, without one, the dock of its starting area.
 
-    A mission that names no starting area, or one that the site does not have, starts at the
-    dock of the lowest number.
+    If the mission names no starting area, or one that is not among `docks`, it is the dock with the
+    lowest number. `docks` has the pose of the docked robot by the number of the area.
     """
     for task in mission.tasks:
         if task.action is Action.START and task.pose is not None:

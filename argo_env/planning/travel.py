@@ -29,7 +29,9 @@ PathOrReason = Path | NoPath
 
 
 def cached_path(parts: Parts, query: object, plan: Callable[[], Path]) -> PathOrReason:
-    """Return the path of a query from the cache, or from `plan`.
+    """Return the path of a query from the disk cache, or from `plan`, and then store it.
+
+    If there is no path, the reason is returned, which is stored as well.
 
     Args:
         parts: Cache on disk.
@@ -141,21 +143,30 @@ class SiteTravel:
         return path.start
 
     def action_duration(self, task: Task) -> float:
-        """Return the duration of a task's action without the drive, in s."""
+        """Return the seconds that a task's action takes without the drive; 0 unless it measures."""
         measures = task.action is Action.MEASURE
         return self._round_up(self._robot.sensor.measuring_time) if measures else 0.0
 
     def plan_path(self, origin: Pose, task: Task) -> Path:
-        """Return the path to a task; raises Unreachable if there is none."""
+        """Return the path from `origin` to a task's pose, or to where its checkpoint can be read.
+
+        Raises Unreachable if there is none.
+        """
         path = self._find_path(origin, task.pose or task.object_id)
         if isinstance(path, NoPath):
             raise Unreachable(f"the robot can't carry out task '{task.name}': {path.reason}")
         return path
 
     def leg(self, origin: RobotPose, task: Task, velocity: float | None) -> Leg | NoPath:
-        """Return the cost of the path to a task at `velocity` (m/s), and of its action.
+        """Return the time and energy of the path from `origin` to a task, and of its action there.
 
-        `velocity` is None for the robot's own speed.
+        A WAIT takes no time and leaves the robot where it is. If there is no path, or it takes
+        longer than any mission may, the result is a NoPath with the reason.
+
+        Args:
+            origin: Pose from which the robot starts.
+            task: Task to execute.
+            velocity: Speed in m/s; None: the robot's own speed.
         """
         assert isinstance(origin, Pose)
         if task.action is Action.WAIT:

@@ -22,7 +22,7 @@ class Link(Protocol):
     """
 
     def send(self, message: str) -> None:
-        """Send a text, if there is a connection."""
+        """Send a text; without a connection it is lost."""
 
     def receive(self) -> Sequence[str]:
         """Return the texts that have arrived since the last call."""
@@ -60,13 +60,13 @@ class Channel:
 
     @property
     def pending(self) -> Sequence[dict[str, Any]]:
-        """Bodies of the posted messages that are not acknowledged yet."""
+        """Bodies of the posted messages that the peer has not acknowledged yet, oldest first."""
         return tuple(self._pending)
 
     def post(self, message: BaseModel) -> None:
-        """Send a message repeatedly until it is acknowledged.
+        """Queue a message, which `flush` sends repeatedly until the peer has acknowledged it.
 
-        Raises OverflowError if too many messages wait for their acknowledgement.
+        The next `flush` sends it. Raises OverflowError if too many messages are pending.
         """
         if len(self._pending) >= _MAX_PENDING:
             raise OverflowError(f"{_MAX_PENDING} messages wait for a peer that does not answer")
@@ -74,11 +74,15 @@ class Channel:
         self._next_flush = 0.0
 
     def send_once(self, message: BaseModel) -> None:
-        """Send a message once; it may be lost. Meant for states that newer messages replace."""
+        """Send a message now and only once; it may be lost. It is for states, which age anyway."""
         self._send(None, message.model_dump(mode="json", exclude_none=True))
 
     def flush(self) -> None:
-        """Acknowledge the received messages, and send those that are due."""
+        """Send all pending messages and acknowledge the received ones, if that is due.
+
+        It is due REPEAT s after the last time, or at once after a `post` or a received message.
+        Call it often.
+        """
         now = self._clock()
         if now < self._next_flush:
             return
@@ -90,7 +94,10 @@ class Channel:
             self._send(None, None)
 
     def receive(self) -> list[dict[str, Any]]:
-        """Return the bodies that have arrived since the last call, each once."""
+        """Return the bodies of the messages that have arrived since the last call, each once.
+
+        Invalid messages are left out, as are states that arrive after newer ones.
+        """
         bodies = []
         for text in self._link.receive():
             try:

@@ -20,7 +20,8 @@ class StartOrder(Model):
     """unique id of the action"""
     task: Task
     not_before: float | None = None
-    """s; until then, the robot waits at the pose before it begins"""
+    """time in s before which the robot must not begin the action itself: it drives to where the
+    action takes place and waits there; None: it need not wait"""
 
 
 class CancelOrder(Model):

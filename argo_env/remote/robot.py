@@ -85,7 +85,11 @@ class RemotePower:
 
 
 def make_anomaly(report: FoundReport, site: Site, pose: BodyPose, now: float) -> Anomaly:
-    """Return the anomaly of a report that arrived at time `now` (s), with the robot at `pose`."""
+    """Return what a report says as an anomaly for the run's record.
+
+    The report has arrived at the run's time `now` (s), when the robot was at `pose`. If the report
+    has no position, the anomaly has the robot's as the one from which it was noticed.
+    """
     here = (round(pose.x, DIGITS), round(pose.y, DIGITS), round(pose.z, DIGITS))
     place = report.place
     return Anomaly(
@@ -102,10 +106,17 @@ def make_anomaly(report: FoundReport, site: Site, pose: BodyPose, now: float) ->
 def make_reading(
     task: Task, ended: EndReport, site: Site, pose: BodyPose, now: float
 ) -> Reading | None:
-    """Return the reading of a task that ended at time `now` (s), with the robot at `pose`.
+    """Return the reading that the robot has reported at the end of a task.
 
-    Returns None if nothing was measured. If the robot did not report the distance, the reading has
-    the distance from the robot's origin to the checkpoint.
+    Returns None unless the action is done and has a value. If the robot did not report the
+    distance, the reading has the distance from the robot's origin to the checkpoint.
+
+    Args:
+        task: task that has ended.
+        ended: report of its end.
+        site: site with the checkpoint.
+        pose: pose of the robot at that time.
+        now: time of the run in s.
     """
     if ended.outcome != "done" or ended.value is None or task.object_id is None:
         return None
@@ -164,7 +175,11 @@ class RemoteAction:
         return self._command.task
 
     def cancel(self, reason: str, interrupted: bool) -> None:
-        """Order the robot to stop; the action ends with the robot's report."""
+        """Order the robot to stop the action, which ends only with the robot's report.
+
+        Only the first call has an effect. `reason` is a text for people; `interrupted` is True if
+        the record is to name the action interrupted and not cancelled.
+        """
         if self.cancelled is None:
             self.cancelled, self._interrupted = reason, interrupted
             self._order_to_cancel()
@@ -173,7 +188,10 @@ class RemoteAction:
         """No-op: the robot plans its own paths."""
 
     def to_action_end(self, report: EndReport, abnormal: bool) -> ActionEnd:
-        """Return the event for the state machine of the end that the robot reported."""
+        """Return the reported end of the action as an event for the state machine.
+
+        `abnormal` is True if the value is outside the checkpoint's nominal range.
+        """
         name, id = self.task.name, self._command.id or None
         if report.outcome == "done":
             return ActionSucceeded(name, report.value, abnormal, id)
@@ -183,7 +201,14 @@ class RemoteAction:
         return ActionFailed(name, reason, report.unreadable, id)
 
     def to_task_run(self, end: ActionEnd, now: float, distance: float, climbed: float) -> TaskRun:
-        """Return the entry for the record of the action, which ended at `now` (s)."""
+        """Return the action as the run's record has it.
+
+        Args:
+            end: event with which the action has ended.
+            now: time of the run in s when it ended.
+            distance: distance in m driven from the run's start until then.
+            climbed: height in m climbed from the run's start until then.
+        """
         reason = end.reason if isinstance(end, ActionFailed) else None
         outcome = "done"
         if not isinstance(end, ActionSucceeded):
@@ -250,20 +275,23 @@ class RemoteRobot:
 
     @property
     def silent_since(self) -> float | None:
-        """Time of the run in s since when nothing was received; None if the robot is connected."""
+        """Time of the run in s when the last message came; None if it is at most SILENCE s old."""
         received = self._channel.last_received_at
         assert received is not None
         return received - self._offset if self._clock() - received > SILENCE else None
 
     def begin_at(self, pose: BodyPose, now: float) -> None:  # noqa: ARG002
-        """Begin or continue a run: set its time to `now` (s); the robot does not move."""
+        """Begin or continue a run: set its time to `now` (s).
+
+        The robot does not move to `pose`, which is not used.
+        """
         self._offset = self._clock() - now
 
     def wait_acknowledged(self, limit: float) -> bool:
         """Wait at most `limit` s until the robot has acknowledged all orders.
 
         Returns True if it has. To be called when a run has ended, because the robot may not have
-        received the last orders yet.
+        received the last orders yet. Reports that arrive meanwhile are dropped.
         """
         until = self._clock() + limit
         while self._channel.pending and self._clock() < until:
@@ -273,6 +301,7 @@ class RemoteRobot:
         return not self._channel.pending
 
     def apply_initial_state(self, initial: InitialState) -> None:
+        """Set the driven distance and the climbed height; all else is the robot's own state."""
         self.odometry.distance, self.odometry.climbed = initial.distance, initial.climbed
 
     def restore(self, last: Entry) -> None:
@@ -302,7 +331,14 @@ class RemoteRobot:
         return self._action
 
     def advance(self, step: int, now: float, action: RobotAction | None) -> Sensed:  # noqa: ARG002
-        """Wait until the clock reaches the run's time `now`, and process the robot's reports."""
+        """Wait until the clock reaches the run's time `now` (s), and process the robot's reports.
+
+        Before that, it sends the order that `start` has prepared.
+
+        Returns:
+            What the robot has reported: what it found, and if `action` has ended, its end and its
+            reading.
+        """
         own = self._action if action else None
         if own and self._order:
             # Not sent in `start`: actions that are replayed from a journal are not ordered again.

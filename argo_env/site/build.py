@@ -29,7 +29,7 @@ MOUNT_LENGTH = 0.2  # m from the face of a checkpoint back to what carries it
 
 
 def build_vessel(vessel: VesselSpec, z: float) -> Element:
-    """Build a vessel above the height `z` (m); a lying one stands on two saddles."""
+    """Build a vessel whose description gives heights above `z` (m); a lying one has two saddles."""
     x, y, height = vessel.center
     turn: Vector = {
         "x": (0.0, math.pi / 2, 0.0),
@@ -55,7 +55,7 @@ def build_vessel(vessel: VesselSpec, z: float) -> Element:
 
 
 def build_pipe(pipe: PipeSpec) -> Element:
-    """Build a pipe as one cylinder from each point to the next."""
+    """Build a pipe as a row of cylinders, one from each point to the next."""
     solids = []
     for (x0, y0, z0), (x1, y1, z1) in pairwise(pipe.points):
         dx, dy, dz = x1 - x0, y1 - y0, z1 - z0
@@ -68,7 +68,7 @@ def build_pipe(pipe: PipeSpec) -> Element:
 
 
 def build_pump(pump: PumpSpec, z: float) -> Element:
-    """Build a centrifugal pump and its motor on a skid of 1.2 m by 0.6 m."""
+    """Build a centrifugal pump and its motor on a skid of 1.2 m by 0.6 m, at height `z` (m)."""
     yaw = math.radians(pump.yaw)
     cos, sin = math.cos(yaw), math.sin(yaw)
 
@@ -87,13 +87,16 @@ def build_pump(pump: PumpSpec, z: float) -> Element:
 
 
 def build_column(number: int, center: tuple[float, float], bottom: float, top: float) -> Element:
-    """Build a steel column of 0.2 m by 0.2 m between two heights (m)."""
+    """Build a steel column of 0.2 m by 0.2 m about `center`, from height `bottom` to `top` (m)."""
     box = Box((center[0], center[1], (bottom + top) / 2), (0.2, 0.2, top - bottom))
     return Element(f"column {number}", Role.STRUCTURE, (box,), "structure")
 
 
 def build_dock(area: AreaSpec, ground_z: float) -> Element:
-    """Build a docking station: a cabinet with charging contacts that face the robot, and a sign."""
+    """Build the docking station of a starting area: a cabinet before the docked robot, and a sign.
+
+    It stands on the ground, at the height `ground_z` (m).
+    """
     x, y, degrees = area.dock
     yaw = math.radians(degrees)
 
@@ -110,7 +113,10 @@ def build_dock(area: AreaSpec, ground_z: float) -> Element:
 
 
 def build_mount(checkpoint: CheckpointSpec, floor_z: float) -> Element:
-    """Build the bracket between a checkpoint and the pipe or vessel behind it."""
+    """Build the bracket that joins a checkpoint to the pipe or vessel behind it.
+
+    `floor_z` is the height (m) of the checkpoint's floor.
+    """
     x, y, height = checkpoint.position
     yaw = math.radians(checkpoint.yaw)
     back = (MOUNT_LENGTH + 0.06) / 2
@@ -146,7 +152,11 @@ class Deck:
     def from_rectangles(
         plates: tuple[Rect, ...], openings: tuple[Rect, ...], cuts: tuple[Rect, ...] = ()
     ) -> "Deck":
-        """Return the union of `plates` less that of `openings`; `cuts` cut the edges as well."""
+        """Return the deck that covers the union of `plates` less that of `openings`.
+
+        `cuts` cover and remove nothing: they only split the grid, so that a piece of the rim can
+        end where a cut does.
+        """
         everything = np.array(plates + openings + cuts)
         x, y = _coordinates(everything[:, [0, 2]]), _coordinates(everything[:, [1, 3]])
         middle_x, middle_y = np.meshgrid((x[:-1] + x[1:]) / 2, (y[:-1] + y[1:]) / 2, indexing="ij")
@@ -182,7 +192,7 @@ class Deck:
         )
 
     def free_edges(self, gaps: tuple[Rect, ...]) -> list[RimEdge]:
-        """Return the rim of the deck without the pieces that lie in one of the `gaps`."""
+        """Return the pieces of the deck's rim, also around its openings, that are in no gap."""
         padded = np.pad(self.plated, 1)
         edges: list[RimEdge] = []
         for axis, lines, across in ((0, self.x, self.y), (1, self.y, self.x)):
@@ -216,7 +226,7 @@ def _runs(flags: NDArray[np.bool_]) -> list[tuple[int, int]]:
 def _in_gaps(
     at: float, across: NDArray[np.float64], gaps: tuple[Rect, ...], axis: int
 ) -> NDArray[np.bool_]:
-    """Return for each piece of the line at coordinate `at` whether it lies inside a gap."""
+    """Return a mask of the pieces of the line at coordinate `at` that lie inside a gap."""
     middle = (across[:-1] + across[1:]) / 2
     inside = np.zeros(len(middle), dtype=bool)
     for gap in gaps:
@@ -234,7 +244,11 @@ GROUND_THICKNESS = 0.5  # m
 
 
 def build_site(spec: SiteSpec) -> tuple[Element, ...]:
-    """Return all elements of the site, with unique names, in the order of the description."""
+    """Build all elements of the site that a description describes.
+
+    They are, in this order, the ground, floors, stair towers, columns, pipes, vessels and docking
+    stations.
+    """
     elements: list[Element] = [_ground(spec)]
     gaps = _stair_mouths(spec)
     for floor in spec.floors:

@@ -33,18 +33,26 @@ _PIPE = 0.06  # m, radius of a riser
 _OVERHEAD = 2.25  # m above a deck, where pipes cross; people have 2.1 m of headroom
 
 Refused = Collection[tuple[int, int]]
-"""Numbers of a floor and a slot where a checkpoint can't be read."""
+"""Positions where a checkpoint can't be read, each as the numbers of its floor and its slot."""
 
 
 def draw_site(
     family: Family, attempt: int = 0, refused: Refused = ()
 ) -> tuple[SiteSpec, dict[int, tuple[int, int]]]:
-    """Return the description of a site of the family, and where its checkpoints are.
+    """Draw the description of a site with a family's parameters, and where its checkpoints are.
 
-    The second value maps the id of each checkpoint to the numbers of its floor and slot. Another
-    `attempt` gives another site; checkpoints avoid the `refused` slots.
+    Equal arguments give equal results. The robot may not be able to drive on the site.
 
-    Raises ArgoError if the checkpoints do not fit on the site.
+    Args:
+        family: Parameters of the site, with the seed.
+        attempt: Number of the draw; another one gives another site.
+        refused: Floors and slots that must have no checkpoint.
+
+    Returns:
+        The description, and the numbers of the floor and the slot of each checkpoint, by its id.
+
+    Raises:
+        ArgoError: The checkpoints do not fit on the site.
     """
     layout = draw_layout(family, generator(family.seed, "layout", attempt))
     width, depth = (float(edge) for edge in family.size)

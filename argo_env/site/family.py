@@ -17,7 +17,7 @@ _SIZE = (12, 40)  # m, least and most of each edge
 
 
 class Stairs(StrEnum):
-    """Stair towers of a site; with two of them there are two independent ways up."""
+    """Stair towers of a site; with both there are two independent paths from floor to floor."""
 
     STRAIGHT = "straight"
     """flights one above the other, on the west side"""
@@ -55,6 +55,7 @@ class Family(Model):
 
     @property
     def for_testing(self) -> bool:
+        """True if the seed is one for testing."""
         return self.seed >= TEST_SEEDS
 
     def __str__(self) -> str:
@@ -66,14 +67,14 @@ class Family(Model):
 
 
 def is_family(name: str) -> bool:
-    """Return True if a site's name is that of a generated site."""
+    """Return True if a site's name begins as those of generated sites do, valid or not."""
     return name.startswith(PREFIX)
 
 
 def parse_family(text: str) -> Family:
-    """Return the family for a text such as `generated:floors=3,size=20x14,seed=7`.
+    """Return the parameters that a text such as `generated:floors=3,size=20x14,seed=7` gives.
 
-    Parameters that the text leaves out have their defaults. Raises ArgoError for a wrong text; its
+    Those that it leaves out have their defaults. Raises ArgoError if the text is not valid; the
     message lists all parameters.
     """
     given: dict[str, Any] = {}

@@ -20,7 +20,10 @@ class SolidIndex:
         self._low, self._high = centers - halves, centers + halves
 
     def touching_box(self, low: NDArray[np.float64], high: NDArray[np.float64]) -> list[Solid]:
-        """Return, in order, solids whose bounding boxes touch the box from `low` to `high` (m)."""
+        """Return the solids whose bounding boxes touch the box from `low` to `high` (x, y, z in m).
+
+        They are in the order of the elements.
+        """
         inside = ((self._high >= low) & (self._low <= high)).all(axis=1)
         return [self._solids[k] for k in np.flatnonzero(inside).tolist()]
 
@@ -51,7 +54,7 @@ class ElementIndex:
         return self._names[int(np.argmin(self._squared_distances(np.array(point), every)))]
 
     def nearest_each(self, points: Sequence[Vector]) -> list[str]:
-        """Return the name of the nearest element for each of many points (m).
+        """Return for each of many points (m) the name of the element nearest to it.
 
         This is far faster than calls of `nearest` if the points lie beside solids and close
         together.
@@ -131,7 +134,7 @@ class SolidRays:
             origin: Start of all rays, shape (3,), or of each ray, shape (n, 3).
             directions: Unit vectors, shape (n, 3).
             reach: Length of the rays in m.
-            inside: Whether to count solids that a ray starts inside of. They come first, with a
+            inside: True to count solids that a ray starts inside of. They come first, with a
                 negative distance: that from the origin back to their surface. Otherwise they are
                 left out.
 

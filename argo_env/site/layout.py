@@ -52,7 +52,7 @@ class Layout:
 
 
 def draw_layout(family: Family, random: np.random.Generator) -> Layout:
-    """Draw the layout of a site of the family."""
+    """Draw the layout of a site with a family's parameters; `random` replaces their seed."""
     width, depth = (float(edge) for edge in family.size)
     storey = float(random.choice(_STOREYS))
     aisle = float(random.choice([1.0, 1.1, 1.2]))
@@ -86,9 +86,10 @@ def draw_layout(family: Family, random: np.random.Generator) -> Layout:
 
 
 def draw_steps(storey: float, even: bool, random: np.random.Generator) -> tuple[int, float, float]:
-    """Draw stairs for one storey within ISO 14122-3: number of risers, rise and going (m).
+    """Draw the steps of stairs that rise one storey (m), within the limits of ISO 14122-3.
 
-    With `even`, the number of risers is even.
+    Returns the number of risers, which is even if `even` is True, and the rise and going (m) of a
+    step.
     """
     choices = []
     for risers in range(int(storey / _RISE[1]), int(storey / _RISE[0]) + 2):

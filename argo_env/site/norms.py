@@ -31,9 +31,9 @@ def violations(spec: SiteSpec) -> list[str]:
 
 
 def height_errors(spec: SiteSpec) -> list[str]:
-    """Return a message for each stair tower that does not end at the height of the next floor.
+    """Return a message for each stair tower whose flights don't rise as much as floors are apart.
 
-    The message names the first floor where this happens.
+    The message names the lowest floor where the tower ends above or below the next one.
     """
     errors = []
     for tower in spec.towers:

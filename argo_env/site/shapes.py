@@ -91,10 +91,11 @@ def half_extents(solid: Solid) -> NDArray[np.float64]:
 def crossing(
     solid: Solid, origins: NDArray[np.float64], direction: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return t where the lines origins + t * direction enter and where they leave the solid.
+    """Return the t at which the lines origins + t * direction enter a solid, and leave it.
 
-    `origins` has the shape (..., 3); `direction` is one vector or has the same shape. Both results
-    have the shape (...); lines that miss the solid give (inf, -inf).
+    A line extends in both directions, so t may be negative. `origins` has the shape (..., 3);
+    `direction` is one vector or has the same shape. Both results have the shape (...); lines that
+    miss the solid give (inf, -inf).
     """
     rotation = solid.rotation()
     start = (origins - np.array(solid.center)) @ rotation

@@ -88,7 +88,10 @@ class Site:
         return SolidRays(self.elements)
 
     def with_elements(self, elements: "tuple[Element, ...]") -> "Site":
-        """Return this site with other elements, for example with an obstacle on it."""
+        """Return a copy of this site with other elements, for example with an obstacle on it.
+
+        If the elements are equal to its own, it is the site itself.
+        """
         return self if elements == self.elements else replace(self, altered=elements)
 
     def checkpoint(self, id: int) -> SiteCheckpoint:
@@ -115,7 +118,10 @@ class Site:
         raise NotFound(f"site {self.name} has no floor {number}; {_there_are(numbers)}")
 
     def floor_at(self, z: float) -> int:
-        """Return the number of the floor whose storey contains the height `z` (m)."""
+        """Return the number of the highest floor that lies at most 0.1 m above the height `z` (m).
+
+        It is 1 if `z` is below all floors.
+        """
         return max([f.number for f in self.spec.floors if f.z <= z + 0.1], default=1)
 
 
@@ -136,7 +142,7 @@ def site_names() -> tuple[str, ...]:
 
 
 def load_site(name: str) -> Site:
-    """Return the site with this name, or the one that the file `name` describes.
+    """Return the shipped site with this name, or the one that a file with this path describes.
 
     Raises ArgoError if there is no such site or its description is wrong; the message then states
     the place in the file.
@@ -147,9 +153,11 @@ def load_site(name: str) -> Site:
 
 
 def site_file(name: str) -> Path:
-    """Return the path of the site's description; `name` is a site's name or such a path itself.
+    """Return the path of the file that describes a site.
 
-    Raises NotFound if there is no such site, and Invalid if it is a generated site.
+    `name` is the name of a shipped site, or a path that ends in `.yaml` or `.yml`, which is
+    returned even if there is no such file. Raises NotFound if no site has this name, and Invalid if
+    it is that of a generated site.
     """
     if is_family(name):
         raise Invalid(f"site `{name}` is generated and has no file: open it with `open_site`")

@@ -34,7 +34,7 @@ def parse_site_spec(text: str, source_name: str) -> SiteSpec:
 
 
 def to_yaml(spec: SiteSpec) -> str:
-    """Return YAML text that `read_site_spec` can read, without fields that have their defaults."""
+    """Return a description as YAML for `read_site_spec`, without fields that have their defaults."""
     return yaml.safe_dump(
         spec.model_dump(mode="json", exclude_defaults=True),
         sort_keys=False,

@@ -51,7 +51,7 @@ Rect = Annotated[tuple[Coordinate, Coordinate, Coordinate, Coordinate], AfterVal
 
 
 def distance_to_rect(rect: Rect, x: float, y: float) -> float:
-    """Return the distance (m) of a point from a rectangle, 0 within it."""
+    """Return the distance (m) of the point (x, y) from a rectangle, 0 within it."""
     return math.hypot(max(rect[0] - x, 0.0, x - rect[2]), max(rect[1] - y, 0.0, y - rect[3]))
 
 

@@ -20,7 +20,10 @@ HANDRAIL_HEIGHT = 0.95  # m above the nosings of a flight
 def railing(
     start: tuple[float, float], end: tuple[float, float], z: float, offset: tuple[float, float]
 ) -> tuple[Solid, ...]:
-    """Build a railing on a deck at height `z` from `start` to `end`, moved by `offset` (m)."""
+    """Build a railing on a deck at height `z`, along the line from `start` to `end`, all in m.
+
+    The line is moved by `offset`, such as that of `railing_offset`.
+    """
     x0, y0 = start[0] + offset[0], start[1] + offset[1]
     x1, y1 = end[0] + offset[0], end[1] + offset[1]
     length, yaw = math.hypot(x1 - x0, y1 - y0), math.atan2(y1 - y0, x1 - x0)
@@ -41,7 +44,10 @@ def railing(
 
 
 def railing_offset(outward: tuple[float, float]) -> tuple[float, float]:
-    """Return the offset (m) of a railing from its deck's rim that leaves the whole deck free."""
+    """Return the vector (m) from a deck's rim to its railing, which leaves the whole deck free.
+
+    `outward` is the unit normal of the rim.
+    """
     return outward[0] * THICKNESS / 2, outward[1] * THICKNESS / 2
 
 
@@ -52,15 +58,18 @@ MOUTH_DEPTH = 0.3  # m across the first and the last nosing, without railings
 
 
 def flight_run(flight: FlightSpec) -> float:
-    """Return the horizontal distance (m) from the lowest to the highest nosing of the flight.
+    """Return the horizontal distance (m) from the lowest nosing of a flight to its upper end.
 
-    The last riser is the rim of the deck.
+    That end is the rim of the deck, which is the nosing of the last riser.
     """
     return (flight.risers - 1) * flight.going
 
 
 def build_flight(flight: FlightSpec, prefix: str, base_z: float) -> tuple[Element, ...]:
-    """Build the steps as one element, and the handrails with the stringers as another."""
+    """Build the steps of a flight as one element, and its handrails and stringers as another.
+
+    `prefix` begins their names; `base_z` is the height (m) of the floor from which the stairs rise.
+    """
     yaw = math.radians(flight.yaw)
     slope = math.atan2(flight.rise, flight.going)
     place = _placer(flight, base_z)
@@ -103,9 +112,10 @@ def build_flight(flight: FlightSpec, prefix: str, base_z: float) -> tuple[Elemen
 def flight_end_areas(
     flight: FlightSpec, base_z: float
 ) -> tuple[tuple[float, Rect], tuple[float, Rect]]:
-    """Return the height (m) and the area without railing where the flight joins the decks.
+    """Return the height (m) and the area of a flight's foot, then those of its head.
 
-    The first value is that of its foot, the second that of its head.
+    In these areas, where the flight joins the decks, there is no railing. `base_z` is the height
+    (m) of the floor from which the stairs rise.
     """
     place = _placer(flight, base_z)
     result = []

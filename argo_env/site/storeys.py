@@ -12,9 +12,11 @@ _CUT_ROLES = frozenset({Role.VESSEL, Role.PIPE, Role.STRUCTURE})
 
 
 def storeys(site: Site) -> dict[int, tuple[Element, ...]]:
-    """Return the elements of each floor by its number; parts that pass through floors are cut.
+    """Return the elements of each floor, by the floor's number.
 
-    Only upright solids of vessels, pipes and the structure are cut.
+    Upright solids of vessels, pipes and the structure are cut where they pass from storey to
+    storey, so such an element may be on several floors. All else belongs as a whole to the floor in
+    whose storey its lowest point is.
     """
     bases = {floor.number: floor.z - UNDER_DECK for floor in site.spec.floors}
     by_floor: dict[int, list[Element]] = {number: [] for number in bases}

@@ -28,8 +28,8 @@ COLOURS: dict[str, tuple[float, float, float]] = {
 def to_urdf(name: str, elements: tuple[Element, ...], drawn: bool = True) -> str:
     """Return the elements as one URDF document.
 
-    Links are named after materials, and solids after elements. Unless `drawn`, pictures show none
-    of the elements, and PyBullet loads the document in half the time.
+    Links are named after materials, and solids after elements. With `drawn` False, solids have no
+    visual shape: pictures show none of them, and PyBullet loads the document in half the time.
 
     Every tag has a line of its own, as PyBullet cuts lines longer than 1,024 characters.
     """

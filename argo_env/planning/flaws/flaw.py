@@ -40,7 +40,7 @@ class Flaw:
 
 
 def position_text(x: float, y: float) -> str:
-    """Return a position (m) as text."""
+    """Return a position (m) as text, such as `(1.00, 2.50)`."""
     return f"({x:.2f}, {y:.2f})"
 
 
@@ -50,9 +50,10 @@ def compass_direction(yaw: float) -> str:
 
 
 def obstructions_in_box(site: Site, low: Sequence[float], high: Sequence[float]) -> str:
-    """List the elements in a box that the robot can't stand on: `a, b and 2 more things`.
+    """Return a text that lists the elements in a box, without those that the robot can stand on.
 
-    The text is empty if there are none. `low` and `high` are opposite corners of the box, in m.
+    An example is `a, b and 2 more things`; it is empty if there are none. `low` and `high` are the
+    corners (m) of the box with the lowest and the highest coordinates.
     """
     names = [
         element.name
@@ -76,7 +77,10 @@ def obstructions_in_box(site: Site, low: Sequence[float], high: Sequence[float])
 def obstructions_between(
     site: Site, a: NDArray[np.float64], b: NDArray[np.float64], height: float
 ) -> str:
-    """List the elements between two positions (x, y, z), up to a `height` above them, in m."""
+    """Return a text as `obstructions_in_box` for the box around two positions (x, y, z in m).
+
+    The box reaches from 5 cm above the lower position up to `height` (m) above the higher one.
+    """
     low, high = np.minimum(a, b), np.maximum(a, b)
     margin = np.array([0.1, 0.1, 0.0])
     return obstructions_in_box(

@@ -22,9 +22,10 @@ _CORNERS = ("south-west", "south-east", "north-east", "north-west")
 
 
 def floor_flaws(states: SafeStates, navigator: Navigator) -> list[Flaw]:
-    """Return the flaws of floors: one for all that can't be reached, one for each without patrol.
+    """Return the flaws of floors: those that can't be reached, and those without a patrol.
 
-    The first one explains why the lowest of these floors can't be reached.
+    All floors that can't be reached have one flaw, which explains why the lowest of them can't.
+    Each floor that can be reached but not patrolled has a flaw of its own.
     """
     floors = navigator.site.spec.floors
     flaws, unreached = [], unreached_floors(states)
@@ -44,7 +45,10 @@ def floor_flaws(states: SafeStates, navigator: Navigator) -> list[Flaw]:
 
 
 def unreached_floors(states: SafeStates) -> list[int]:
-    """Return the numbers of the floors on which no state can be reached."""
+    """Return the numbers of the floors on which the robot can't reach any state, ascending.
+
+    It starts at the first docking station at which it can stand.
+    """
     floors = states.site.spec.floors
     return [f.number for f in floors if not states.reached[states.is_on_floor(f)].any()]
 

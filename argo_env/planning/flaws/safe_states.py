@@ -29,6 +29,7 @@ class SafeStates:
 
     @staticmethod
     def from_navigator(navigator: Navigator) -> "SafeStates":
+        """Compute the states on the navigator's site; its own lattice has only reachable ones."""
         lattice = build_lattice(navigator.surface, navigator.robot)
         docks = {
             n: nearest_state(lattice, pose) for n, pose in sorted(navigator.site.docks.items())
@@ -53,7 +54,7 @@ class SafeStates:
         return self.lattice.state_poses()[:, :3]
 
     def is_on_floor(self, floor: FloorSpec) -> NDArray[np.bool_]:
-        """Return True for each state on the deck of a floor."""
+        """Return a mask of the states on the deck of a floor, reached or not."""
         x, y, z = self.positions.T
         inside = np.zeros(len(z), dtype=bool)
         for x0, y0, x1, y1 in floor.walkways.values():
@@ -61,9 +62,10 @@ class SafeStates:
         return np.asarray(inside & (np.abs(z - floor.z) <= _LEVEL))
 
     def nearest_reached(self, x: float, y: float, z: float) -> NDArray[np.float64] | None:
-        """Return the reached position nearest to a point, within a step's height of it.
+        """Return the position (x, y, z in m) of the reached state nearest to a point.
 
-        None means that there is none.
+        Nearness is horizontal, among the states at most one step's height above or below the point.
+        Returns None if there are none.
         """
         level = self.reached & (np.abs(self.positions[:, 2] - z) <= self.lattice.robot.max_step)
         positions = self.positions[level]

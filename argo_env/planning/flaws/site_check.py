@@ -29,7 +29,11 @@ from argo_env.site.shapes import Vector, crossing
 
 
 def dock_flaws(states: SafeStates) -> list[Flaw]:
-    """Return a flaw for each docking station that is of no use."""
+    """Return a flaw for each docking station at which the robot can't stand, or that is cut off.
+
+    A station is cut off if there is no path to it from the first usable one and back. If there is
+    neither, but the robot can't turn anywhere, that is the only flaw.
+    """
     flaws = [_unusable_dock(states, n) for n, state in states.docks.items() if state is None]
     for number, state in states.docks.items():
         if state is not None and not states.reached[state]:
@@ -106,7 +110,10 @@ _SAMPLED = 100  # camera positions from which hidden faces are checked
 def checkpoint_flaws(
     states: SafeStates, navigator: Navigator, unreached: Collection[int]
 ) -> list[Flaw]:
-    """Return a flaw for each checkpoint that can't be read, and one for each `unreached` floor."""
+    """Return the flaws of checkpoints that can't be read.
+
+    There is one for each such checkpoint, but only one for all on the same `unreached` floor.
+    """
     site = navigator.site
     unseen = [site.checkpoint(id) for id in unseen_checkpoints(navigator)]
     flaws = [
@@ -206,7 +213,11 @@ class SiteCheck:
 
 
 def find_flaws(navigator: Navigator) -> SiteCheck:
-    """Find everything that the robot can't reach from the docking stations and back."""
+    """Find everything on the navigator's site that the robot can't reach or read, and explain it.
+
+    To reach means to get there from the docking stations and back. Errors that keep the robot from
+    everything else, in the heights of stairs or at the docking stations, are reported alone.
+    """
     site = navigator.site
     place_flaws = _place_flaws(navigator) if _can_use_docks(navigator) else None
     if place_flaws == [] and not (

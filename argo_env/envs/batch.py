@@ -82,7 +82,10 @@ class ProcessVectorEnv(Copyable, VectorEnv[Observation, NDArray[Any], NDArray[An
         seed: int | Sequence[int | None] | None = None,
         options: dict[str, Any] | None = None,
     ) -> tuple[Observation, dict[str, Any]]:
-        """Reset all environments; an int seeds them with seed, seed + 1 and so on."""
+        """Reset all environments, and return their observations and infos, stacked.
+
+        An int seeds them with seed, seed + 1 and so on. The options are the same for all.
+        """
         seeds = expand_seeds(seed, self.num_envs)
         self._has_episodes = False
         answers = self._request("reset_each", [(seeds[part], options) for part in self._slices])
@@ -94,7 +97,7 @@ class ProcessVectorEnv(Copyable, VectorEnv[Observation, NDArray[Any], NDArray[An
     def step(
         self, actions: NDArray[Any]
     ) -> tuple[Observation, NDArray[Any], NDArray[Any], NDArray[Any], dict[str, Any]]:
-        """Step all environments.
+        """Step each environment with its action, and return the results, stacked.
 
         If an environment raises an error, it is raised here. Then all environments must be reset,
         as some of them may have made the step.
@@ -119,7 +122,7 @@ class ProcessVectorEnv(Copyable, VectorEnv[Observation, NDArray[Any], NDArray[An
         )
 
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:
-        """Return a picture of each environment; None without a render mode."""
+        """Return a picture of each environment, shape (height, width, 3); None without a mode."""
         return None if self.render_mode is None else self.call("render")
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
@@ -141,7 +144,10 @@ class ProcessVectorEnv(Copyable, VectorEnv[Observation, NDArray[Any], NDArray[An
         self._request("set_each", [(name, all_values[part]) for part in self._slices])
 
     def get_state(self) -> dict[str, Any]:
-        """Return all that the future depends on, as plain data that can be pickled."""
+        """Return the states of all environments, from which `set_state` continues.
+
+        They are plain data that can be pickled.
+        """
         self._require_episodes()
         ended = self._request("ended_flags", [()] * len(self._slices))
         return {"states": self.call("get_state"), "ended": tuple(ended)}

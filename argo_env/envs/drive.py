@@ -257,7 +257,10 @@ class DriveEnv(Copyable, Rendering, gym.Env[Observation, NDArray[np.float32]]):
     # -- states
 
     def get_state(self) -> dict[str, Any]:
-        """Return all that the future depends on, as plain data that can be pickled."""
+        """Return the state of the episode, from which `set_state` continues.
+
+        It is plain data that can be pickled.
+        """
         check_begun(self._over, self._title)
         return {
             "scenario": self._name,

@@ -64,7 +64,7 @@ class DriveSite(Closing):
         self._camera: ChaseCamera | None = None
 
     def close(self) -> None:
-        """Close the connections."""
+        """Close all connections to PyBullet."""
         self.body.close()
         self.world.close()
         if self._scene:
@@ -72,7 +72,10 @@ class DriveSite(Closing):
             self._scene = None
 
     def speed_share(self, now: float) -> float:
-        """Return the share of its speed that the drive reaches at time `now` (s), 0 to 1."""
+        """Return the factor, 0 to 1, by which faults reduce the drive's speed at time `now` (s).
+
+        `now` counts from the start of the episode.
+        """
         shares = [
             f.speed or 0.0
             for f in self.dysfunctions
@@ -81,9 +84,10 @@ class DriveSite(Closing):
         return min(shares, default=1.0)
 
     def render_view(self, pose: BodyPose, flipper: float) -> tuple[CameraView, Camera]:
-        """Return the view from behind the robot, 640 × 360 px, and its camera.
+        """Return a picture of the robot at `pose` from behind, 640 × 360 px, and its camera.
 
-        `flipper` is the angle of the flippers in degrees.
+        `flipper` is the angle of the flippers in degrees. The camera moves on from the previous
+        picture.
         """
         if self._scene is None:
             self._scene = Scene(self._actual_site, self.robot)
@@ -97,7 +101,7 @@ class DriveSite(Closing):
         return self._scene.render_from(camera), camera
 
     def reset_camera(self) -> None:
-        """Forget where the camera was, so that the next picture does not depend on earlier ones."""
+        """Drop the camera, so that the next picture does not depend on earlier ones."""
         self._camera = None
 
 
@@ -117,6 +121,7 @@ class DriveOptions(Model):
 
     @property
     def floors(self) -> tuple[int, ...]:
+        """Floors that the option `floor` names; empty if it names none."""
         return (self.floor,) if isinstance(self.floor, int) else self.floor
 
 
@@ -140,9 +145,10 @@ class DriveSites:
         return self._scenarios if given is None else (given,) if isinstance(given, str) else given
 
     def apply_options(self, options: DriveOptions) -> None:
-        """Apply the options to the following episodes.
+        """Set the options for the episodes that begin from now on, and build the sites they name.
 
-        Raises ArgoError if a site does not have what they ask for; then nothing changes.
+        Cached sites with other faults are closed. Raises ArgoError if there is no such site, if it
+        does not have the floors, or if a fault is not possible there; then nothing changes.
         """
         names = self._requested_names(options)
         if not names:
@@ -167,7 +173,10 @@ class DriveSites:
             _add_to_cache(self._cached, name, site)
 
     def get_site(self, name: str) -> DriveSite:
-        """Return the site with this name; a full cache drops its least recently used site."""
+        """Return the site with this name from the cache, or build it.
+
+        A full cache closes its least recently used site.
+        """
         site = self._cached.pop(name, None) or DriveSite(name, self.options.faults)
         _add_to_cache(self._cached, name, site)
         return site

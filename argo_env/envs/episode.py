@@ -35,20 +35,20 @@ def expand_seeds(seed: int | Sequence[int | None] | None, count: int) -> list[in
 
 
 def check_begun(over: bool | None, env: str) -> None:
-    """Raise ResetNeeded if no episode has begun (`over` is None)."""
+    """Raise ResetNeeded if no episode has begun (`over` is None); the message names `env`."""
     if over is None:
         raise gym.error.ResetNeeded(f"{env}: no episode has begun: call reset")
 
 
 def check_under_way(over: bool | None, env: str) -> None:
-    """Raise ResetNeeded if no episode has begun (`over` is None) or if it is over."""
+    """Raise ResetNeeded if no episode has begun (`over` is None), or if it is over (True)."""
     check_begun(over, env)
     if over:
         raise gym.error.ResetNeeded(f"{env}: the episode is over: call reset")
 
 
 def parse_discrete_action(action: Any, count: int, env: str) -> int:
-    """Return an action of `Discrete(count)` as an int; raise ArgoError if it is not one."""
+    """Return an action as an int; raise ArgoError if it is no whole number from 0 to count - 1."""
     if isinstance(action, np.ndarray) and action.shape == ():
         action = action[()]
     if isinstance(action, _INTEGERS) and 0 <= (number := int(action)) < count:
@@ -59,9 +59,9 @@ def parse_discrete_action(action: Any, count: int, env: str) -> int:
 
 
 def check_state(state: Any, parts: StateTypes, env: str) -> None:
-    """Raise ArgoError unless the state has exactly the `parts`, each with its type.
+    """Raise ArgoError unless the state is a mapping with exactly the `parts`, each of its type.
 
-    The parts `generator` and `begun` must be states of NumPy's PCG64.
+    The parts `generator` and `begun` must be states of NumPy's PCG64. `env` is for the message.
     """
     fits = (
         isinstance(state, Mapping)

@@ -45,7 +45,10 @@ class Expert:
         self._plan()
 
     def act(self) -> NDArray[np.float32]:
-        """Return the action for the present step, shape (3,); call this once per step."""
+        """Return the expert's action for the present step, shape (3,), from -1 to 1.
+
+        Call it once per step: it advances the flippers, and plans a new path if that is needed.
+        """
         site, pose = self._env.site, self._env.pose
         motion = self._follower.motion
         if motion is None or self._is_off_path(motion, pose):

@@ -66,13 +66,13 @@ class Guide:
 
     @property
     def floors(self) -> tuple[int, ...]:
-        """Floors on which the robot can start and arrive."""
+        """Numbers of the floors on which the robot can start and arrive."""
         return tuple(self._positions)
 
     def goals(self, floors: tuple[int, ...]) -> NDArray[np.float64]:
-        """Return the possible goals (x, y, z) on these floors, shape (n, 3).
+        """Return the possible goals (x, y, z in m) on these floors, shape (n, 3).
 
-        They are the same each time.
+        There are at most GOALS on each floor, the same ones each time.
         """
         parts = []
         for floor in floors:
@@ -88,7 +88,7 @@ class Guide:
         shortest: float,
         longest: float,
     ) -> NDArray[np.float64]:
-        """Return start positions (x, y, z) on these floors, shape (n, 3).
+        """Return all possible start positions (x, y, z in m) on these floors, shape (n, 3).
 
         Their travel times to the goal are between `shortest` and `longest` (s). If there are none,
         those with the lowest time of at least `shortest` are returned.
@@ -107,7 +107,8 @@ class Guide:
     def find_waypoint(self, goal: tuple[float, float, float], pose: BodyPose) -> Waypoint:
         """Return the next point of the path from a pose to the goal.
 
-        If no state of the lattice is near the pose, as beside the walkway, the nearest one is used.
+        The path begins at the state of the lattice nearest to the pose, however far away it is, as
+        beside the walkway.
         """
         lattice = self._lattice
         seconds, following = self._paths_to(goal)

@@ -72,7 +72,10 @@ class InspectOptions(Model):
 def draw_faults(
     count: int, drive: str, site: Site, rng: np.random.Generator
 ) -> tuple[AnyFault, ...]:
-    """Draw at most `count` faults of different kinds that suit the drive and the site."""
+    """Draw faults of different kinds that suit the drive and the site.
+
+    There are `count`, or one of each such kind if there are fewer kinds.
+    """
     without_physics = drive == RouteDrive.name
     kinds = [
         kind
@@ -320,12 +323,12 @@ class InspectEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
         return observation, sum(terms.values()), terminated, truncated, info
 
     def action_masks(self) -> NDArray[np.bool_]:
-        """Return which actions are legal now, shape (n + d,)."""
+        """Return a mask of the actions that are legal now, shape (n + d,)."""
         check_begun(self._over, self._title)
         return self._mask.copy()
 
     def record(self) -> RunRecord:
-        """Return the record of the episode so far, as of a run whose mission is these actions."""
+        """Return the episode so far as the record of a run, whose tasks are the actions so far."""
         return self._current_run.record()
 
     def close(self) -> None:
@@ -338,7 +341,10 @@ class InspectEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
     # -- states
 
     def get_state(self) -> dict[str, Any]:
-        """Return all that the future depends on, as plain data that can be pickled."""
+        """Return the state of the episode, from which `set_state` continues.
+
+        It is plain data that can be pickled.
+        """
         check_begun(self._over, self._title)
         return {
             "begun": self._state_at_reset,
@@ -523,5 +529,5 @@ class InspectVectorEnv(ProcessVectorEnv):
     _title = "argo/Inspect-v0"
 
     def action_masks(self) -> NDArray[np.bool_]:
-        """Return which actions are legal now, shape (num_envs, n + d)."""
+        """Return a mask of the actions that are legal now, shape (num_envs, n + d)."""
         return np.stack(self.call("action_masks"))

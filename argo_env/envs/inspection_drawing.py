@@ -27,12 +27,13 @@ def draw_inspection(
     end: int,
     headline: str,
 ) -> NDArray[np.uint8]:
-    """Draw the run so far, shape (720, 1280, 3).
+    """Return a picture of the inspection so far, shape (720, 1280, 3).
 
     Args:
         scenario: Name or file of the site.
         run: The inspection.
-        states: State of each checkpoint, in the order of their numbers.
+        states: State of each checkpoint, in the order of their numbers: `open`, `done`, `abnormal`,
+            `closed` or `outside`.
         chosen: Slot that was chosen last; None if none was.
         end: Index of the end dock, in the order of the docks' numbers.
         headline: Text above the plan.

@@ -84,6 +84,7 @@ class Inspection(Closing):
 
     @property
     def is_time_up(self) -> bool:
+        """True if the time limit is reached."""
         return self.now >= self._limit - 1e-6
 
     @property
@@ -94,7 +95,10 @@ class Inspection(Closing):
 
     @property
     def charge(self) -> float:
-        """Charge, 0 to 1, as the robot estimates it from the battery's voltage and current."""
+        """Charge, 0 to 1, as the robot estimates it from the battery's voltage and current.
+
+        It is 1 if the simulation has no battery.
+        """
         battery = self._simulation.setup.battery
         return 1.0 if battery is None else estimated_charge(battery.voltage, battery.current)
 
@@ -104,17 +108,17 @@ class Inspection(Closing):
 
     @property
     def trail(self) -> tuple[tuple[float, BodyPose], ...]:
-        """Times (s) and poses, close enough to each other to show the path; the last one is now."""
+        """Driven path: times (s) and poses, some 15 cm apart; the last one is the present pose."""
         return (*self._trail, (self.now, self.pose))
 
     @property
     def navigator(self) -> Navigator:
-        """Navigator with the site as the robot knows it, without what it has found to be closed."""
+        """Navigator of the site as described, which avoids what was found to be closed."""
         return self._simulation.setup.navigator
 
     @property
     def noticed(self) -> tuple[EventKind, ...]:
-        """Kinds of the anomalies noticed so far."""
+        """Kinds of the anomalies noticed so far, in their order; a kind may occur repeatedly."""
         return tuple(self._noticed)
 
     def record(self) -> RunRecord:
@@ -127,11 +131,14 @@ class Inspection(Closing):
         return self._carry_out(Task(name=name, action=Action.MEASURE, object_id=id))
 
     def drive_to(self, pose: Pose) -> ActionResult:
-        """Drive to a pose."""
+        """Drive to a pose, and return what happened on the way."""
         return self._carry_out(Task(name=self._name("drive"), action=Action.WAYPOINT, pose=pose))
 
     def stay(self, seconds: float, charging: bool = False) -> ActionResult:
-        """Stay for so many seconds; with `charging` also until the battery is full."""
+        """Stay where the robot is for `seconds`, and with `charging` until the battery is full too.
+
+        It ends earlier if the time limit is reached or the run ends.
+        """
         self._observer.clear()
         end = self.now + seconds
         while not self._over and (self.now < end or (charging and self.charge < FULL)):
@@ -141,7 +148,7 @@ class Inspection(Closing):
         return self._action_result()
 
     def end_mission(self) -> None:
-        """End the mission after the last task, and with it the run."""
+        """End the mission, to which no task can be added then, and with it the run."""
         self._machine.close()
         self._simulation.end_if_finished()
 
@@ -188,7 +195,7 @@ class Inspection(Closing):
         self._record_pose(self.now, self._drive.pose)
 
     def _action_result(self, began: float = math.inf) -> ActionResult:
-        """Return what has happened since the observer was cleared.
+        """Return the result of the action, from what has happened since the observer was cleared.
 
         It counts contacts in which there was a touch after the time `began` (s).
         """
@@ -276,7 +283,7 @@ class _ActionObserver(Observer):
 
 
 def initial_mission(site: OpenedSite, start: Pose) -> Mission:
-    """Return the mission of an inspection before its first task, in which it starts at `start`."""
+    """Return a mission on the site that has only the START task, with the pose `start`."""
     task = Task(name="START", action=Action.START, pose=start)
     return Mission(site=site.name, tasks=(task,))
 
@@ -303,10 +310,11 @@ class TravelTimes:
         )["times"]
 
     def times_from(self, pose: BodyPose, navigator: Navigator) -> NDArray[np.float64]:
-        """Return estimated times (s) from a pose to the docks and then to the checkpoints.
+        """Return estimated times (s) from a pose to each dock and each checkpoint, shape (n,).
 
-        Both are in the order of their numbers. Times are infinite where there is no path on the
-        site as `navigator` knows it.
+        First come the docks, then the checkpoints, both in the order of their numbers. Times are
+        infinite where there is no path on the site as `navigator` knows it, which may differ from
+        the one of this object by blockages.
         """
         if navigator is self._navigator():
             apart = [
@@ -354,7 +362,7 @@ _cached_times: WeakKeyDictionary[Navigator, TravelTimes] = WeakKeyDictionary()
 
 
 def cached_travel_times(navigator: Navigator) -> TravelTimes:
-    """Return the travel times of a navigator's site, computed once and kept as long as it."""
+    """Return the travel times of a navigator, which are computed once and kept as long as it is."""
     if navigator not in _cached_times:
         _cached_times[navigator] = TravelTimes(navigator)
     return _cached_times[navigator]

@@ -23,7 +23,8 @@ _GROUND = np.array([(x, y) for x in ALONG for y in ASIDE])
 def ray_distances(world: World, pose: BodyPose) -> NDArray[np.float64]:
     """Return the distances (m) to the nearest solid in each direction, shape (RAYS,).
 
-    The directions are counter-clockwise from straight ahead. Distances are at most RANGE.
+    The directions are level and counter-clockwise from straight ahead, HEIGHT above the robot's
+    point on the ground. Where nothing is within RANGE, the distance is RANGE.
     """
     angles = pose.yaw + _ANGLES
     origin = (pose.x, pose.y, pose.z + HEIGHT)

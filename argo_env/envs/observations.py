@@ -10,5 +10,5 @@ Observation = dict[str, NDArray[Any]]
 
 
 def dict_space(parts: Mapping[str, spaces.Space[Any]]) -> spaces.Space[Observation]:
-    """Return the space of observations with these parts."""
+    """Return the Gymnasium space of observations that have these parts, by their names."""
     return cast("spaces.Space[Observation]", spaces.Dict(dict(parts)))

@@ -21,9 +21,10 @@ MAX_DURATION = 100_000.0
 
 
 def read_options(model: type[Options], given: Any, env: str) -> Options:
-    """Return the options as a model; NumPy's numbers and arrays are converted.
+    """Return the options of a `reset` as an object of `model`.
 
-    Raises ArgoError that names the wrong options and the available ones.
+    NumPy's numbers and arrays are converted. Raises ArgoError if `given` is no dictionary or does
+    not fit the model; the message names the wrong options and the available ones.
     """
     known = f"available options: {', '.join(model.model_fields)}"
     if not isinstance(given, Mapping):
@@ -38,13 +39,16 @@ def read_options(model: type[Options], given: Any, env: str) -> Options:
 
 
 def check_scenario(env: str, scenario: Any) -> None:
-    """Raise ArgoError if this is not a string, and so not the name of a site."""
+    """Raise ArgoError if `scenario` is not a string, and so not the name of a site.
+
+    It is not checked that there is such a site.
+    """
     if not isinstance(scenario, str):
         raise Invalid(f"{env}: `scenario` is {scenario!r}, and has to be the name of a site")
 
 
 def check_floors(scenario: str, known: Sequence[int], floors: Sequence[int]) -> None:
-    """Raise ArgoError for the first of the floors that is not among the known ones."""
+    """Raise ArgoError if one of `floors` is not among the `known` ones of the scenario."""
     for floor in floors:
         if floor not in known:
             last, row = known[-1], list(known) == list(range(known[0], known[-1] + 1))
@@ -54,7 +58,7 @@ def check_floors(scenario: str, known: Sequence[int], floors: Sequence[int]) -> 
 
 
 def check_positive(env: str, maximum: float, **arguments: Any) -> None:
-    """Raise ArgoError for the first argument that is not a number above 0, up to `maximum`."""
+    """Raise ArgoError if a named argument is not a number above 0 and up to `maximum`."""
     for name, value in arguments.items():
         number = isinstance(value, int | float | np.integer | np.floating)
         if isinstance(value, bool) or not (number and 0 < value <= maximum):
@@ -65,9 +69,9 @@ def check_positive(env: str, maximum: float, **arguments: Any) -> None:
 
 
 def check_integer(env: str, low: int, high: int, reason: str = "", **arguments: Any) -> None:
-    """Raise ArgoError for the first argument that is not a whole number from `low` to `high`.
+    """Raise ArgoError if a named argument is not a whole number from `low` to `high`.
 
-    The message appends `reason` to the lowest value.
+    The message about a number that is too low ends with `reason`, which follows the value of `low`.
     """
     for name, value in arguments.items():
         whole = isinstance(value, int | np.integer) and not isinstance(value, bool)

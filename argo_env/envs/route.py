@@ -215,12 +215,15 @@ class RouteEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
         return observation, reward, self._over, False, info
 
     def action_masks(self) -> NDArray[np.bool_]:
-        """Return which actions are legal now, shape (n + 1,)."""
+        """Return a mask of the actions that are legal now, shape (n + 1,)."""
         check_begun(self._over, self._title)
         return self._mask.copy()
 
     def get_state(self) -> dict[str, Any]:
-        """Return all that the future depends on, as plain data that can be pickled."""
+        """Return the state of the episode, from which `set_state` continues.
+
+        It is plain data that can be pickled.
+        """
         check_begun(self._over, self._title)
         return {
             "key": self._key,

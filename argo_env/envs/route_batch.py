@@ -95,7 +95,11 @@ class RouteVectorEnv(Copyable, VectorEnv[Observation, NDArray[np.int64], NDArray
         seed: int | Sequence[int | None] | None = None,
         options: dict[str, Any] | None = None,
     ) -> tuple[Observation, dict[str, Any]]:
-        """Reset all routes; an int seeds them with seed, seed + 1 and so on."""
+        """Start a new route in each environment, and return their observations and infos.
+
+        An int seeds them with seed, seed + 1 and so on. An environment without a seed continues
+        with the next episode of its last one.
+        """
         seeds = expand_seeds(seed, self.num_envs)
         if options is not None:
             self._episodes.apply_options(read_route_options(options, self._episodes, self.num_envs))
@@ -168,11 +172,14 @@ class RouteVectorEnv(Copyable, VectorEnv[Observation, NDArray[np.int64], NDArray
         return self._observe(), rewards, self._ended.copy(), truncated, info
 
     def action_masks(self) -> NDArray[np.bool_]:
-        """Return which actions are legal now, shape (num_envs, n + 1)."""
+        """Return a mask of the actions that are legal now, shape (num_envs, n + 1)."""
         return self._legal_actions.copy()
 
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:
-        """Return a picture of each route's present state, without the path that led there."""
+        """Return a picture of each route's present state, without the path that led there.
+
+        Returns None without a render mode.
+        """
         if self.render_mode is None:
             return None
         legal, episodes = self._legal_actions, self._episodes
@@ -191,7 +198,10 @@ class RouteVectorEnv(Copyable, VectorEnv[Observation, NDArray[np.int64], NDArray
         )
 
     def get_state(self) -> dict[str, Any]:
-        """Return all that the future depends on, as plain data that can be pickled."""
+        """Return the state of all routes, from which `set_state` continues.
+
+        It is plain data that can be pickled.
+        """
         arrays = {name: getattr(self, name).copy() for name in _STATE}
         return {"options": self._episodes.options, "arrays": arrays}
 
@@ -253,7 +263,7 @@ class RouteVectorEnv(Copyable, VectorEnv[Observation, NDArray[np.int64], NDArray
     def _apply_failures(
         self, nodes: NDArray[np.int64], prizes: NDArray[np.float64], effect: NDArray[np.int16]
     ) -> NDArray[np.bool_]:
-        """Return which visits fail, shape (num_envs,), and update what the other visits win.
+        """Return a mask of the visits that fail, shape (num_envs,), and add up what others win.
 
         The prizes and the effects of visits that fail are set to 0 in `prizes` and `effect`.
         """

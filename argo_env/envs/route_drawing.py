@@ -32,18 +32,21 @@ class LegPaths(Protocol):
     """footprint of the robot; None if it is a point"""
 
     def robot_pose_at(self, position: Position) -> tuple[Position, float]:
-        """Return the point where the robot stands for a position, and its heading (rad)."""
+        """Return where the robot stands when it visits a position, and its heading (rad) there."""
         ...
 
     def path_between(
         self, a: Position, b: Position, blocked: tuple[Stair, ...]
     ) -> tuple[list[Position], float]:
-        """Return the path that avoids the blocked stairs, and the heading (rad) at its end."""
+        """Return the points of the path from a to b, and the robot's heading (rad) at its end.
+
+        The path avoids the blocked stairs.
+        """
         ...
 
 
 def leg_paths_for(source: RouteSource) -> LegPaths:
-    """Return the paths between the positions of a source's instances."""
+    """Return the object that finds paths between the positions of a source's instances."""
     if isinstance(source, SiteRoutes):
         return _SiteLegs(open_site(source.scenario).navigator)
     return _AisleLegs(source.ends) if isinstance(source, RandomRoutes) else _StraightLegs()
@@ -153,7 +156,7 @@ def draw_route(
     legal: NDArray[np.bool_],
     time: float,
 ) -> NDArray[np.uint8]:
-    """Draw the route so far, shape (720, 1280, 3).
+    """Return a picture of the route so far, shape (720, 1280, 3).
 
     The disc of a checkpoint is the larger, the higher its prize is.
 
@@ -163,8 +166,8 @@ def draw_route(
         instance: The instance.
         route: Rows of the instance in the order of the visits; the last one is where the robot is.
         visited: Visited checkpoints; the route need not contain them.
-        legal: Which nodes are legal now.
-        time: s since the start.
+        legal: Mask of the nodes that are legal now.
+        time: Time of the route so far in s.
     """
     positions: list[Position] = [
         (x, y, round(floor)) for x, y, floor in instance.positions.tolist()

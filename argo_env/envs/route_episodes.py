@@ -55,6 +55,7 @@ class RouteOptions(Model):
 
     @property
     def floors(self) -> tuple[int, ...]:
+        """Floors that the option `floor` names; empty if it names none."""
         return (self.floor,) if isinstance(self.floor, int) else self.floor
 
 
@@ -64,15 +65,16 @@ class InstancePool:
 
     numbers: NDArray[np.int64]
     one_per_env: bool
-    """whether row k belongs to environment k; otherwise rows are drawn"""
+    """True if row k belongs to environment k; otherwise rows are drawn"""
     stages: int
     """largest number of stages of knowledge of an instance: one more than the stairs that are found
     blocked"""
     arrival: NDArray[np.float32]
-    """this and the next two have the rows of all instances one below the other, each instance once
-    for each stage"""
+    """rows of all instances one below the other, each instance once for each stage"""
     time_to_dock_via: NDArray[np.float32]
+    """as `arrival`"""
     travel: NDArray[np.float32]
+    """as `arrival`"""
     home: NDArray[np.float32]
     """one row for each stage of each instance"""
     before: NDArray[np.int8]
@@ -88,7 +90,12 @@ class InstancePool:
     """time (s) at which each stage but the first begins, shape (m, stages - 1)"""
 
     def select_rows(self, rows: NDArray[np.int64], drawn: UInt64Array) -> NDArray[np.int64]:
-        """Return the row of the pool for each environment."""
+        """Return the row of the pool for each of some environments' next episodes.
+
+        Args:
+            rows: Numbers of the environments.
+            drawn: Random numbers, one for each of them; unused if `one_per_env` is True.
+        """
         if self.one_per_env:
             return rows
         return (drawn % np.uint64(len(self.numbers))).astype(np.int64)
@@ -131,13 +138,16 @@ class Episodes:
         self._pool: InstancePool | None = None
 
     def scenario_name(self, options: RouteOptions) -> str:
-        """Return the name that messages use for the scenario of the options."""
+        """Return the name of the scenario with these options, for messages."""
         if options.scenario is None and self._given_source is not None:
             return "of the `source`"
         return options.scenario or self._scenario
 
     def source_for(self, options: RouteOptions) -> RouteSource:
-        """Return the source that the options name."""
+        """Return the source of the instances: the one that the options name, or the usual one.
+
+        The usual one is that of the arguments with which the environment was made.
+        """
         if options.scenario is None and self._given_source is not None:
             return self._given_source
         scenario = self.scenario_name(options)
@@ -171,9 +181,10 @@ class Episodes:
 def read_route_options(
     given: Mapping[str, Any], episodes: Episodes, count: int | None = None
 ) -> RouteOptions:
-    """Return the options for one environment, or for a batch of `count`.
+    """Return the options of a `reset` as an object, checked for the environment's `episodes`.
 
-    Raises ArgoError if they are invalid.
+    `count` is the number of environments in a batch; None: it is a single one. Raises ArgoError if
+    the options are invalid. They are not applied yet.
     """
     options = read_options(RouteOptions, given, _NAME)
     if options.instance is not None:
@@ -223,10 +234,10 @@ def episode_hash(key: int, episode: int) -> int: ...
 @overload
 def episode_hash(key: UInt64Array, episode: UInt64Array) -> UInt64Array: ...
 def episode_hash(key: Any, episode: Any) -> Any:
-    """Return a 64-bit number for each episode of an environment.
+    """Return a random-like 64-bit number that determines which instance an episode gets.
 
-    It is an output of splitmix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number
-    generators", 2014) that started at `key`.
+    It is output number `episode`, from 0, of splitmix64 that started at `key` (Steele, Lea and
+    Flood, "Fast splittable pseudorandom number generators", 2014).
     """
     if isinstance(key, int):
         z = (key + (episode + 1) * 0x9E3779B97F4A7C15) & _UINT64_MASK
@@ -298,7 +309,10 @@ def _site_routes(checkpoints: int, scenario: str, budget: float, noise: RouteNoi
 
 
 def observation_space(size: int, full: bool) -> spaces.Space[Observation]:
-    """Return the observation space for `size` nodes."""
+    """Return the observation space of Route-v0 for `size` nodes, with the dock.
+
+    With `full`, observations also have `matrix`, `before` and `place`.
+    """
     share = spaces.Box(0.0, 1.0, (size,), np.float32)
     parts: dict[str, spaces.Space[Any]] = {
         "travel": share,

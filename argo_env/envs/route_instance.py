@@ -48,12 +48,12 @@ class RouteInstance:
 
     @property
     def start(self) -> int:
-        """Row of the robot's start in `arrival`, `need`, `travel` and `positions`."""
+        """Index of the start's row in `arrival`, `time_to_dock_via`, `travel` and `positions`."""
         return self.size
 
     @cached_property
     def home(self) -> NDArray[np.float32]:
-        """Time to the dock as a share of the budget, at most 1, shape (n + 1,)."""
+        """Time from each node to the dock as a share of the budget, at most 1, shape (n + 1,)."""
         home: NDArray[np.float32] = np.minimum(
             self.arrival[: self.size, DOCK] / np.float32(self.budget), np.float32(1.0)
         )
@@ -62,27 +62,30 @@ class RouteInstance:
 
     @cached_property
     def time_to_dock_via(self) -> NDArray[np.float32]:
-        """Time (s) of a visit and of the path to the dock after it, shape of `arrival`."""
+        """Time (s) from a row's node to a column's, for the visit there, and on to the dock.
+
+        It has the shape of `arrival`.
+        """
         home = self.arrival[: self.size, DOCK].copy()
         home[DOCK] = 0.0
         return np.asarray(self.arrival + home, dtype=np.float32)
 
     @cached_property
     def travel(self) -> NDArray[np.float32]:
-        """`arrival` as a share of the budget, at most 1."""
+        """`arrival` as a share of the budget, at most 1, of the same shape."""
         return np.asarray(np.minimum(self.arrival / np.float32(self.budget), np.float32(1.0)))
 
     @cached_property
     def missing(self) -> NDArray[np.int16]:
-        """Number of checkpoints that must come before each node, shape (n + 1,)."""
+        """Number of checkpoints that must be visited before each node, shape (n + 1,)."""
         return np.asarray(self.before.sum(axis=0, dtype=np.int16))
 
     @cached_property
     def missing_decrease(self) -> NDArray[np.int16]:
         """Numbers that the visit of a node (row) subtracts from `missing`, shape (n + 1, n + 1).
 
-        It subtracts 1 from each node that must come after it, and adds VISITED to its own number,
-        so that it is not free again. A node is free while its number is 0.
+        That is 1 for each node that must come after it, and -VISITED for itself, so that it does
+        not become legal again. A node is legal while its number is 0.
         """
         effect = self.before.astype(np.int16)
         np.fill_diagonal(effect, -VISITED)
@@ -90,7 +93,7 @@ class RouteInstance:
 
     @cached_property
     def time_to_dock_via_rows(self) -> list[NDArray[np.float32]]:
-        """Rows of `need`."""
+        """Rows of `time_to_dock_via`."""
         return list(self.time_to_dock_via)
 
     @cached_property
@@ -104,7 +107,10 @@ class RouteInstance:
         return np.array([self.budget], dtype=np.float32)
 
     def known_at(self, time: float) -> "RouteInstance":
-        """Return the instance as the robot knows it at a time (s) after its start."""
+        """Return the instance as the robot knows it at a time (s) after its start.
+
+        Its travel times are those without the stairs that were found blocked by then.
+        """
         changes = self._changes_by(time)
         return changes[-1].known if changes else self
 
@@ -154,7 +160,7 @@ def with_hidden(
     blocked: Iterable[tuple[float, NDArray[np.float64], tuple[Stair, ...]]],
     service: NDArray[np.float64],
 ) -> RouteInstance:
-    """Return the instance with parts that the robot does not know at the start.
+    """Return a copy of the instance that has parts which the robot does not know at the start.
 
     Args:
         instance: The instance without them.
@@ -251,7 +257,7 @@ class Score:
 
 
 def score_route(instance: RouteInstance, route: Sequence[int]) -> Score:
-    """Return the value of a route, which is a sequence of nodes.
+    """Return what a route, which is a sequence of nodes, wins on an instance, and its time.
 
     The robot goes to the dock at the end of the route, or earlier if the next node would break a
     rule: it was visited already, or it comes before a node that must precede it, or the robot would

@@ -27,9 +27,9 @@ NO_NOISE = RouteNoise()
 
 
 def draw_failures(noise: RouteNoise, count: int, rng: np.random.Generator) -> NDArray[np.int16]:
-    """Draw the number of visits of each node that fail before one does not, shape (count + 1,).
+    """Draw how many visits of each node fail before the first that succeeds, shape (count + 1,).
 
-    It is 0 for the dock.
+    `count` is the number of checkpoints; the dock is node 0, whose number is 0.
     """
     failing = rng.geometric(1.0 - noise.failing, count) - 1
     return np.concatenate([[0], failing]).astype(np.int16)
@@ -42,7 +42,7 @@ def draw_blocked_stairs(
     times_without: Callable[[tuple[Stair, ...]], NDArray[np.float64] | None],
     rng: np.random.Generator,
 ) -> list[tuple[float, NDArray[np.float64], tuple[Stair, ...]]]:
-    """Draw the times (s) at which stairs are found blocked.
+    """Draw which stairs are found blocked, and when.
 
     Args:
         noise: Settings.

@@ -30,7 +30,10 @@ class SiteTimes:
 
 @lru_cache(maxsize=8)
 def site_times(scenario: str) -> SiteTimes:
-    """Return the travel times of the site with this name; raise ArgoError if there is none."""
+    """Return travel times between the first dock and all checkpoints of the site with this name.
+
+    Raises ArgoError if there is no such site, or if a checkpoint can't be reached.
+    """
     navigator = open_site(scenario).navigator
     site = navigator.site
     number = min(site.docks)
@@ -44,7 +47,7 @@ def site_times(scenario: str) -> SiteTimes:
 
 @lru_cache(maxsize=8)
 def site_stairs(scenario: str) -> tuple[Stair, ...]:
-    """Return the stairs of a site's towers, which are numbered from 0."""
+    """Return all stairs of a site: those of each tower, numbered from 0, above each floor."""
     spec = open_site(scenario).site.spec
     return tuple(
         (tower, floor.number) for tower in range(len(spec.towers)) for floor in spec.floors[:-1]
@@ -53,9 +56,9 @@ def site_stairs(scenario: str) -> tuple[Stair, ...]:
 
 @lru_cache(maxsize=64)
 def site_times_without(scenario: str, blocked: tuple[Stair, ...]) -> NDArray[np.float64] | None:
-    """Return `SiteTimes.times` with some stairs blocked in their middle.
+    """Return the times of `site_times` if some stairs are blocked.
 
-    Returns None if there is no detour.
+    Returns None if a checkpoint or the dock can't be reached then.
     """
     navigator = open_site(scenario).navigator
     site = navigator.site
@@ -69,7 +72,7 @@ def site_times_without(scenario: str, blocked: tuple[Stair, ...]) -> NDArray[np.
 
 
 def navigator_without(navigator: Navigator, blocked: tuple[Stair, ...]) -> Navigator:
-    """Return the navigator that avoids these stairs."""
+    """Return a navigator of the same site that avoids these stairs, blocked in their middle."""
     spec = navigator.site.spec
     base = {floor.number: floor.z for floor in spec.floors}
     blockages = []

@@ -24,9 +24,9 @@ _UP, _DOWN = 33.0, 16.0  # s per floor
 
 
 def list_stairs(floors: int, ends: int) -> list[Stair]:
-    """Return all stairs between so many floors.
+    """Return all stairs of a random site with so many floors, and stairs at so many of their ends.
 
-    They are at the end x = 0 (number 0) and, if there are two ends, at x = WIDTH (number 1).
+    They are at the end x = 0 (number 0) and, with two ends, at x = WIDTH (number 1).
     """
     return [(end, floor) for end in range(ends) for floor in range(1, floors)]
 
@@ -34,10 +34,16 @@ def list_stairs(floors: int, ends: int) -> list[Stair]:
 def aisle_times(
     positions: NDArray[np.float64], floors: int, ends: int = 1, blocked: tuple[Stair, ...] = ()
 ) -> NDArray[np.float64] | None:
-    """Return the travel times (s) between positions (x, y in m, and floor), shape (n, n).
+    """Return the travel times (s) between positions on a random site, shape (n, n).
 
     Paths lead along the aisles, and up or down by stairs that extend along one end, or both ends,
     of the floors. Returns None if a floor can't be reached as all its stairs are blocked.
+
+    Args:
+        positions: x, y (m) and the number of the floor, shape (n, 3).
+        floors: Number of floors.
+        ends: Number of ends with stairs, 1 or 2.
+        blocked: Stairs that can't be used.
     """
     crossings = _floor_crossings(floors, ends, frozenset(blocked))
     if not np.isfinite(crossings).all():
@@ -195,7 +201,7 @@ class SiteRoutes:
 
     @property
     def existing_checkpoints(self) -> int:
-        """Number of the checkpoints that the site has."""
+        """Number of checkpoints in an instance that exist, as the site may have fewer."""
         return min(self.checkpoints, len(self._site.positions) - 1)
 
     @property
@@ -203,9 +209,9 @@ class SiteRoutes:
         return self.stored_times or site_times(self.scenario)
 
     def check_usable(self) -> None:
-        """Raise ArgoError if there is no such site.
+        """Raise ArgoError if there is no such site, or if its stairs can't be blocked as requested.
 
-        It is raised as well if stairs are to be found blocked on a site without any detour.
+        They can't if the noise asks for blocked stairs and there is no detour around any.
         """
         name, _ = self.scenario, self.floors
         if self.noise.blocked and not any(
@@ -308,5 +314,8 @@ def _complete_instance(
 
 
 def existing_checkpoints(source: RouteSource) -> int:
-    """Return the number of a source's checkpoints that exist, as a site may have too few."""
+    """Return the number of checkpoints in a source's instances that exist.
+
+    It is lower than `source.checkpoints` if the site does not have as many.
+    """
     return source.existing_checkpoints if isinstance(source, SiteRoutes) else source.checkpoints

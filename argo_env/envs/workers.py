@@ -58,11 +58,11 @@ class Workers(NonCopyable):
             raise
 
     def request(self, name: str, arguments: Sequence[tuple[Any, ...]]) -> list[Any]:
-        """Call a method in each process with its own arguments, and return all answers in order.
+        """Call a method of `_WorkerEnvs` in each process, and return all answers in order.
 
-        There is one answer for each environment. If environments raise errors, the first one is
-        raised after all processes have answered. If a process has died, all processes are ended and
-        Unavailable is raised.
+        `arguments` has those of each process. The method returns a list with an answer for each of
+        its environments. If environments raise errors, the first one is raised after all processes
+        have answered. If a process has died, all processes are ended and Unavailable is raised.
         """
         if not self._finalizer.alive:
             raise gym.error.ClosedEnvironmentError("the processes of this batch have ended")

@@ -34,7 +34,7 @@ class Blockage:
 
 
 def closed_cells(surface: Surface, blockages: Sequence[Blockage]) -> NDArray[np.bool_]:
-    """Return a mask of the cells of the surface that a blockage touches, even at their edges."""
+    """Return a mask of the surface's cells that a blockage touches, even if only at their edges."""
     positions = surface.cell_positions()
     closed = np.zeros(surface.size, dtype=bool)
     for blockage in blockages:
@@ -61,10 +61,10 @@ def _within(positions: NDArray[np.float64], blockage: Blockage, reach: float) ->
 
 
 def close_states(lattice: Lattice, blockages: Sequence[Blockage]) -> Lattice:
-    """Return the lattice without the states and turns that touch a blockage.
+    """Return a lattice without the states and turns in which the robot touches a blockage.
 
-    MARGIN is added around the robot, as everywhere; of a turn the whole swept area counts. The
-    closed states keep their numbers, but have no moves and are not in `state_of`.
+    MARGIN is added around the robot, as everywhere; of a turn the whole swept area counts. All
+    states keep their numbers, but the closed ones have no moves and are not in `state_of`.
     """
     closed, no_turn = np.zeros(lattice.size, dtype=bool), np.zeros(lattice.size, dtype=bool)
     positions = lattice.surface.cell_positions()
@@ -155,7 +155,7 @@ def turn_touches_blockage(
 def may_touch_blockage(path: Path, blockages: Sequence[Blockage], robot: RobotSpec) -> bool:
     """Return True if the path leads so near to a blockage that the robot might touch it.
 
-    The heading is ignored: the footprint's radius and MARGIN decide.
+    The heading is ignored: the robot counts as a disc with the footprint's radius plus MARGIN.
     """
     points = np.array(
         [

@@ -17,8 +17,9 @@ Graph: TypeAlias = "csr_array"
 `data` their costs (s)"""
 
 Trees = tuple[NDArray[np.float64], NDArray[np.int32]]
-"""costs in s, inf where there is no path, and the state next to each state on its path, negative
-without one, both of shape (trees, states)"""
+"""cheapest paths between the root of each tree and all states: their costs (s), inf where there is
+no path, and for each state the next one towards the root, negative at the root and where there is
+no path; both of shape (trees, states)"""
 
 
 def make_graph(
@@ -48,7 +49,7 @@ def make_graph_of_moves(
 
 
 def subgraph(graph: Graph, members: NDArray[np.int64] | NDArray[np.bool_]) -> Graph:
-    """Return the moves between the states `members`, which are renumbered in their order."""
+    """Return the graph of the moves between the states `members`, renumbered in their order."""
     from scipy.sparse import csr_array
 
     return csr_array(graph[members][:, members])
@@ -62,7 +63,7 @@ def reverse_graph(graph: Graph) -> Graph:
 
 
 def label_strong_components(graph: Graph) -> NDArray[np.int32]:
-    """Return a number for each state, equal for states that can be reached from each other."""
+    """Return a label for each state, the same for states that can be reached from each other."""
     from scipy.sparse.csgraph import connected_components
 
     _, label = connected_components(graph, directed=True, connection="strong")
@@ -70,7 +71,10 @@ def label_strong_components(graph: Graph) -> NDArray[np.int32]:
 
 
 def shortest_path_trees(graph: Graph, sources: NDArray[np.int64], limit: float = np.inf) -> Trees:
-    """Return the cheapest paths from each of `sources` that cost up to `limit` (s)."""
+    """Return the cheapest paths from each of `sources`, the root of a tree, to all states.
+
+    Paths that cost more than `limit` (s) are left out.
+    """
     from scipy.sparse.csgraph import dijkstra
 
     if not len(sources):

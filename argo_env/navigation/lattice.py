@@ -30,7 +30,7 @@ from argo_env.navigation.stencil import (
 from argo_env.navigation.surface import Surface
 from argo_env.robot.spec import MotionKind, RobotSpec, motion_kind
 
-MARGIN = 0.02  # m members free around the footprint
+MARGIN = 0.02  # m that must be free around the footprint
 PREFERRED_CLEARANCE = 0.1  # m around the footprint where driving is preferred
 CRAMPED_FACTOR = 1.2  # cost of a second with less clearance
 LEVEL = 0.1  # m of height between front and rear, or left and right, that still counts as flat
@@ -65,7 +65,7 @@ class Lattice:
     def move_times(
         self, costs: NDArray[np.float64], source: NDArray[np.int64], target: NDArray[np.int64]
     ) -> NDArray[np.float64]:
-        """Return the seconds that moves of the given `costs` from `source` to `target` take."""
+        """Return the seconds that moves from `source` to `target` take, given their `costs` (s)."""
         return costs / _cost_factor(self.roomy, source, target)
 
     def state_poses(self, states: NDArray[np.int64] | slice = slice(None)) -> NDArray[np.float64]:
@@ -77,7 +77,7 @@ class Lattice:
 
 
 def lattice_arrays(lattice: Lattice) -> Arrays:
-    """Return a lattice as arrays, without its surface and robot."""
+    """Return a lattice as named arrays, for the disk cache; its surface and robot are left out."""
     return {
         "cell": lattice.cell,
         "heading": lattice.heading,
@@ -139,7 +139,10 @@ def _cost_factor(
 
 
 def connected_sublattice(lattice: Lattice, state: int) -> Lattice:
-    """Return the lattice of the states that can be reached from `state` and can reach it."""
+    """Return the lattice of the states that can be reached from `state` and can reach it.
+
+    They are renumbered, in their order.
+    """
     label = label_strong_components(lattice.costs)
     members = label == label[state]
     number = np.cumsum(members) - 1
@@ -162,7 +165,8 @@ def footprint_rise(z: NDArray[np.float64], stencil: Stencil, heading: int) -> ND
     """Return the height (m) of the front above the rear for each cell, or nan.
 
     It is nan where the robot can't stand: the ground does not fill the stencil, or one side is more
-    than LEVEL higher than the other. Where it is more than LEVEL, the robot can't stand either.
+    than LEVEL higher than the other. Nor can it stand where the result is more than LEVEL, but the
+    function leaves this to the caller.
 
     Args:
         z: Heights (m) of the cells of the stencil, shape (offsets, cells).

@@ -117,10 +117,11 @@ class Navigator:
     ) -> "Navigator":
         """Return a navigator of the same site that also keeps clear of `blockages`.
 
-        If `site` is given, it has additional solids, for which the blockages stand, and checkpoints
-        are not seen through them. The surface is shared. Paths to docks and checkpoints that have
-        become unreachable raise Unreachable. A robot that stands where it may no longer stand
-        starts from the nearest pose where it may.
+        If there are no blockages and no `site`, it is this navigator itself. If `site` is given, it
+        has additional solids, for which the blockages stand, and checkpoints are not seen through
+        them. The surface is shared. Paths to docks and checkpoints that have become unreachable
+        raise Unreachable. A robot that stands where it may no longer stand starts from the nearest
+        pose where it may.
         """
         if not blockages and site is None:
             return self
@@ -134,9 +135,9 @@ class Navigator:
         return other
 
     def adopt_results(self, other: "Navigator") -> None:
-        """Adopt what a navigator of the same site and robot has computed, and store it.
+        """Adopt the surface and the lattice that another navigator has computed, and store them.
 
-        This applies to the surface and the lattice.
+        It must be one of the same site and robot. What it has not computed yet is left out.
         """
         if "surface" in other.__dict__:
             self.surface = other.surface
@@ -190,10 +191,12 @@ class Navigator:
         return lattice
 
     def snap(self, pose: Pose) -> Pose:
-        """Return the pose nearest to `pose` that the robot can take; the heading stays.
+        """Return `pose` moved to the nearest position at which the robot can stand.
+
+        Its heading stays, though the robot may not be able to stand there with it.
 
         Raises:
-            Unreachable: There is none within SNAP_DISTANCE.
+            Unreachable: There is no such position within SNAP_DISTANCE.
         """
         (nearest,) = _poses(self.lattice, [self.state_at(pose)])
         return nearest.model_copy(update={"yaw": pose.yaw})
@@ -254,7 +257,7 @@ class Navigator:
     ) -> NDArray[np.float64]:
         """Return the seconds from `start` to each of `locations`, shape (n,).
 
-        They are those of `travel_times`, and so are the errors.
+        `travel_times` describes locations, times and errors.
         """
         return np.asarray(
             self._path_search.travel_times(self._states([start, *locations]), 1)[0, 1:]
@@ -284,7 +287,7 @@ class Navigator:
         return state
 
     def viewing_pose(self, checkpoint_id: int) -> Pose:
-        """Return the pose that `travel_times` uses for a checkpoint.
+        """Return the pose that stands for a checkpoint in `travel_times`.
 
         Raises:
             Unreachable: The checkpoint can't be seen.
@@ -423,9 +426,9 @@ class Navigator:
 
 
 def nearest_state(lattice: Lattice, pose: Pose) -> int | None:
-    """Return the state nearest to the pose; None if there is none within SNAP_DISTANCE.
+    """Return the number of the state nearest to a pose; None if none is within SNAP_DISTANCE.
 
-    Each step between two headings of the lattice counts as 5 cm of distance.
+    Each 45 degrees between its heading and that of the pose count as 5 cm of distance.
     """
     surface = lattice.surface
     around = surface.cells_near(pose.x, pose.y, SNAP_DISTANCE)

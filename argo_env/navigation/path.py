@@ -42,7 +42,7 @@ class Motion:
         )
 
     def pose_at(self, share: float) -> Pose:
-        """Return the pose after `share` of the motion, 0 to 1."""
+        """Return the pose after a share of the motion, from 0 (its start) to 1 (its end)."""
         a, b = self.start, self.end
         return Pose(
             x=a.x + share * (b.x - a.x),
@@ -52,7 +52,10 @@ class Motion:
         )
 
     def coordinates_at(self, shares: "NDArray[np.float64]") -> tuple["NDArray[np.float64]", ...]:
-        """Return x, y, z (m) and yaw (rad) after each of `shares`, 0 to 1, as four arrays."""
+        """Return x, y, z (m) and yaw (rad) after each share of the motion, as four arrays.
+
+        The shares are those of `pose_at`.
+        """
         a, b = self.start, self.end
         return (
             a.x + shares * (b.x - a.x),
@@ -62,10 +65,10 @@ class Motion:
         )
 
     def speed(self, robot: RobotSpec, velocity: float | None = None) -> float:
-        """Return the target speed (m/s) of a drive.
+        """Return the target speed (m/s) of a motion that is a drive.
 
-        `velocity` (m/s) replaces the robot's own speed on the flat ahead; on stairs and backwards
-        the slower of the two applies.
+        `velocity` (m/s) replaces the robot's own speed forwards on the flat; on stairs and
+        backwards the slower of the two applies. None: the robot's own speed.
         """
         planned = robot.target_speed(self.kind)
         if velocity is None:
@@ -74,7 +77,10 @@ class Motion:
         return velocity if flat_ahead else min(velocity, planned)
 
     def duration(self, robot: RobotSpec, velocity: float | None = None) -> float:
-        """Return the seconds that the motion takes, by the robot's calibration."""
+        """Return the seconds that the motion takes, by the robot's calibration.
+
+        `velocity` (m/s) applies as in `speed`, and has no effect on turns.
+        """
         if self.turn:
             return robot.motion_time(self.kind, abs(self.turn))
         return robot.motion_time(self.kind, self.length, self.speed(robot, velocity))
@@ -102,7 +108,7 @@ class Path:
         return sum(max(0.0, m.end.z - m.start.z) for m in self.motions)
 
     def duration(self, robot: RobotSpec, velocity: float | None = None) -> float:
-        """Return the duration in s; `velocity` (m/s) applies as in `Motion.speed`."""
+        """Return the seconds that the path takes; `velocity` (m/s) applies as in `Motion.speed`."""
         return sum(m.duration(robot, velocity) for m in self.motions)
 
     def timed_poses(self, robot: RobotSpec, velocity: float | None = None) -> "NDArray[np.float64]":
@@ -151,7 +157,7 @@ def wrap(angle: "NDArray[np.float64]") -> "NDArray[np.float64]": ...
 
 
 def wrap(angle: "float | NDArray[np.float64]") -> "float | NDArray[np.float64]":
-    """Return the same angle between -pi (exclusive) and pi, in rad."""
+    """Return the equivalent angle above -pi and up to pi, in rad."""
     return math.pi - (math.pi - angle) % (2 * math.pi)
 
 

@@ -96,16 +96,16 @@ class Portals:
     before: NDArray[np.int32]
 
     def entry_rows(self, area: Region) -> NDArray[np.int64]:
-        """Return the rows of the region's entries."""
+        """Return the indices in `states` of the region's entries."""
         return np.searchsorted(self.states, area.members[area.entries])
 
     def exit_rows(self, area: Region) -> NDArray[np.int64]:
-        """Return the rows of the region's exits."""
+        """Return the indices in `states` of the region's exits."""
         return np.searchsorted(self.states, area.members[area.exits])
 
 
 def portals_arrays(portals: Portals) -> Arrays:
-    """Return portals as arrays."""
+    """Return portals as named arrays, for the disk cache."""
     return {
         "states": portals.states,
         "costs": portals.costs,
@@ -219,7 +219,7 @@ class PathSearch:
         self._lattice = lattice
 
     def prepare(self) -> None:
-        """Compute now what all later searches use."""
+        """Compute now what all later searches share: paths between portals, and landmarks."""
         with stage("finding the paths between floors"):
             portals = len(self._portals.states) > 0
         for area in stage_items("searching the paths of each part", self.partition.regions):
@@ -228,9 +228,10 @@ class PathSearch:
                 _ = area.trees_to_exits
 
     def find_path(self, source: int, goals: Goals) -> list[int] | None:
-        """Return the states on the cheapest path from `source` to one of the goals, or None.
+        """Return the states on the cheapest path from `source` to any one of the goals.
 
-        Of paths of equal cost, equal arguments always give the same one.
+        Both ends are included, and the additional cost of the goal counts. None means that there is
+        no path. Of paths of equal cost, equal arguments always give the same one.
         """
         part = self.partition
         portal_path = self._portal_path(source, goals)

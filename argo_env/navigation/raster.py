@@ -30,7 +30,7 @@ class Grid:
 
     @staticmethod
     def covering(rect: tuple[float, float, float, float]) -> "Grid":
-        """Return the grid that covers [x0, y0, x1, y1], with its lines at multiples of CELL."""
+        """Return the smallest grid over [x0, y0, x1, y1] (m) with lines at multiples of CELL."""
         i0, j0 = np.floor(rect[0] / CELL + 1e-6), np.floor(rect[1] / CELL + 1e-6)
         i1, j1 = np.ceil(rect[2] / CELL - 1e-6), np.ceil(rect[3] / CELL - 1e-6)
         return Grid(float(i0 * CELL), float(j0 * CELL), int(i1 - i0), int(j1 - j0))
@@ -38,27 +38,28 @@ class Grid:
     def centers(
         self, i: NDArray[np.int64], j: NDArray[np.int64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return x and y of the cells' centres, in m."""
+        """Return x and y (m) of the centres of the cells (i, j), as two arrays."""
         return self.x0 + (i.astype(float) + 0.5) * CELL, self.y0 + (j.astype(float) + 0.5) * CELL
 
 
 @dataclass(frozen=True)
 class Columns:
-    """Entries for each solid in each cell that it reaches, as arrays of the same length.
-
-    `top_at_center` is the height of the solid at the cell's centre, or -inf if it is not there.
-    """
+    """Entries for each solid in each cell that it reaches, as arrays of the same length."""
 
     cell: NDArray[np.int64]
     """number of the cell, i * ny + j"""
     bottom: NDArray[np.float64]
+    """height (m) of the solid's lowest point in the cell"""
     top: NDArray[np.float64]
+    """height (m) of its highest point in the cell"""
     top_at_center: NDArray[np.float64]
+    """height (m) of its upper side at the cell's centre; -inf if it is not there"""
     walking: NDArray[np.bool_]
+    """True if the solid is one to walk on"""
 
 
 def rasterise(elements: tuple[Element, ...], grid: Grid) -> Columns:
-    """Return the columns of all solids, sorted by cell."""
+    """Return the entries of the elements' solids for each cell that they reach, sorted by cell."""
     parts = [
         (*_columns_of(solid, grid), element.role in WALKING_ROLES)
         for element in elements

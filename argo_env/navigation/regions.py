@@ -181,14 +181,20 @@ class Region:
 
 
 def walk_tree(following: NDArray[np.int32], start: int) -> Iterator[int]:
-    """Yield `start` and the states that follow it, up to the root of the tree."""
+    """Yield `start` and the states that follow it, up to the root of the tree.
+
+    `following` has the next state of each, negative at the root.
+    """
     while start >= 0:
         yield start
         start = int(following[start])
 
 
 def find_cut_heights(lattice: Lattice, floors: Sequence[float]) -> list[float]:
-    """Return the heights (m) between consecutive floors that the fewest moves cross."""
+    """Return one height (m) between each two consecutive floors: the one that fewest moves cross.
+
+    `floors` are the heights (m) of the floors, ascending.
+    """
     z = lattice.surface.z[lattice.cell]
     moves = lattice.costs.tocoo()
     a, b = z[moves.coords[0]], z[moves.coords[1]]
@@ -223,9 +229,9 @@ class Partition:
 
 
 def make_partition(lattice: Lattice, cuts: Sequence[float], parts: Parts = NO_CACHE) -> Partition:
-    """Return the partition of the lattice at the heights `cuts` (m).
+    """Return the lattice cut at the heights `cuts` (m), which are ascending, into regions.
 
-    What takes long to compute of its regions is stored in `parts`.
+    `parts` is where the regions store what takes long to compute.
     """
     region = np.searchsorted(np.array(cuts), lattice.surface.z[lattice.cell])
     members = [np.flatnonzero(region == r) for r in range(len(cuts) + 1)]
@@ -243,10 +249,10 @@ def make_partition(lattice: Lattice, cuts: Sequence[float], parts: Parts = NO_CA
 
 
 def repartition(partition: Partition, lattice: Lattice, changed: NDArray[np.bool_]) -> Partition:
-    """Return the partition of a `lattice` with the same states that has lost moves.
+    """Return the same partition for another lattice, with the same states but fewer moves.
 
-    States that have lost moves are those of the mask `changed`. Regions without such states are
-    shared, with all that has been computed of them.
+    `changed` is a mask of the states that moves are missing from. Regions without such states are
+    shared with `partition`, with all that has been computed of them.
     """
     crossings = _crossings(lattice, partition.region)
     regions = [

@@ -19,7 +19,8 @@ _STEEP = 0.2  # slope above which a path is on stairs
 def recent_poses(poses: Iterable[Pose], length: float) -> list[Pose]:
     """Return the poses of the last `length` m of the robot's path, the latest one last.
 
-    They are those of a little more than `length`, or all that there are.
+    The earliest one is the first at which the length is reached. If the path is shorter, all poses
+    are returned.
 
     Args:
         poses: Observed poses of the robot, the latest one first.
@@ -36,9 +37,9 @@ def recent_poses(poses: Iterable[Pose], length: float) -> list[Pose]:
 
 
 def path_through(poses: Sequence[Pose]) -> Path:
-    """Return the path through consecutive observed poses, at least one, by straight drives.
+    """Return the path through observed poses in their order, at least one, as drives and turns.
 
-    Of poses closer together than a stride, only the turn counts.
+    From a pose to one that is less than 5 cm away, there is only a turn.
     """
     motions: list[Motion] = []
     here = poses[0]
@@ -82,9 +83,10 @@ def _opposite_pose(pose: Pose) -> Pose:
 
 
 def path_back(path: Path, pose: Pose, length: float) -> Path:
-    """Return the path from the pose on `path` nearest to `pose` back along it, for `length` m.
+    """Return the path back along `path` from its pose nearest to `pose`, for at most `length` m.
 
-    It is driven in reverse, and has no motions where the path begins there.
+    The motions are those of `path` in reverse, so what was driven forwards is driven backwards. It
+    is shorter if the start of `path` is nearer, and without motions if it is there.
     """
     if not path.motions:
         return Path(pose, ())

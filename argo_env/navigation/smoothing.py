@@ -43,7 +43,7 @@ class FlatMap:
 
     @staticmethod
     def at_height(surface: Surface, z: float) -> "FlatMap":
-        """Return the map of all cells whose height still counts as flat about z (m)."""
+        """Return the map of the cells whose height is at most DRIVING_LEVEL from `z` (m)."""
         free = np.zeros((surface.grid.nx, surface.grid.ny), dtype=bool)
         level = np.abs(surface.z - z) <= DRIVING_LEVEL
         free[surface.i[level], surface.j[level]] = True
@@ -117,7 +117,10 @@ class FlatMap:
         return room > outer + 2 * _ASIDE + CELL / 2, room < _inner_radius(footprint) - _ASIDE
 
     def is_drive_clear(self, a: Pose, b: Pose, footprint: Footprint) -> bool:
-        """Return True if the robot touches free cells only as it drives straight from a to b."""
+        """Return True if the robot touches free cells only as it drives straight from a to b.
+
+        It drives forwards: the headings of a and b are ignored.
+        """
         reach = footprint.radius + MARGIN + CELL
         low, high = (min(a.x, b.x), min(a.y, b.y)), (max(a.x, b.x), max(a.y, b.y))
         x, y = _centers_near(self._border, low, high, reach)
@@ -128,7 +131,7 @@ class FlatMap:
     def is_turn_clear(self, at: Pose, turn: float, footprint: Footprint) -> bool:
         """Return True if the robot touches free cells only, and no rim, in a turn in place.
 
-        `turn` is in rad.
+        It turns by `turn` (rad, counter-clockwise) from the pose `at`.
         """
         reach = footprint.radius + MARGIN + CELL
         i, j = int((at.x - self.grid.x0) / CELL) + 2, int((at.y - self.grid.y0) / CELL) + 2
@@ -172,10 +175,10 @@ def _centers_near(
 
 
 def smooth(path: Path, flat_map: Callable[[float], FlatMap], robot: RobotSpec) -> Path:
-    """Return the path with level stretches shortened where that saves time.
+    """Return the path with shortcuts where they save time.
 
-    This applies to stretches that are driven forwards. `flat_map` returns the map of the cells
-    whose height counts as flat about a height (m).
+    They replace parts that are driven forwards on the flat; start and end stay. `flat_map` returns
+    the map of the cells whose height counts as flat about a height (m).
     """
     motions: list[Motion] = []
     stretch: list[Motion] = []
@@ -271,7 +274,10 @@ def _vertices(stretch: list[Motion]) -> list[Pose]:
 
 
 def connecting_motions(a: Pose, b: Pose) -> list[Motion]:
-    """Return a turn towards b, the drive there, and the turn to the heading of b."""
+    """Return the turn at a towards b, the drive there, and the turn to the heading of b.
+
+    Turns and a drive that are not needed are left out.
+    """
     if math.dist((a.x, a.y), (b.x, b.y)) < _SAME_PLACE:
         return turn_motions(a, b.yaw)
     yaw = math.atan2(b.y - a.y, b.x - a.x)
@@ -280,7 +286,10 @@ def connecting_motions(a: Pose, b: Pose) -> list[Motion]:
 
 
 def turn_motions(pose: Pose, yaw: float) -> list[Motion]:
-    """Return the turn in place to the heading `yaw` (rad); none if the robot has it already."""
+    """Return the turn in place from `pose` to the heading `yaw` (rad) as a list with one motion.
+
+    It turns by at most half a turn. The list is empty if `pose` has this heading already.
+    """
     angle = wrap(yaw - pose.yaw)
     if abs(angle) < _SAME_YAW:
         return []

@@ -33,7 +33,7 @@ class Stencil:
     step: tuple[int, ...]
 
     def surface_heights(self, surface: Surface, middle: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Return heights of the surface (m) at each offset about the cells `middle`.
+        """Return the heights (m) of the surface at all offsets from each of the cells `middle`.
 
         The shape is (len(offsets), len(middle)); nan where the surface does not continue.
         """
@@ -50,7 +50,10 @@ class Stencil:
 
 
 def make_stencil(cells: set[tuple[int, int]]) -> Stencil:
-    """Return the stencil over a set of offsets, convex enough to be walked towards the middle."""
+    """Return the stencil of a set of offsets; the middle (0, 0) is added.
+
+    From each offset, steps to neighbours in the set must lead ever nearer to the middle.
+    """
     ordered = sorted(cells | {(0, 0)}, key=lambda c: (c[0] ** 2 + c[1] ** 2, c))
     index = {offset: k for k, offset in enumerate(ordered)}
     parents, steps = [0], [0]
@@ -78,7 +81,7 @@ def overlaps_cells(
     x: NDArray[np.float64],
     y: NDArray[np.float64],
 ) -> NDArray[np.bool_]:
-    """Return a mask of the cells that a robot touches.
+    """Return a mask of the cells of the grid that a robot touches.
 
     A cell that is touched only at its edge is not counted. The arrays are broadcast.
 
@@ -101,10 +104,10 @@ def touches_rectangles(
     y: NDArray[np.float64],
     half: tuple[float, float],
 ) -> NDArray[np.bool_]:
-    """Return a mask of the rectangles that a robot touches.
+    """Return a mask of the rectangles, all of one size, that a robot touches.
 
-    Two convex shapes are apart if a normal of one of their edges separates them. The arrays are
-    broadcast.
+    They lie along the axes; one that is touched only at its edge is not counted. Two convex shapes
+    are apart if a normal of one of their edges separates them. The arrays are broadcast.
 
     Args:
         footprint: Footprint of the robot.
@@ -131,15 +134,19 @@ def touches_rectangles(
 
 
 def offsets_in_reach(footprint: Footprint, margin: float) -> NDArray[np.int64]:
-    """Return the offsets of all rows or columns of cells that the robot can reach from its own."""
+    """Return the offsets, from -k to k cells, that include all cells a robot at 0 may touch.
+
+    They hold along both axes and for all headings. `margin` (m) is added on all sides.
+    """
     reach = math.ceil((footprint.radius + margin) / CELL) + 1
     return np.arange(-reach, reach + 1)
 
 
 def covered_cells(footprint: Footprint, yaw: float, margin: float) -> set[tuple[int, int]]:
-    """Return the cells that a robot at the middle of a cell with heading `yaw` (rad) touches.
+    """Return the offsets (i, j) from the robot's cell of all cells that it touches.
 
-    `margin` (m) is added on all sides.
+    The robot is at the centre of its cell with heading `yaw` (rad). `margin` (m) is added on all
+    sides.
     """
     around = offsets_in_reach(footprint, margin)
     i, j = np.meshgrid(around, around, indexing="ij")
@@ -149,12 +156,18 @@ def covered_cells(footprint: Footprint, yaw: float, margin: float) -> set[tuple[
 
 
 def footprint_stencil(footprint: Footprint, heading: int, margin: float) -> Stencil:
-    """Return the stencil of a robot that stands or drives with lattice heading `heading`."""
+    """Return the stencil of a robot that stands or drives with lattice heading `heading`.
+
+    `margin` (m) is added on all sides.
+    """
     return make_stencil(covered_cells(footprint, heading_angle(heading), margin))
 
 
 def turn_stencil(footprint: Footprint, heading: int, margin: float) -> Stencil:
-    """Return the stencil of a turn in place from `heading` to the next one, counter-clockwise."""
+    """Return the stencil of a turn in place from `heading` to the next one, counter-clockwise.
+
+    It has all cells that the robot touches on the way. `margin` (m) is added on all sides.
+    """
     cells: set[tuple[int, int]] = set()
     for k in range(SWEEP_STEPS + 1):
         yaw = heading_angle(heading) + k / SWEEP_STEPS * heading_angle(1)
@@ -163,5 +176,5 @@ def turn_stencil(footprint: Footprint, heading: int, margin: float) -> Stencil:
 
 
 def heading_angle(heading: int) -> float:
-    """Return the angle (rad) of a lattice heading."""
+    """Return the angle (rad) of a lattice heading, which is its number from 0 to 7."""
     return heading * 2 * math.pi / HEADINGS

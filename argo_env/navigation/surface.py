@@ -53,9 +53,9 @@ class Surface:
         return self.i * self.grid.ny + self.j
 
     def cells_near(self, x: float, y: float, distance: float) -> NDArray[np.int64]:
-        """Return the cells, ascending, of a square about (x, y).
+        """Return the numbers of the surface's cells in a square about (x, y), ascending.
 
-        The sides of the square are `distance` (m) away from (x, y).
+        The sides of the square are `distance` (m) away from (x, y); cells at all heights count.
         """
         # Poses may be anywhere, even at coordinates that exceed the size of any array.
         i0, i1 = (
@@ -77,7 +77,7 @@ def _floor_within_limits(number: float) -> int:
 
 
 def surface_arrays(surface: Surface) -> Arrays:
-    """Return a surface as arrays, without its grid."""
+    """Return a surface as named arrays, for the disk cache; its grid is left out."""
     return {"i": surface.i, "j": surface.j, "z": surface.z, "links": surface.links}
 
 

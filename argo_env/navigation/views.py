@@ -17,17 +17,20 @@ _FAR_COST = 3.0  # s that a view at full range costs more than one at half the r
 
 
 def face_normal(checkpoint: SiteCheckpoint) -> NDArray[np.float64]:
-    """Return the unit vector in which the face looks, shape (3,)."""
+    """Return the unit vector from the checkpoint's face towards whoever reads it, shape (3,)."""
     return np.array([np.cos(checkpoint.yaw), np.sin(checkpoint.yaw), 0.0])
 
 
 def sight_target(checkpoint: SiteCheckpoint) -> NDArray[np.float64]:
-    """Return the point (m) just in front of the face that must be seen, shape (3,)."""
+    """Return the point (m) 2 cm in front of the face, which the camera must see, shape (3,)."""
     return np.array(checkpoint.position) + FACE_GAP * face_normal(checkpoint)
 
 
 def camera_positions(poses: NDArray[np.float64], robot: RobotSpec) -> NDArray[np.float64]:
-    """Return the positions (m) of the raised camera for poses (x, y, z, yaw), shape (n, 3)."""
+    """Return the positions (m) of the camera on the raised arm, shape (n, 3).
+
+    The robot's `poses` are x, y, z (m) and yaw (rad), shape (n, 4).
+    """
     along, left, up = robot.sensor.offset
     cos, sin = np.cos(poses[:, 3]), np.sin(poses[:, 3])
     shift = np.column_stack([along * cos - left * sin, along * sin + left * cos])
@@ -65,7 +68,10 @@ class CandidateViews:
 
 
 def candidate_views(checkpoint: SiteCheckpoint, lattice: Lattice) -> CandidateViews:
-    """Return the views of a checkpoint from states on level ground, whatever stands between."""
+    """Return the states from which a checkpoint's face is in range and not too oblique.
+
+    Only states on level ground count. Solids between camera and face are ignored.
+    """
     sensor, target = lattice.robot.sensor, sight_target(checkpoint)
     reach = sensor.max_range + math.hypot(*sensor.offset[:2])
     states = lattice.state_of[lattice.surface.cells_near(target[0], target[1], reach)]
@@ -87,7 +93,10 @@ def candidate_views(checkpoint: SiteCheckpoint, lattice: Lattice) -> CandidateVi
 def has_line_of_sight(
     site: Site, origins: NDArray[np.float64], target: NDArray[np.float64]
 ) -> NDArray[np.bool_]:
-    """Return a mask of `origins`, shape (n, 3), in line of sight of `target`, shape (3,)."""
+    """Return a mask of the `origins` from which no solid of the site hides `target`.
+
+    `origins` has the shape (n, 3) and `target` (3,), both in m.
+    """
     clear = np.ones(len(origins), dtype=bool)
     if not len(origins):
         return clear

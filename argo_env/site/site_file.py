@@ -34,7 +34,10 @@ def parse_site_spec(text: str, source_name: str) -> SiteSpec:
 
 
 def to_yaml(spec: SiteSpec) -> str:
-    """Return a description as YAML for `read_site_spec`, without fields that have their defaults."""
+    """Return a site's description as YAML that `read_site_spec` reads.
+
+    Fields that have their defaults are left out.
+    """
     return yaml.safe_dump(
         spec.model_dump(mode="json", exclude_defaults=True),
         sort_keys=False,

@@ -81,7 +81,7 @@ class PlanComparison:
 
     @property
     def has_independent_pairs(self) -> bool:
-        """True if each world has one pair; only then the pairs are independent of each other."""
+        """True if no world has several pairs; only then the pairs are independent of each other."""
         return len({a.seed for a, _ in self.pairs}) == len(self.pairs)
 
     @cached_property
@@ -165,7 +165,7 @@ def compare_plans(
 
 
 def find_plan(results: EvaluationResults, name: str) -> PlanName:
-    """Return the plan with this name in the tables of an evaluation, or with this mission's name.
+    """Return the evaluation's plan with this label in tables or, without one, with this mission.
 
     Raises NotFound if there is no such plan, Conflict if there are several.
     """

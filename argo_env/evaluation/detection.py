@@ -53,10 +53,11 @@ class FaultDetection(Model):
 
 
 def detections(record: RunRecord, site: Site) -> tuple[FaultDetection, ...]:
-    """Return the detection of each fault that occurred in a run on the site and can be found.
+    """Return each fault that occurred in a run on the site and can be found, with its delay.
 
-    Among faults of one kind, each anomaly counts for one fault only, in the order of time. It
-    counts for faults of two kinds if both have the same sign at the same location.
+    A fault that the robot did not find has no delay. Among faults of one kind, each anomaly counts
+    for one fault only, in the order of time. It counts for faults of two kinds if both have the
+    same sign at the same location.
     """
     assigned: set[tuple[str, int]] = set()
     found = []

@@ -106,7 +106,7 @@ class EvaluationPlan(Model):
         return self.key(self.planned_run(case, row.seed)) == row.key
 
     def faults_for(self, case: str, seed: int) -> str:
-        """Return the name of the faults in a run: those drawn for the world, else those of `case`.
+        """Return the name of a run's faults: of those drawn, or `case` if the plan never draws any.
 
         `case` is the name of the case's set of faults.
         """

@@ -116,10 +116,10 @@ def estimate_run_rate(
 ) -> tuple[Rate, IntervalMethod]:
     """Compute the rate of independent runs, one in each world, and the method of its interval.
 
-    `outcomes` states which runs have the property. The exact interval is valid if the number of
-    runs or the width of the interval was fixed before. It is not valid if the evaluation stopped at
-    the decision of a requirement, which is the more likely the farther the runs deviate from the
-    truth, nor with `any_time`.
+    `outcomes` states which runs have the property. The interval is exact if that is valid: if the
+    number of runs or the width of the interval was fixed before. It is a confidence sequence with
+    `any_time`, or if the evaluation has a requirement, at whose decision it stops: that is the more
+    likely the farther the runs deviate from the truth.
     """
     count, runs = sum(outcomes), len(outcomes)
     if not (evaluation.stopping.require or any_time):

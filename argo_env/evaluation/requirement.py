@@ -35,7 +35,7 @@ class RateRequirement(Model):
         return f"{self.quantity} {'>=' if self.at_least else '<='} {self.share:g}"
 
     def evaluate_quantity(self, row: "RunRow") -> bool | None:
-        """Return True if a run has the required quantity; None if the run does not count.
+        """Return True if a run has the quantity, such as a contact; None if the run does not count.
 
         A run that could not be carried out gets the value that counts against the requirement.
         """

@@ -110,7 +110,7 @@ class EvaluationResults:
         )
 
     def faults_for(self, row: RunRow) -> str:
-        """Return the name of a run's faults: those drawn for its world, or those of its case."""
+        """Return the name of a run's faults: of the drawn ones, or its case's if none are drawn."""
         return self.plan.faults_for(row.faults, row.seed)
 
     @cached_property
@@ -257,9 +257,10 @@ class FailureCluster:
 
 
 def cluster_failures(rows: Iterable[RunRow]) -> tuple[FailureCluster, ...]:
-    """Return the clusters of failed runs at most half a metre apart, by floor.
+    """Group unsuccessful runs by the location where they failed, sorted by floor.
 
-    On a floor, the cluster with the most failures comes first.
+    Each is at most half a metre from the first run of its cluster. Rows without a location are left
+    out. On a floor, the cluster with the most failures comes first.
     """
     clusters: list[FailureCluster] = []
     for row in rows:

@@ -89,7 +89,7 @@ def require_libraries() -> None:
 
 
 def check_recording_path(file: Path) -> None:
-    """Raise ArgoError if no recording can be written to the file; call it before a long run.
+    """Raise ArgoError if no recording can be written to this file; call it before a long run.
 
     The reason is its suffix, its folder, or an extra that is not installed.
     """

@@ -28,7 +28,7 @@ def make_timestamp(t: float) -> Timestamp:
 
 
 def set_time(message: Timestamp, t: float) -> Timestamp:
-    """Set the message to the time t (s), and return it."""
+    """Set the message to the time t (s), in place, and return it."""
     message.seconds, message.nanos = divmod(nanoseconds(t), 1_000_000_000)
     return message
 
@@ -39,7 +39,7 @@ def make_vector(v: Vector) -> Vector3:
 
 
 def make_pose(position: Vector, rotation: Quaternion) -> PoseMessage:
-    """Return the message for a position (m) and an attitude."""
+    """Return the message for a position (m) and an attitude (unit quaternion)."""
     message = PoseMessage()
     set_vector(message.position, position)
     set_rotation(message.orientation, rotation)
@@ -47,22 +47,22 @@ def make_pose(position: Vector, rotation: Quaternion) -> PoseMessage:
 
 
 def set_vector(message: Vector3, v: Vector) -> None:
-    """Set a message to the vector, in m."""
+    """Set a message to the vector, in m, in place."""
     message.x, message.y, message.z = v
 
 
 def set_rotation(message: QuaternionMessage, q: Quaternion) -> None:
-    """Set a message to the attitude."""
+    """Set a message to the attitude (unit quaternion), in place."""
     message.x, message.y, message.z, message.w = q
 
 
 def attitude(body: BodyPose) -> Quaternion:
-    """Return the attitude of the robot's body."""
+    """Return the attitude of the robot's body as a quaternion x, y, z, w."""
     return from_rpy((body.roll, body.pitch, body.yaw))
 
 
 def make_colour(c: Colour) -> Color:
-    """Return the message for a colour."""
+    """Return the message for a colour: red, green, blue and opacity, 0 to 1."""
     return Color(r=c[0], g=c[1], b=c[2], a=c[3])
 
 

@@ -32,7 +32,7 @@ from argo_env.site.shapes import Vector
 from argo_env.world.world import Shot
 
 LIMB_PERIOD = 1.0
-"""time in s between two messages about limbs that do not move"""
+"""longest time in s between two messages with the joints, even if none has moved"""
 
 JointPositions = Callable[[list[str]], list[float]]
 """function that returns the positions (rad or m) of the robot's joints with these names"""
@@ -63,7 +63,7 @@ class MotionTopics:
             self._joints.joints.add(name=name)
 
     def write_static(self, t: float) -> None:
-        """Write the transforms of the joints that do not move, at the time t (s)."""
+        """Write the transforms of the fixed joints, at the time t (s)."""
         static = FrameTransforms(
             transforms=[_transform(joint, *joint.child_pose(0.0)) for joint in self._fixed]
         )
@@ -72,9 +72,10 @@ class MotionTopics:
         self._writer.put("/tf_static", static, t)
 
     def write_sample(self, body: BodyPose, t: float) -> None:
-        """Write the pose of the robot and its joints at the time t (s).
+        """Write the robot's pose `body` and the positions of its movable joints at the time t (s).
 
-        The joints are written only if they have moved or `LIMB_PERIOD` has passed.
+        The joints are written only if one has moved, or `LIMB_PERIOD` has passed, since they were
+        last written.
         """
         position, rotation = (body.x, body.y, body.z), attitude(body)
         base = self._base.transforms[0]

@@ -46,7 +46,7 @@ class ContentStream(BytesIO):
 
 
 def read_data_section(content: ContentStream) -> "Iterator[McapRecord]":
-    """Yield the records of the data section up to its DataEnd, each after its checksum is verified.
+    """Yield the records of the data section, with DataEnd as the last, after verifying checksums.
 
     After the last one, the position of the stream is the end of the section. Raises one of
     `decoding_errors` where the bytes can't be decoded.
@@ -82,7 +82,7 @@ def read_data_section(content: ContentStream) -> "Iterator[McapRecord]":
 
 
 def has_intact_end(content: bytes, start: int) -> bool:
-    """Return True if the content from `start` on is an intact index and the footer, and no more."""
+    """Return True if the content from byte `start` on is just an index and footer, both intact."""
     position = len(content) - len(MAGIC) - _FOOTER.size
     if position < start or not content.endswith(MAGIC):
         return False
@@ -92,7 +92,7 @@ def has_intact_end(content: bytes, start: int) -> bool:
 
 
 def count_trailing_bytes(content: bytes, start: int) -> int | None:
-    """Return the number of bytes after an intact end whose index begins at `start`.
+    """Return the number of bytes after the intact end of a file whose index begins at byte `start`.
 
     None means that the content has no intact end.
     """

@@ -74,7 +74,7 @@ class BatteryState(Model):
 
 
 def make_mission_state(machine: Machine, done: int, readings: int, abnormal: int) -> MissionState:
-    """Return the state of the mission from its machine, with numbers of actions and readings."""
+    """Return the state of the mission, from its machine and the numbers of the same names."""
     running = machine.running
     return MissionState(
         task=running.name if running else None,
@@ -94,7 +94,7 @@ def make_mission_state(machine: Machine, done: int, readings: int, abnormal: int
 
 _LEVELS = {Tone.GOOD: Log.INFO, Tone.NOTICE: Log.WARNING, Tone.BAD: Log.ERROR}
 SAMPLE_PERIOD = 0.1
-"""least time in s between recorded poses; a drive with longer steps has one at each step"""
+"""time in s between recorded poses; a drive with longer steps has one at each step"""
 
 
 class RunRecorder(Observer):
@@ -171,7 +171,7 @@ class RunRecorder(Observer):
         self._begun = True
 
     def on_step(self, now: float, action: RobotAction | None) -> None:
-        """Write the robot's motion, and its path if that is a new one."""
+        """Write the step's pictures and, every `SAMPLE_PERIOD`, the robot's pose and new path."""
         self._now = now
         for shot in self._shots:
             write_shot(self._writer, shot, now)
@@ -239,11 +239,11 @@ class RunRecorder(Observer):
 
     @property
     def until(self) -> float | None:
-        """Simulated time in s up to which all can be read, whatever happens; None: nothing can."""
+        """Time in s up to which all stays readable if the process dies; None: nothing does."""
         return self._writer.until if self._begun else None
 
     def stop_recording(self) -> None:
-        """Discard pictures that are not written yet, and accept no more."""
+        """Discard the pictures that are not written yet, and receive no more from the world."""
         self._shots.clear()
         if self._setup is not None and isinstance(self._setup.world, World):
             self._setup.world.on_shot = None

@@ -51,7 +51,7 @@ def site_scenes(site: Site, t: float) -> dict[int, SceneUpdate]:
 
 
 def robot_scene(model: RobotModel, t: float) -> SceneUpdate:
-    """Return the scene of the robot's links, each in its own frame."""
+    """Return the scene of the robot's links, each in its own frame, with which it moves."""
     return SceneUpdate(
         entities=[
             _entity(link, link, solids, t, locked=True) for link, solids in model.visuals.items()
@@ -62,18 +62,19 @@ def robot_scene(model: RobotModel, t: float) -> SceneUpdate:
 def checkpoint_scene(
     checkpoints: Iterable[SiteCheckpoint], readings: Mapping[int, Reading], t: float
 ) -> SceneUpdate:
-    """Return the scene of checkpoints with their last readings.
+    """Return the scene of checkpoints with their last readings, which are given by checkpoint id.
 
-    A checkpoint is grey before its first reading, then green if it is normal and red if not.
+    A checkpoint without a reading is grey, one with a normal reading green, any other red.
     """
     return SceneUpdate(entities=[_checkpoint(c, readings.get(c.id), t) for c in checkpoints])
 
 
 def finding_scene(anomalies: Sequence[Anomaly], t: float) -> SceneUpdate:
-    """Return the scene of anomalies.
+    """Return the scene of anomalies, at the positions that are known of them.
 
-    An anomaly with a position has a ball, a label, and a box on the surface that it closes. One
-    that was only noticed or reported somewhere has a label there. Others are left out.
+    An anomaly with a position of its own has a ball and a label there, and a box on the part of the
+    surface that it closes. If only the robot's position is known, when it noticed or was told the
+    anomaly, there is a label at that position. Anomalies without any position are left out.
     """
     return SceneUpdate(
         entities=[

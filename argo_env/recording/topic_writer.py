@@ -24,7 +24,7 @@ class TopicWriter:
     """
 
     until: float | None = None
-    """time in s up to which all messages can be read, whatever happens; None: no message"""
+    """time in s up to which all messages stay readable if the process dies; None: none does"""
 
     def __init__(self) -> None:
         self._channels: dict[str, Any] = {}
@@ -46,16 +46,16 @@ class TopicWriter:
         self._write_message(topic, message.model_dump_json(exclude_none=True).encode(), t)
 
     def attach(self, name: str, media_type: str, content: str | bytes, t: float = 0.0) -> None:
-        """Write a file that belongs to the run; by default do nothing."""
+        """Store a file that belongs to the run, at the time t (s); by default do nothing."""
 
     def write_metadata(self, name: str, facts: Mapping[str, str]) -> None:
-        """Write metadata with this name; by default do nothing."""
+        """Store metadata under this name: texts by key; by default do nothing."""
 
     def flush_if_due(self, t: float) -> None:
-        """Store the messages now and then, as simulated time passes; by default do nothing."""
+        """Store all messages so far if a period is over at time t (s); by default do nothing."""
 
     def flush(self, t: float) -> None:
-        """Store all messages before the time t (s); by default do nothing."""
+        """Store all messages so far; t (s) is the present time. By default do nothing."""
 
     def close(self) -> None:
         """Write what is pending and what completes the recording; by default do nothing."""
@@ -73,9 +73,10 @@ Schema = dict[str, Any]
 
 
 def plain_schema(model: type[Model]) -> Schema:
-    """Return the schema of a model's JSON with `exclude_none`, without references.
+    """Return the JSON schema of a model as viewers support it: without references and null values.
 
-    Fields of free form, such as mappings, are left out.
+    Nested models are inlined. Fields without such a schema, such as mappings and fields of several
+    types, are left out.
     """
     full = model.model_json_schema(mode="serialization")
     return _plain_object(full, full.get("$defs", {})) | {"title": full["title"]}
@@ -90,7 +91,7 @@ def _plain_object(schema: Schema, definitions: Schema) -> Schema:
 
 
 def _plain_field(schema: Schema, definitions: Schema) -> Schema | None:
-    """Return the schema of a field without references; None if there is none."""
+    """Return the schema of a field as viewers support it; None if they support none."""
     while "$ref" in schema:
         schema = definitions[schema["$ref"].rpartition("/")[2]]
     if "anyOf" in schema:

@@ -15,7 +15,7 @@ FLUSH_PERIOD = 10.0
 
 
 def nanoseconds(t: float) -> int:
-    """Return the simulated time t (s), which begins at 0, in the unit of recordings."""
+    """Return a simulated time t (s, from the mission's start) in ns, the unit of recordings."""
     return round(t * 1e9)
 
 
@@ -38,18 +38,18 @@ class RecordingWriter(TopicWriter):
         self._writer.start(profile="", library="argo")
 
     def attach(self, name: str, media_type: str, content: str | bytes, t: float = 0.0) -> None:
-        """Add a file to the recording, after writing all earlier messages to disk."""
+        """Add a file at the time t (s), after writing all messages so far to disk."""
         data = content.encode() if isinstance(content, str) else content
         self.flush(t)
         self._writer.add_attachment(nanoseconds(t), nanoseconds(t), name, media_type, data)
         self._mark_intact()
 
     def write_metadata(self, name: str, facts: Mapping[str, str]) -> None:
-        """Add metadata with this name: texts by key."""
+        """Add metadata to the recording under this name: texts by key."""
         self._writer.add_metadata(name, dict(facts))
 
     def flush_if_due(self, t: float) -> None:
-        """Write all messages to disk if `FLUSH_PERIOD` has passed.
+        """Write all messages so far to disk if `FLUSH_PERIOD` has passed by the time t (s).
 
         The period is one of simulated time, so that equal runs give equal files.
         """
@@ -57,7 +57,7 @@ class RecordingWriter(TopicWriter):
             self.flush(t)
 
     def flush(self, t: float) -> None:
-        """Write all messages before the time t (s) to disk."""
+        """Write all messages so far to disk; the next period begins at the present time t (s)."""
         self._flushed = t
         self._writer.flush()  # type: ignore[no-untyped-call]
         self._mark_intact()

@@ -64,7 +64,7 @@ def page(record: RunRecord, site: Site) -> str:
 
 
 def machine_page(hfsm: Hfsm) -> str:
-    """Return a page that shows only the diagram of a machine for which `is_drawable` is true."""
+    """Return an HTML page with only the drawing of a machine that `is_drawable`."""
     return f"<!DOCTYPE html><style>{_style()}</style><main>{markup(draw_machine(hfsm))}</main>"
 
 

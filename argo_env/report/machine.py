@@ -15,7 +15,7 @@ from argo_compiler.il import Stop
 from argo_env.report.svg import Node, drawing, node, number, shorten
 
 MAX_STATES = 45
-"""greatest number of leaves and groups of a machine that is drawn"""
+"""largest number of leaves and composites of a machine that is drawn"""
 
 NODE_WIDTH = 290.0  # px
 SLOT = 19.0  # px, height of one transition's label
@@ -41,7 +41,7 @@ class _Row:
     text: str
     depth: int
     slots: list[int] = field(default_factory=list)
-    """numbers of the transitions that leave or enter on the right, from above"""
+    """numbers of the arrows that leave or enter on the right, from above"""
     y: float = 0.0
 
     @property
@@ -50,7 +50,7 @@ class _Row:
         return max(least, SLOT * len(self.slots) + 6)
 
     def slot_y(self, arrow: int) -> float:
-        """Return the y (px) of a transition's slot."""
+        """Return the y (px) at which the arrow with this number leaves or enters the row."""
         offset = (self.height - SLOT * len(self.slots)) / 2
         return self.y + offset + SLOT * (self.slots.index(arrow) + 0.8)
 

@@ -31,7 +31,10 @@ _SOLIDS = 1 << 13
 
 
 def outline(solid: Solid, axes: tuple[int, int]) -> list[Point]:
-    """Return the outline (m) of the solid in the plane of two site axes, counter-clockwise."""
+    """Return the corners (m) of the solid's outline, seen along the third axis, counter-clockwise.
+
+    `axes` are the indices of the two axes of the drawing: 0 for x, 1 for y, 2 for z.
+    """
     if isinstance(solid, Box):
         local = _CORNERS * np.array(solid.size) / 2
     else:

@@ -42,7 +42,10 @@ class Canvas:
         return MARGIN + (x - self.x0) * self.scale, MARGIN + (self.y1 - y) * self.scale
 
     def draw_solids(self, role: Role, solids: Iterable[Solid], axes: tuple[int, int]) -> Node:
-        """Draw the solids of one role as a single path."""
+        """Draw the outlines of the solids of one role as a single path.
+
+        `axes` are the indices of the site's axes that the drawing has.
+        """
         shapes = (
             polyline((self.at(*p) for p in outline(solid, axes)), closed=True) for solid in solids
         )
@@ -51,7 +54,7 @@ class Canvas:
     def draw_elements(
         self, shown: Iterable[tuple[Role, tuple[Solid, ...]]], axes: tuple[int, int]
     ) -> list[Node]:
-        """Draw all solids, lower roles first."""
+        """Draw all solids, given with their roles: one path for each role, by `DRAWING_ORDER`."""
         parts = list(shown)
         drawn = []
         for role in DRAWING_ORDER:
@@ -61,7 +64,7 @@ class Canvas:
         return drawn
 
     def draw_axes(self, names: tuple[str, str]) -> list[Node]:
-        """Draw the frame with coordinates every 2 m along both axes."""
+        """Draw the frame with coordinates every 2 m along both axes, which have these names."""
         left, top = self.at(self.x0, self.y1)
         right, bottom = self.at(self.x1, self.y0)
         marks = [
@@ -108,12 +111,15 @@ _ARROWS_UP_TO = 120.0
 
 
 def visited_floors(record: RunRecord) -> list[int]:
-    """Return the floors that the path touches, in ascending order."""
+    """Return the numbers of the floors that the driven path touches, in ascending order."""
     return sorted({sample.floor for sample in record.path})
 
 
 def draw_floor(site: Site, record: RunRecord, number: int) -> Node:
-    """Draw one floor from above: site, checkpoints, path, start, end, contacts and findings."""
+    """Draw the floor with this number from above: site, driven path, checkpoints and what happened.
+
+    Start and end of the path, contacts and findings are marked.
+    """
     floor_z = next(f.z for f in site.spec.floors if f.number == number)
     shown = [(e.role, solids_on_floor(e, floor_z, site.spec.storey)) for e in site.elements]
     parts = stretches(record.path, number)
@@ -209,7 +215,7 @@ _SHOWN = frozenset({Role.GROUND, Role.DECK, Role.STAIR, Role.VESSEL, Role.STRUCT
 
 
 def draw_side_view(site: Site, record: RunRecord) -> Node:
-    """Draw the site from the south, with x to the right and z up, and the path."""
+    """Draw the whole site and the driven path from the south, with x to the right and z up."""
     shown = [
         (e.role, e.solids)
         for e in site.elements

@@ -1,4 +1,4 @@
-"""Runs of tasks, in blocks for each visit to a group and for what lies between, and waits."""
+"""Executions of tasks in blocks, one for each visit to a group or stretch between, and waits."""
 
 import math
 from bisect import bisect_right
@@ -31,9 +31,10 @@ class Wait:
 
 
 def waits(record: RunRecord) -> tuple[Wait, ...]:
-    """Return the waits in the order of time.
+    """Return all waits of a run, sorted by their start.
 
-    They are WAIT tasks, waits for time windows and rounds, and those in pauses and reactions.
+    They are those of WAIT tasks, those for time windows and rounds, and those in pauses and
+    reactions.
     """
     unsorted = [*_planned(record), *_interrupted(record)]
     return tuple(sorted(unsorted, key=lambda wait: wait.start))
@@ -109,11 +110,11 @@ def _last(record: RunRecord) -> Interruption | None:
 
 @dataclass(frozen=True)
 class Block:
-    """Consecutive runs of tasks in the same outermost group, or outside of groups (None)."""
+    """Consecutive task runs in the same outermost group, or outside of groups (`group` None)."""
 
     group: str | None
     rounds: tuple[tuple[TaskRun, ...], ...]
-    """runs of each round; outside of groups there is one round"""
+    """task runs of each round; outside of groups there is one round"""
 
     @property
     def runs(self) -> tuple[TaskRun, ...]:
@@ -131,10 +132,11 @@ class Block:
 
 
 def blocks_by_group(record: RunRecord) -> tuple[Block, ...]:
-    """Return the runs of a record in blocks, in their order.
+    """Split the task runs of a record into blocks, each in one outermost group or in none.
 
-    If a group consists of nothing but another group, the rounds of the inner one count as well. The
-    drive of a reaction belongs to the visit that the reaction interrupts.
+    The order of the task runs is kept. If a group consists of nothing but another group, the rounds
+    of the inner one count as well. A task that a reaction drives belongs to the block that the
+    reaction interrupts.
     """
     hfsm = record.hfsm
     outermost = _outermost(hfsm)
@@ -164,7 +166,10 @@ def blocks_by_group(record: RunRecord) -> tuple[Block, ...]:
 def merge_waits(
     blocks: Sequence[Block], waits: Sequence[Wait]
 ) -> tuple[tuple[tuple[TaskRun | Wait, ...], ...], ...]:
-    """Return for each block its rounds, with the waits in them, all sorted by their start."""
+    """Return each block as its rounds, and each round as its task runs and waits, sorted by start.
+
+    A wait belongs to the last round that has begun by its start, or to the first round.
+    """
     begins = [part[0].start for block in blocks for part in block.rounds]
     spans = pairwise([-math.inf, *begins[1:], math.inf])
     result = []
@@ -179,10 +184,10 @@ def merge_waits(
 
 
 def rounds_with_readings(record: RunRecord) -> list[tuple[RoundRun, str]]:
-    """Return the rounds with a due time or an end condition, each with a text of its readings.
+    """Return the rounds with a due time or an end condition, each with a text of the known values.
 
-    The text gives the last values before the end of the round, for the checkpoints of the condition
-    that ends the repetition; it is empty if the round has not ended.
+    The text has the last value up to the end of the round for each checkpoint in the condition that
+    ends the repetition. It is empty if the round has not ended, or there is no such condition.
     """
     until = {c.name: c.repeat.until for c in record.hfsm.composites[1:] if c.repeat}
     return [
@@ -196,7 +201,7 @@ def rounds_with_readings(record: RunRecord) -> list[tuple[RoundRun, str]]:
 
 
 def repeat_rules(record: RunRecord) -> list[str]:
-    """Return a sentence for each group with timed or conditional rounds: when it repeats."""
+    """Return a sentence for each group with timed or conditional rounds: how often it repeats."""
     rules = []
     for group in record.hfsm.composites[1:]:
         repeat = group.repeat

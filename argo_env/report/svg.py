@@ -20,9 +20,9 @@ _CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]")
 def node(
     tag: str, *children: Node, text: str = "", title: str = "", **attributes: str | float
 ) -> Node:
-    """Return an element; a `title` becomes its last child.
+    """Return an SVG element with children and attributes; a `title` becomes its last child.
 
-    In names of attributes `_` stands for `-`, and `_` at the end is removed.
+    In the keywords of attributes `_` stands for `-`, and `_` at the end is removed: `class_`.
     """
     element = ElementTree.Element(tag)
     for name, value in attributes.items():
@@ -50,7 +50,7 @@ def drawing(width: float, height: float, name: str, *children: Node, class_: str
 
 
 def markup(element: Node) -> Markup:
-    """Return the element as text that is safe in a page."""
+    """Return the element as markup that a template inserts without escaping."""
     return Markup(ElementTree.tostring(element, encoding="unicode"))
 
 
@@ -60,18 +60,18 @@ def clean(text: str) -> str:
 
 
 def number(value: float) -> str:
-    """Return the number with one decimal at most, as less than a tenth of a pixel is invisible."""
+    """Return the number as text with at most one decimal; less than 0.1 px is invisible."""
     text = f"{value:.1f}".removesuffix(".0")
     return "0" if text == "-0" else text
 
 
 def shorten(text: str, length: int) -> str:
-    """Return the text, cut to `length` characters."""
+    """Return the text, cut to `length` characters with `…` as the last if it is longer."""
     return text if len(text) <= length else text[: length - 1].rstrip() + "…"
 
 
 def polyline(points: Iterable[Sequence[float]], closed: bool = False) -> str:
-    """Return the data of a `path` element through the points."""
+    """Return the `d` attribute of a `path` element that joins the points (px) by straight lines."""
     steps = " ".join(f"{number(p[0])},{number(p[1])}" for p in points)
     return f"M{steps}{'z' if closed else ''}"
 

@@ -1,4 +1,4 @@
-"""Timeline of the tasks, with a row for each task and a bar for each run, and charge curve."""
+"""Timeline with a row for each task and a bar for each of its executions, and charge curve."""
 
 import math
 from collections.abc import Iterator
@@ -20,7 +20,10 @@ _STEPS = (1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600)
 
 
 def draw_timeline(record: RunRecord) -> Node:
-    """Draw all runs of tasks, with the rounds of groups above and the measurements as dots."""
+    """Draw a timeline: a row for each task, with its executions as bars and its readings as dots.
+
+    Rounds of groups, waits, time windows, interruptions and findings are marked.
+    """
     begun = [(run.start, run.task) for run in record.tasks]
     begun += [(wait.start, wait.task) for wait in record.waits]
     rows = {name: i for i, name in enumerate(dict.fromkeys(name for _, name in sorted(begun)))}
@@ -57,7 +60,7 @@ def draw_timeline(record: RunRecord) -> Node:
 
 
 def lacks_measuring_times(run: TaskRun) -> bool:
-    """Return True if a run is a measurement and its record does not state when it measured."""
+    """Return True if the task measures, and the record does not state when it did so."""
     return run.measuring is None and run.action is Action.MEASURE
 
 
@@ -126,7 +129,10 @@ def _windows(record: RunRecord, rows: dict[str, int], px: float) -> Iterator[Nod
 
 
 def draw_time_axis(end: float, px: float, top: float, bottom: float) -> list[Node]:
-    """Draw lines from `top` to `bottom` at round times up to `end` (s), with `px` for 1 s."""
+    """Draw vertical lines from `top` to `bottom` (px) with labels, at round times up to `end` (s).
+
+    `px` is the width of 1 s in px.
+    """
     step = next((s for s in _STEPS if s * px >= 60), 3600 * math.ceil(60 / (3600 * px)))
     marks = []
     for t in range(0, math.floor(end) + 1, step):
@@ -181,8 +187,8 @@ def _anomalies(record: RunRecord, px: float, bottom: float) -> list[Node]:
 def draw_finding(x: float, y: float, number: int, class_: str) -> Node:
     """Draw a diamond about a position in px, with the number of a finding.
 
-    `class_` is `found` at the place of the finding, and `noticed` at the place from which the robot
-    noticed it.
+    `class_` is `found` at the position of the finding, and `noticed` at the position of the robot
+    when it noticed it.
     """
     return node(
         "g",
@@ -222,7 +228,7 @@ LOW = 20.0  # %, below which the robot reports a low battery
 
 
 def draw_charge_curve(record: RunRecord) -> Node | None:
-    """Draw the charge in percent on the time axis of the timeline.
+    """Draw the battery's charge in percent over time, with the same time axis as the timeline.
 
     Returns None if the record has fewer than two samples with a charge.
     """

@@ -20,7 +20,7 @@ _RAMP = ((0x0F, 0xA3, 0xA3), (0x25, 0x63, 0xEB), (0x7C, 0x3A, 0xED), (0xDB, 0x27
 
 
 def colour(share: float) -> str:
-    """Return the colour of a time, given as a share of the mission's duration from 0 to 1."""
+    """Return the colour of a time, given as its share (0 to 1) of the duration, as `#rrggbb`."""
     position = min(max(share, 0.0), 1.0) * (len(_RAMP) - 1)
     index = min(int(position), len(_RAMP) - 2)
     part = position - index
@@ -29,7 +29,7 @@ def colour(share: float) -> str:
 
 
 def stretches(path: Sequence[PathSample], floor: int | None) -> list[list[PathSample]]:
-    """Return the unbroken parts of the path on one floor, or the whole path if `floor` is None."""
+    """Return the unbroken parts of the path on a floor; with `floor` None, the whole as one."""
     if floor is None:
         return [list(path)] if path else []
     runs = groupby(path, key=lambda sample: sample.floor == floor)
@@ -43,7 +43,7 @@ def draw_track(
     end: float,
     aside: float = 0.0,
 ) -> list[Node]:
-    """Draw the parts of a path as lines.
+    """Draw the parts of a path as lines, coloured by time.
 
     Args:
         parts: Unbroken parts of the path.

@@ -103,7 +103,10 @@ class SimulatedAction:
         return end
 
     def cancel(self, reason: str, interrupted: bool) -> None:
-        """Cancel the action: the following steps clean up, then the action ends."""
+        """Cancel the action: the following steps clean up, then the action ends.
+
+        `interrupted` states that the mission goes on afterwards. A second call does nothing.
+        """
         if self.cancelled is not None:
             return
         self.cancelled, self.interrupted = reason, interrupted
@@ -120,7 +123,8 @@ class SimulatedAction:
     def detour(self, setup: RunSetup) -> None:
         """Continue with a setup whose navigator knows of a new blockage.
 
-        If the current path leads through a known blockage, the robot halts and takes another path.
+        If the robot is driving, and its path leads through a known blockage, it halts and takes
+        another path.
         """
         self._setup = setup
         navigator = setup.navigator
@@ -139,13 +143,14 @@ class SimulatedAction:
 
     @property
     def is_driving(self) -> bool:
-        """True if the robot drives along its path and no time limit for reading runs."""
+        """True if the robot drives along its path, and no time limit for reading has begun."""
         return self._phase == self._drive and self._give_up_at == math.inf
 
     def count_measuring_steps(self, limit: int) -> int:
         """Return how many of the next steps, at most `limit`, the robot only measures in.
 
-        They are the steps before the one in which the measurement ends and its value is read.
+        They are the steps before the one in which the measurement ends and its value is read; 0 if
+        the robot does not measure now, or has a limit on the time for reading.
         """
         if self._phase != self._measure or self._give_up_at < math.inf:
             return 0
@@ -157,14 +162,14 @@ class SimulatedAction:
         return limit
 
     def skip_steps(self, count: int, now: float) -> None:
-        """Advance by `count` steps in which the robot only drives or measures, up to `now` (s)."""
+        """Skip `count` steps, up to `now` (s), in which the robot only drives on or measures."""
         self._now = now
         if self._phase == self._measure:
             for _ in range(count):
                 self._remaining -= self._setup.drive.time_step
 
     def reading(self, now: float) -> Reading | None:
-        """Return the reading that was taken, with time `now` (s); None if there is none."""
+        """Return the reading that the action has taken, if any, with `now` (s) as its time."""
         if self.measurement is None:
             return None
         checkpoint, value = self._checkpoint(), self.measurement.value

@@ -111,7 +111,10 @@ class Journal(Observer, Closing):
             )
 
     def require_unchanged(self, site: OpenedSite) -> None:
-        """Raise ArgoError if anything that the run depends on has changed since it began."""
+        """Raise ArgoError if anything that the run depends on has changed since it began.
+
+        A file of the mission that has been removed is no change: the journal has the mission.
+        """
         recorded = self.header.fingerprints
         source = self.header.spec.source
         now = fingerprints(site, self.header.spec)

@@ -83,7 +83,7 @@ class LoggedEvent(Model):
 
     @classmethod
     def from_event(cls, event: Event) -> "LoggedEvent":
-        """Return an event as data. Raises Invalid for no event, or one with invalid values."""
+        """Return an event as data. Raises Invalid for what is no event, or has invalid values."""
         kind = _NAMES.get(type(event))
         if kind is None:
             raise Invalid(f"{event!r} is not an event")
@@ -179,7 +179,7 @@ class Entry(Model):
 
     @property
     def sensed(self) -> tuple[Reading | Anomaly, ...]:
-        """Anomalies that the robot noticed at this moment, then the reading, if it took one."""
+        """Anomalies that the robot noticed, without abnormal readings; then its reading, if any."""
         # An abnormal reading is an anomaly as well, and is returned only as the reading.
         noticed = tuple(anomaly for anomaly in self.found if not anomaly.is_reading)
         return (*noticed, *((self.reading,) if self.reading else ()))

@@ -69,9 +69,10 @@ class OpenMachine:
         self._closed = False
 
     def append_task(self, task: Task) -> tuple[Command, ...]:
-        """Append a task to the mission; return the command that starts its action if it starts now.
+        """Append a task to the mission; return the command that starts its action.
 
-        Raises Conflict if an action runs, DiagnosticError if the mission has errors with the task.
+        The tuple is empty if the action does not start now, as in a pause. Raises Conflict if an
+        action runs, DiagnosticError if the mission has errors with the task.
         """
         if (running := self.running) is not None:
             raise Conflict(f"task '{running.name}' is still running")

@@ -16,7 +16,7 @@ class Observer:
     """
 
     wants_samples = True
-    """whether it is also called with entries in which only the robot's pose is new"""
+    """whether it must be called for entries in which only the robot's pose is new, too"""
 
     def on_begin(self, setup: RunSetup, spec: RunSpec) -> None:
         """Prepare for a run that is about to begin, or to continue from its journal."""

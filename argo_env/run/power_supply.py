@@ -60,7 +60,7 @@ class PowerSupply:
             self.reset(entry.charge, entry.body_pose)
 
     def reset(self, charge: float, pose: BodyPose) -> None:
-        """Set the battery's charge (0 to 1), with the robot at `pose`."""
+        """Set the battery's charge (0 to 1); it is charging if the robot is docked at `pose`."""
         if self._battery:
             self._battery.charge = charge
             # If the robot does not stand still there, the next step corrects this.
@@ -82,7 +82,7 @@ class PowerSupply:
     def predict(
         self, loads: NDArray[np.float64], places: PoseArray, seconds: float
     ) -> PredictedSupply:
-        """Predict the supply after each of n steps, up to the one in which the battery is empty.
+        """Predict the supply after each of n steps, but no further than the battery lasts.
 
         Args:
             loads: power in W that the robot draws in each step, shape (n,).
@@ -90,8 +90,8 @@ class PowerSupply:
             seconds: duration of a step in s.
 
         Returns:
-            The prediction. It excludes the step in which the battery is empty: that step is to be
-            made alone, because the run may end in it.
+            The prediction for the steps before the one that empties the battery; that step is to
+            be made alone, because the run may end in it.
         """
         charging = np.zeros(len(loads), dtype=bool)
         if self._battery is None:

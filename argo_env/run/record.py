@@ -298,7 +298,7 @@ class WindowOutcome(StrEnum):
 
 
 class WindowVisit(Model):
-    """Visit of a task that has a time window, or the lack of one."""
+    """Visit of a task that has a time window; also such a task that was not visited at all."""
 
     task: str
     earliest: float

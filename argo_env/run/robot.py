@@ -46,7 +46,7 @@ class RobotAction(Protocol):
         """Cancel the action: it cleans up, and a following step reports its end."""
 
     def detour(self, setup: RunSetup) -> None:
-        """Continue with a setup whose navigator knows of a new blockage."""
+        """Continue with a setup whose navigator knows of a new blockage, and avoid that."""
 
     def to_task_run(self, end: ActionEnd, now: float, distance: float, climbed: float) -> TaskRun:
         """Return the action, which ended at `now` (s), in the form of the run's record.
@@ -121,10 +121,11 @@ class AnyRobot(Protocol):
         """Let time step number `step` pass, up to `now` (s), with `action` running, if any."""
 
     def state_for_entry(self) -> dict[str, Any]:
-        """Return the fields of an entry of the log that hold the robot's state.
+        """Return the robot's present state as fields of an `Entry` of the log, by name.
 
-        These are its pose, distance, climb and charge, and its mishaps and contacts.
+        These are its pose, distance, climb, charge and contacts, and the mishaps that no entry has
+        yet.
         """
 
     def clear_mishaps_and_contacts(self) -> None:
-        """Clear the mishaps and ended contacts that `state_for_entry` has already reported."""
+        """Forget the mishaps and ended contacts so far, as an entry now has them."""

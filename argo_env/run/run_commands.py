@@ -151,10 +151,10 @@ _MACHINE_EVENTS = (Pause, Resume, TakeOver, GiveBack, Cancel, Occurred, ReadingG
 
 
 def check_event(event: RunCommand, mission: Mission, site: Site) -> Event:
-    """Return a command that is an event for the machine of the mission, after checks.
+    """Return the command as an event for the mission's machine, after checks.
 
-    Raises Invalid if it can't come from outside the run, NotFound for a checkpoint that the site
-    does not have.
+    Raises Invalid if it is no such event or can't come from outside the run, NotFound for a
+    checkpoint that the site does not have.
     """
     if not isinstance(event, _MACHINE_EVENTS):
         raise Invalid(f"{event!r} is not a command that a run can receive from outside")
@@ -211,7 +211,10 @@ def require_taken_over(machine: Machine, now: float) -> None:
 
 
 def mark_abnormal(site: Site, mission: Mission, event: Event) -> Event:
-    """Return the event, with values reported by a person marked as abnormal if the site says so."""
+    """Return the event with the values that it reports marked as abnormal where they are so.
+
+    These are values from a person; they are abnormal outside the checkpoint's nominal range.
+    """
 
     def is_abnormal(object_id: str | None, value: float) -> bool:
         return any(

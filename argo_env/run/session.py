@@ -54,7 +54,7 @@ def simulate(
         replace: whether the journal may replace an existing file.
         gui: whether the world is shown in a window.
         pace: the most simulated seconds that may pass in one second of real time; None: no limit.
-        interrupted: function that is called after each step; True stops the run there. The record
+        interrupted: function that is called before each step; True stops the run there. The record
             is that of the run so far, and the run can be resumed from its journal.
 
     Raises:
@@ -131,7 +131,7 @@ def continue_run(
     pace: float | None = None,
     interrupted: Callable[[], bool] = never_interrupted,
 ) -> RunRecord:
-    """Resume the run of a journal that `Journal.require_unchanged` has accepted."""
+    """Resume the run of a journal as `resume` does, but without its checks of the journal."""
     spec = journal.header.spec
     machine = make_machine(spec.mission, spec.beginning)
     all_observers = [journal, *_make_clock(pace), *observers]
@@ -142,7 +142,7 @@ def continue_run(
 
 
 class RealTimeClock(Observer):
-    """Real-time clock that keeps a run from being faster than `pace`; holds the time of its start.
+    """Observer that sleeps so that a run is no faster than `pace`; holds the time of its start.
 
     `pace` is the number of simulated seconds per second of real time.
     """

@@ -65,7 +65,7 @@ _NO_POSES: PoseArray = np.empty((0, 5))
 
 
 def never_interrupted() -> bool:
-    """Return False, as the default of `interrupted`: nobody interrupts the run."""
+    """Return False: the default of `Simulation.run(interrupted)`, with which nobody interrupts."""
     return False
 
 
@@ -216,8 +216,8 @@ class Simulation(Closing):
     def step(self) -> None:
         """Let one time step of the drive pass: the robot moves, and the machine handles events.
 
-        The run ends with its mission, with an empty battery, or after four hours. Raises Conflict
-        if the run has ended, the simulation is closed, or an earlier error has ended it.
+        The run ends with its mission, with an empty battery, or after four simulated hours. Raises
+        Conflict if the run has ended, the simulation is closed, or an earlier error has ended it.
         """
         self._require_not_ended()
         if not self._begun and self._ensure_begun():
@@ -239,7 +239,8 @@ class Simulation(Closing):
             until: time in s.
 
         Returns:
-            The robot's poses after each of the steps but the last.
+            The robot's poses after each of the steps but the last, shape (n, 5); no row after a
+            single step, or if the robot did not drive.
 
         Raises:
             Conflict: as for `step`.
@@ -371,7 +372,7 @@ class Simulation(Closing):
         return record
 
     def end_if_finished(self) -> None:
-        """End the run if its machine has finished, or the run can't continue."""
+        """End the run if its machine has finished, its battery is empty or its time is over."""
         if self.ended:
             return
         if self._state.machine.finished:

@@ -81,7 +81,7 @@ class StepBatch:
         self.steps = len(self._power)
 
     def poses_until(self, count: int) -> PoseArray:
-        """Return the robot's pose after each of the first `count` steps, or none if it stands."""
+        """Return the robot's pose after each of the first `count` steps; no row if it stands."""
         return self._poses[1 : 1 if self._ahead is None else count + 1]
 
     def pose_and_charge(self, step: int) -> tuple[PoseTuple, float | None]:
@@ -183,7 +183,7 @@ class Vehicle:
         return self._action
 
     def advance(self, step: int, now: float, action: RobotAction | None) -> Sensed:
-        """Let time step number `step` pass, up to time `now` (s), with `action` running."""
+        """Let time step number `step` pass, up to time `now` (s), with `action` running, if any."""
         setup, odometry, drive = self.setup, self.odometry, self.setup.drive
         if setup.schedule:
             setup.schedule.advance(now)
@@ -209,7 +209,10 @@ class Vehicle:
         return isinstance(drive, Powertrain) and drive.can_batch_steps
 
     def batch_steps(self, action: RobotAction | None, limit: int) -> StepBatch:
-        """Return the next steps, at most `limit`, in which the robot only continues `action`."""
+        """Predict the next steps, at most `limit`, in which the robot only continues what it does.
+
+        That is `action`; None: it stands. None of the steps has passed yet.
+        """
         own = self._action if action else None
         return StepBatch(self.setup, self.odometry, self.supply, own, limit)
 
@@ -227,7 +230,7 @@ class Vehicle:
         return Sensed(found=found) if found else _NOTHING_SENSED
 
     def state_for_entry(self) -> dict[str, Any]:
-        """Return the robot's state, as fields of an entry of the log.
+        """Return the robot's present state as fields of an `Entry` of the log, by name.
 
         These are pose, distance, climb, charge and open contacts, and the mishaps and ended
         contacts that no entry has yet.
@@ -244,7 +247,7 @@ class Vehicle:
         }
 
     def clear_mishaps_and_contacts(self) -> None:
-        """Clear the mishaps and ended contacts that `state_for_entry` has already reported."""
+        """Forget the mishaps and ended contacts so far, as an entry now has them."""
         self.odometry.ended_contacts.clear()
         self.odometry.mishaps.clear()
 

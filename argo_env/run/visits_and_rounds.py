@@ -100,9 +100,9 @@ def wait_runs(mission: Mission, visits: Sequence[VisitRun], now: float) -> tuple
 def visits_with_windows(
     mission: Mission, visits: Sequence[VisitRun], earlier: Collection[str] = ()
 ) -> tuple[WindowVisit, ...]:
-    """Return the visits of tasks with time windows, then those of these tasks without a visit.
+    """Return the visits of tasks with time windows, then an item for each unvisited one of them.
 
-    Tasks in `earlier` were visited before this run, and are left out if they have no visit in it.
+    An unvisited task in `earlier` is left out, as it was visited before this run.
     """
     tasks = {t.name: t for t in mission.tasks if t.window is not None}
     runs = [_window_run(tasks[visit.task], visit) for visit in visits if visit.task in tasks]

@@ -62,13 +62,13 @@ class ChunkSize:
 
     @property
     def limit(self) -> int:
-        """Number of calls that take about a quarter of a second; 1 before the first measurement."""
+        """Number of calls, 1 to 32, that take about 0.25 s; 1 before the first measurement."""
         if self._mean is None:
             return 1
         return max(1, min(_MAX_CHUNK, int(_CHUNK_TIME / max(self._mean, 1e-6))))
 
     def next_size(self, waiting: Sequence[Any], workers: int) -> int:
-        """Return the number of calls in the next chunk, so that all workers get some."""
+        """Return the number of calls in the next chunk: `limit`, or fewer to supply all workers."""
         return min(self.limit, max(1, len(waiting) // workers))
 
 

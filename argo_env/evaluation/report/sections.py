@@ -139,7 +139,7 @@ def failing_runs(results: EvaluationResults, folder: Path) -> list[tuple[RunRow,
 
 
 def failure_reasons(results: EvaluationResults) -> list[tuple[tuple[str, str], int, list[str]]]:
-    """Return the reasons of unsuccessful runs, each with its plan, number of runs and faults.
+    """Return the reasons why runs did not succeed, each with its plan, number of runs and faults.
 
     An item is ((name of the plan, reason), number of runs, names of their faults). The most
     frequent reasons come first. Reasons that differ only in seconds are merged.
@@ -212,7 +212,7 @@ def _draw_floor(results: EvaluationResults, site: Site, floor: int) -> Markup | 
 
 
 def describe_evaluation(results: EvaluationResults) -> list[tuple[str, list[str]]]:
-    """Return what was run, as names with values: missions, sites, faults, seeds and so on."""
+    """Return how an evaluation was made: names of facts, such as `Seeds`, each with its texts."""
     plan = results.plan
     cases = plan.cases
     names = {

@@ -69,7 +69,7 @@ def evaluation_headline(results: EvaluationResults) -> tuple[str, str]:
 
 
 def explain_sequence(results: EvaluationResults, several: bool) -> list[str]:
-    """Return sentences on why the interval of a rate is a confidence sequence.
+    """Return sentences that say why the interval of a rate is a confidence sequence.
 
     `several` is True if each world has several runs of the plan.
     """

@@ -129,7 +129,7 @@ def time_motions(
     with World(navigator.site, navigator.robot) as world:
         drive = make(world, navigator.robot)
         start = navigator.snap(start_pose(mission, navigator.site.docks))
-        drive.set_pose(BodyPose(start.x, start.y, start.z, start.yaw))
+        drive.place_robot(BodyPose(start.x, start.y, start.z, start.yaw))
         for task in mission.tasks[1:]:
             here = Pose(x=drive.pose.x, y=drive.pose.y, z=drive.pose.z, yaw=drive.pose.yaw)
             if task.pose is None:
@@ -140,7 +140,7 @@ def time_motions(
                 timed += time_path(drive, path)
             except RuntimeError:
                 failed += 1
-                drive.set_pose(BodyPose(path.end.x, path.end.y, path.end.z, path.end.yaw))
+                drive.place_robot(BodyPose(path.end.x, path.end.y, path.end.z, path.end.yaw))
     return timed, failed
 
 

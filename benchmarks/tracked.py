@@ -56,7 +56,7 @@ LAPS = {"slab": _plan_on_slab} | {
 def _drive_lap(drive: TrackedDrive, path: Path) -> tuple[float, float]:
     """Drive a path, and return the simulated seconds and the processor seconds."""
     start = path.start
-    drive.set_pose(BodyPose(start.x, start.y, start.z, start.yaw))
+    drive.place_robot(BodyPose(start.x, start.y, start.z, start.yaw))
     drive.follow(path, None)
     begun, steps = time.process_time(), 0
     while drive.step() is DriveStatus.MOVING:

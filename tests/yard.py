@@ -154,7 +154,7 @@ class GlidingDrive:
         self.pose = None
         self.velocities = []
 
-    def set_pose(self, pose):
+    def place_robot(self, pose):
         self.pose, self._left = pose, []
 
     def follow(self, path, velocity):

@@ -64,7 +64,7 @@ class Battery:
         self._load = watts
         self._remaining = min(max(self._remaining - watts * seconds / 3600.0, 0.0), self.capacity)
 
-    def steps_until(self, estimate: float, watts: float, seconds: float, limit: int) -> int:
+    def steps_until_charged(self, estimate: float, watts: float, seconds: float, limit: int) -> int:
         """Return the number of steps after which the estimated charge first is `estimate` or more.
 
         The battery is charged: each step takes `seconds` with a load of `watts`, less than 0;
@@ -106,7 +106,7 @@ def estimated_charge(voltage: float, current: float) -> float:
     return min(max(s0 + (rest - v0) / (v1 - v0) * (s1 - s0), 0.0), 1.0)
 
 
-def electric_load(
+def power_draw(
     power: PowerSpec, before: BodyPose, after: BodyPose, seconds: float, measuring: bool
 ) -> float:
     """Return the power (W) that the robot draws between two poses that are `seconds` apart.
@@ -124,14 +124,14 @@ def electric_load(
     return power.measuring if measuring else power.standing
 
 
-def electric_loads(
+def power_draw_per_step(
     power: PowerSpec,
     distances: NDArray[np.float64],
     poses: NDArray[np.float64],
     seconds: float,
     measuring: bool,
 ) -> NDArray[np.float64]:
-    """Return the power (W) for each of n steps, equal to `electric_load` to the last bit.
+    """Return the power (W) for each of n steps, equal to `power_draw` to the last bit.
 
     `distances` (m) of the steps have the shape (n,); `poses` before the first step and after each,
     which have no roll, the shape (n + 1, 5). `seconds` is the duration of a step.

@@ -57,10 +57,10 @@ class Drive(Protocol):
 
     @property
     def incidents(self) -> Sequence[Incident]:
-        """Faults of the drive since `set_pose`, whether or not the robot could continue."""
+        """Faults of the drive since `place_robot`, whether or not the robot could continue."""
         ...
 
-    def set_pose(self, pose: BodyPose) -> None:
+    def place_robot(self, pose: BodyPose) -> None:
         """Set the robot to the pose, at rest."""
         ...
 

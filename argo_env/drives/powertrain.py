@@ -68,10 +68,10 @@ class Powertrain:
     def incidents(self) -> Sequence[Incident]:
         return self._drive.incidents
 
-    def set_pose(self, pose: BodyPose) -> None:
+    def place_robot(self, pose: BodyPose) -> None:
         """Set the robot to the pose, at rest."""
         self.path_and_velocity = None
-        self._drive.set_pose(pose)
+        self._drive.place_robot(pose)
 
     def follow(self, path: Path, velocity: float | None) -> None:
         """Start to follow `path` as soon as no emergency stop or fault holds the robot.

@@ -45,7 +45,7 @@ class TimedDrive(ABC):
     def incidents(self) -> tuple[Incident, ...]:
         return ()
 
-    def set_pose(self, pose: BodyPose) -> None:
+    def place_robot(self, pose: BodyPose) -> None:
         """Set the robot to the pose, at rest."""
         self.halt()
         self._pose = pose

@@ -165,7 +165,10 @@ class Inspection(Closing):
         charges = battery.current < 0.0
         if missing > 0.0 or not charges:
             return self.now + max(0.0, missing) * 3600.0 / watts
-        return self.now + battery.steps_until(FULL, -watts, seconds, _PREDICTED_STEPS) * seconds
+        return (
+            self.now
+            + battery.steps_until_charged(FULL, -watts, seconds, _PREDICTED_STEPS) * seconds
+        )
 
     @property
     def _over(self) -> bool:

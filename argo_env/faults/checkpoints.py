@@ -13,7 +13,7 @@ from argo_env.faults.fault import Sign, TimedFault
 from argo_env.seeding import draw
 from argo_env.site import Site, SiteCheckpoint
 from argo_env.site.shapes import Vector
-from argo_env.world.placement import AS_PLANNED, Placement, draw_placement
+from argo_env.world.placement import AS_PLANNED, Placement, draw_checkpoint_placement
 
 if TYPE_CHECKING:
     from argo_env.faults.targets import FaultTargets
@@ -98,7 +98,7 @@ class DisplacedCheckpoint(CheckpointFault):
         upright = checkpoint.kind is CheckpointKind.LIQUID_LEVEL_GAUGE
         if upright and self.roll:
             raise Invalid(f"checkpoint {checkpoint.id} is a level gauge, which can't have a `roll`")
-        drawn = draw_placement(rng, upright)
+        drawn = draw_checkpoint_placement(rng, upright)
         # Round towards zero, since an offset that is rounded up might exceed the limit.
         x, y, z = (math.trunc(v * 1e4) / 1e4 for v in drawn.offset)
         turn, roll = (round(math.degrees(angle), 1) for angle in (drawn.turn, drawn.roll))

@@ -64,7 +64,7 @@ class Fault(Model):
         """
         return self
 
-    def changed_elements(self, site: Site) -> tuple[Element, ...]:
+    def elements_with_fault(self, site: Site) -> tuple[Element, ...]:
         """Return the site's elements with this fault, which must be resolved."""
         return site.elements
 

@@ -96,5 +96,5 @@ def _resolve_in_list(fault: AnyFault, number: int, site: Site, seed: int) -> Any
 def site_with_faults(site: Site, faults: Sequence[AnyFault]) -> Site:
     """Return the site with resolved faults: bricks lie on it, and plates are missing."""
     for fault in faults:
-        site = site.with_elements(fault.changed_elements(site))
+        site = site.with_elements(fault.elements_with_fault(site))
     return site

@@ -24,7 +24,7 @@ def draw_drive(
     goal: tuple[float, float, float],
     time: float,
     floors: tuple[int, int],
-    togo: float,
+    time_to_goal: float,
 ) -> NDArray[np.uint8]:
     """Return the camera's view with a mark at the goal, if it is in view, and a caption.
 
@@ -34,12 +34,16 @@ def draw_drive(
         goal: Position of the goal in m.
         time: Time in s.
         floors: Floors of the robot and of the goal.
-        togo: Time (s) to the goal at planning speeds; infinite without a path.
+        time_to_goal: Time (s) to the goal at planning speeds; infinite without a path.
     """
     frame = Image.fromarray(view.colours)
     _mark(ImageDraw.Draw(frame), view, camera, goal)
     here, there = floors
-    remaining = f"{togo:.0f} s to the goal" if math.isfinite(togo) else "no path to the goal"
+    remaining = (
+        f"{time_to_goal:.0f} s to the goal"
+        if math.isfinite(time_to_goal)
+        else "no path to the goal"
+    )
     left = [(f"{time:.1f} s", BRIGHT), (f"floor {here}", DIM)]
     right = [(remaining, BRIGHT), (f"floor {there}", DIM)]
     return np.asarray(add_bar(frame, left, right), dtype=np.uint8)

@@ -42,19 +42,20 @@ _REACHED, _UNREACHED, _RED = (52, 168, 110), (205, 50, 50), (190, 24, 24)
 
 
 def draw_site_plan(
-    site: Site, flaws: Sequence[Flaw] = (), standing: SafeStates | None = None
+    site: Site, flaws: Sequence[Flaw] = (), safe_states: SafeStates | None = None
 ) -> bytes:
     """Return a PNG of the floors with checkpoints, docking stations, places and stairs.
 
-    Flaws are numbered at their marks, and described below the plans. With `standing`, the reachable
-    part of the decks is shaded and the unreachable part hatched, if a docking station is usable.
+    Flaws are numbered at their marks, and described below the plans. With `safe_states`, the
+    reachable part of the decks is shaded and the unreachable part hatched, if a docking station is
+    usable.
     """
     sheet = make_sheet(floor_plans(site))
     image = sheet.image.copy()
-    shaded = standing is not None and standing.first_dock is not None
-    if standing is not None and shaded:
+    shaded = safe_states is not None and safe_states.first_dock is not None
+    if safe_states is not None and shaded:
         for number in sheet.panels:
-            _shade(image, sheet, number, standing)
+            _shade(image, sheet, number, safe_states)
     draw = ImageDraw.Draw(image)
     labels = LabelPlacer(sheet)
     numbers: dict[tuple[int, float, float], str] = {}
@@ -77,22 +78,22 @@ def draw_site_plan(
     return content.getvalue()
 
 
-def _shade(image: Image.Image, sheet: FloorSheet, number: int, standing: SafeStates) -> None:
+def _shade(image: Image.Image, sheet: FloorSheet, number: int, safe_states: SafeStates) -> None:
     """Shade the part of a floor that the robot can reach, and hatch the rest.
 
     To reach a part means to drive there from the first usable docking station and back, over the
-    poses of `standing`. Parts that are too narrow for a robot are not hatched. The floor with this
-    number is drawn in its panel of the picture.
+    poses of `safe_states`. Parts that are too narrow for a robot are not hatched. The floor with
+    this number is drawn in its panel of the picture.
     """
     from scipy.ndimage import binary_dilation, binary_opening
 
-    surface, site = standing.lattice.surface, standing.site
+    surface, site = safe_states.lattice.surface, safe_states.site
     levels = np.array([floor.z for floor in site.spec.floors]) - 0.1
     here = np.maximum(np.searchsorted(levels, surface.z, side="right"), 1) == number
     deck = np.zeros((surface.grid.nx, surface.grid.ny), dtype=bool)
     deck[surface.i[here], surface.j[here]] = True
     middles = np.zeros_like(deck)
-    cells = standing.lattice.cell[standing.reached]
+    cells = safe_states.lattice.cell[safe_states.reached]
     cells = cells[here[cells]]
     middles[surface.i[cells], surface.j[cells]] = True
     across = np.hypot(*np.mgrid[-_SWEPT : _SWEPT + 1, -_SWEPT : _SWEPT + 1])

@@ -51,7 +51,7 @@ class RemoteDrive:
         self.time_step = time_step
         self.pose = pose
 
-    def set_pose(self, pose: BodyPose) -> None:
+    def place_robot(self, pose: BodyPose) -> None:
         """No-op: a remote robot stays where it is."""
 
     def follow(self, path: Path, velocity: float | None) -> NoReturn:

@@ -84,7 +84,7 @@ class Perception:
         """
         steps: set[int] = set()
         for (_, every, turn), skippable in zip(self._turns, self._skippable, strict=True):
-            if skippable is None or not skippable.can_skip(*charges):
+            if skippable is None or not skippable.can_skip_updates(*charges):
                 steps.update(range(first + (turn - first) % every, last + 1, every))
         return steps
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.il.docked import DOCKED_DISTANCE_M, is_at_dock
-from argo_env.drives.battery import Battery, electric_load
+from argo_env.drives.battery import Battery, power_draw
 from argo_env.robot.pose import BodyPose, PoseArray
 from argo_env.robot.spec import RobotSpec
 from argo_env.run.log import Entry
@@ -70,7 +70,7 @@ class PowerSupply:
         """Draw the energy of a step of `seconds`, or charge the battery if the robot is docked."""
         if self._battery is None:
             return
-        watts = electric_load(self._power, before, after, seconds, measuring)
+        watts = power_draw(self._power, before, after, seconds, measuring)
         stands = watts in (self._power.standing, self._power.measuring)
         docked = stands and self._docked(after)
         self.charging = docked and self._battery.charge < 1.0

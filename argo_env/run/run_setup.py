@@ -20,7 +20,7 @@ from argo_env.navigation import Navigator
 from argo_env.run.drives_and_sensors import DRIVES, IDEAL, ROUTE, SENSORS, WORLD_DRIVES
 from argo_env.run.spec import RunSpec, ValueProfile
 from argo_env.seeding import generator
-from argo_env.sensing.ideal import IdealSensor, draw_values
+from argo_env.sensing.ideal import IdealSensor, draw_nominal_values
 from argo_env.sensing.onboard import OnboardSensor, onboard_watches
 from argo_env.sensing.sensor import Measurement, Sensor
 from argo_env.sensing.signals import standard_watches
@@ -207,7 +207,7 @@ def true_values(site: Site, seed: int, given: Mapping[int, float]) -> dict[int, 
     Raises NotFound for a checkpoint that the site does not have, Invalid for a value beyond its
     scale.
     """
-    truth = draw_values(site, np.random.default_rng(seed))
+    truth = draw_nominal_values(site, np.random.default_rng(seed))
     for id, value in given.items():
         checkpoint = site.checkpoint(id)
         if not checkpoint.range.contains(value):

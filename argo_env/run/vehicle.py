@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import StartAction
-from argo_env.drives.battery import electric_loads
+from argo_env.drives.battery import power_draw_per_step
 from argo_env.drives.powertrain import Powertrain, StepsAhead
 from argo_env.navigation import Blockage, Path
 from argo_env.navigation.retreat import path_through, recent_poses
@@ -76,7 +76,7 @@ class StepBatch:
         self._climbed = _running_sums(odometry.climbed, rises)
         measuring = action is not None and action.is_measuring
         power, time_step = setup.navigator.robot.power, setup.drive.time_step
-        loads = electric_loads(power, distances, self._poses, time_step, measuring)
+        loads = power_draw_per_step(power, distances, self._poses, time_step, measuring)
         self._power = supply.predict(loads, self._poses[1:], time_step)
         self.steps = len(self._power)
 
@@ -140,7 +140,7 @@ class Vehicle:
 
     def begin_at(self, pose: BodyPose, now: float) -> None:
         """Begin or continue a run at time `now` (s): set the robot's pose and update the faults."""
-        self.setup.drive.set_pose(pose)
+        self.setup.drive.place_robot(pose)
         self.update_faults(now)
 
     def apply_initial_state(self, initial: InitialState) -> None:

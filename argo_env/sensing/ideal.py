@@ -52,7 +52,7 @@ class IdealSensor:
         return Measurement(self._truth[checkpoint_id], distance)
 
 
-def draw_values(site: Site, rng: np.random.Generator) -> dict[int, float]:
+def draw_nominal_values(site: Site, rng: np.random.Generator) -> dict[int, float]:
     """Return a true value for every checkpoint, drawn from the nominal part of its scale.
 
     Values have two decimals, except where the range is too narrow for that.

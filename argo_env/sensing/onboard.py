@@ -66,7 +66,7 @@ class OnboardSensor:
         value = measurement.value + self.noise * (scale.high - scale.low) * rng.standard_normal()
         return replace(measurement, value=round(min(max(value, scale.low), scale.high), 2))
 
-    def test_picture(self) -> tuple[float, ...] | None:
+    def read_test_pattern(self) -> tuple[float, ...] | None:
         """Return readings of the test pattern inside the camera's housing, from several pictures.
 
         The pattern shows 0 on a scale of 0 to 1. Returns None if the camera gives no picture.
@@ -104,7 +104,7 @@ class BatteryWatch:
     def restore(self, reported: Sequence[ReportedDetection], now: float) -> None:  # noqa: ARG002
         self._low = bool(reported) and reported[-1].kind is EventKind.LOW_BATTERY
 
-    def can_skip(self, lowest: float, highest: float) -> bool:
+    def can_skip_updates(self, lowest: float, highest: float) -> bool:
         """Return True if no estimate of the charge can reach the level of the next detection."""
         if self._low:
             return highest + ESTIMATE_ERROR < FULL
@@ -138,7 +138,7 @@ class ConnectionWatch:
         lost = bool(reported) and reported[-1].kind is EventKind.CONNECTION_LOST
         self._missed = self._limit if lost else 0
 
-    def can_skip(self, lowest: float, highest: float) -> bool:  # noqa: ARG002
+    def can_skip_updates(self, lowest: float, highest: float) -> bool:  # noqa: ARG002
         """Return True if the network has no shadows and the last reply has arrived."""
         return not self._network.shadows and not self._missed
 
@@ -171,7 +171,7 @@ class EmergencyStopWatch:
     def restore(self, reported: Sequence[ReportedDetection], now: float) -> None:  # noqa: ARG002
         self._pressed = bool(reported) and self._drive.stop_pressed
 
-    def can_skip(self, lowest: float, highest: float) -> bool:  # noqa: ARG002
+    def can_skip_updates(self, lowest: float, highest: float) -> bool:  # noqa: ARG002
         """Return True if the circuit has not changed since the last update."""
         return self._pressed == self._drive.stop_pressed
 
@@ -265,7 +265,7 @@ class CameraWatch:
         self._reported = bool(reported)  # if the camera works again, the first picture shows it
 
     def update(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
-        pattern = self._sensor.test_picture()
+        pattern = self._sensor.read_test_pattern()
         spread = 0.0 if pattern is None else math.hypot(*pattern) / math.sqrt(len(pattern))
         was_reported, self._reported = self._reported, pattern is None or spread > NOISY
         if not self._reported or was_reported:

@@ -51,7 +51,7 @@ class ReportedDetection:
 class SkippableWatch(Watch, Protocol):
     """A watch that knows when its updates have no effect until a fault begins or ends."""
 
-    def can_skip(self, lowest: float, highest: float) -> bool:
+    def can_skip_updates(self, lowest: float, highest: float) -> bool:
         """Return True if no update detects or changes anything until a fault begins or ends.
 
         The charge of the battery stays between `lowest` and `highest` (0 to 1) in the meantime.

@@ -200,7 +200,7 @@ class Bodies(Connection):
         pybullet.removeBody(number, physicsClientId=self._client)
         self._detect()
 
-    def has_only_solids_between(self, low: Vector, high: Vector) -> bool:
+    def has_only_fixed_solids(self, low: Vector, high: Vector) -> bool:
         """Return True if a box (m) has no checkpoint near it, and there are no screens."""
         box = SolidBounds(np.array(low) - _NEAR_CHECKPOINT, np.array(high) + _NEAR_CHECKPOINT)
         return not self._screens and not self._bounds_of_checkpoints().overlapping(box).any()

@@ -33,14 +33,14 @@ def displaced_checkpoint(checkpoint: SiteCheckpoint, placement: Placement) -> Si
     return replace(checkpoint, position=(x, y, z), yaw=checkpoint.yaw + placement.turn)
 
 
-def draw_placement(rng: np.random.Generator, upright: bool = False) -> Placement:
+def draw_checkpoint_placement(rng: np.random.Generator, keep_upright: bool = False) -> Placement:
     """Return a random placement within the limits that the competition states (thesis, 1.2).
 
     The offset is uniform in a sphere, turn and roll are uniform up to ±90°. Level gauges are
-    `upright`: they have no roll, since they work only when upright.
+    `keep_upright`: they have no roll, since they work only when keep_upright.
     """
     direction = rng.normal(size=3)
     direction *= MAX_OFFSET * rng.uniform() ** (1 / 3) / np.linalg.norm(direction)
     turn, roll = rng.uniform(-MAX_TURN, MAX_TURN, size=2)
     x, y, z = direction.tolist()
-    return Placement((x, y, z), float(turn), 0.0 if upright else float(roll))
+    return Placement((x, y, z), float(turn), 0.0 if keep_upright else float(roll))

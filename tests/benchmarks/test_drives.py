@@ -85,7 +85,7 @@ class StuckDrive(DriveWithCurrentMotion):
 
 
 def put_at(drive, pose):
-    drive.set_pose(BodyPose(pose.x, pose.y, pose.z, pose.yaw))
+    drive.place_robot(BodyPose(pose.x, pose.y, pose.z, pose.yaw))
     return drive
 
 

@@ -33,7 +33,7 @@ from argo_env.sensing.vision.instrument import Instrument
 from argo_env.sensing.vision.sensor import INSTRUMENTS, CameraSensor
 from argo_env.sensing.vision.views import plan_views, solids_near
 from argo_env.site.shapes import Box, Cylinder, Solid
-from argo_env.world.placement import AS_PLANNED, draw_placement
+from argo_env.world.placement import AS_PLANNED, draw_checkpoint_placement
 from argo_env.world.world import World
 from benchmarks.options import parse_seed
 
@@ -95,7 +95,7 @@ class Scene:
         instrument = INSTRUMENTS[kind]
         stand = self.stop_poses[planned.id][int(rng.integers(2))]
         pose = BodyPose(stand.x, stand.y, stand.z, stand.yaw)
-        placement = draw_placement(rng, upright=not instrument.rolled)
+        placement = draw_checkpoint_placement(rng, keep_upright=not instrument.rolled)
         share = float(rng.uniform())
         world = self.world
         world.place_robot(pose)

@@ -73,7 +73,7 @@ def run(climb: Climb) -> ClimbOutcome:
     x, y = rng.uniform(-START_ERROR, START_ERROR, 2)
     start = path.start
     drive = TrackedDrive(world, navigator.robot, traction, mass)
-    drive.set_pose(
+    drive.place_robot(
         BodyPose(start.x + x, start.y + y, start.z, start.yaw + TURN_ERROR * rng.uniform(-1.0, 1.0))
     )
     drive.follow(path, None)

@@ -187,7 +187,7 @@ class TrackedDrive(NonCopyable):
         """Motion of the path that is under way; None without a path."""
         return self._follower.motion if self._follower else None
 
-    def set_pose(self, pose: BodyPose) -> None:
+    def place_robot(self, pose: BodyPose) -> None:
         """Set the robot to the pose, at rest; it settles on the ground within a moment."""
         self._clear()
         self.incidents.clear()

@@ -48,7 +48,7 @@ class Flight:
     slope: float
     """slope of the line through the nosings in rad"""
 
-    def edges(self, pose: BodyPose) -> tuple[float, float]:
+    def edge_distances(self, pose: BodyPose) -> tuple[float, float]:
         """Return the distances (m) along the tracks from the robot's middle to top edge and foot.
 
         They are positive downhill, and less than 0 for an edge that the middle has passed on its
@@ -95,7 +95,7 @@ class Flippers:
         if flight is None or motion is None:
             self._towards(RAISED, FLIPPER_RATE, dt)
             return False
-        top, foot = flight.edges(pose)
+        top, foot = flight.edge_distances(pose)
         on_flight = pose.pitch > flight.slope - _TIPPED
         if motion.gear < 0:
             if top > -0.35:

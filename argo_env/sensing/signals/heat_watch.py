@@ -49,7 +49,7 @@ class ThermalImage:
 
     def rays(self, rows: NDArray[np.int64], columns: NDArray[np.int64]) -> NDArray[np.float64]:
         """Return unit vectors in the site's frame through the middles of pixels, shape (n, 3)."""
-        return pixel_rays(rows + 0.5, columns + 0.5) @ self.axes.T
+        return directions_through_pixels(rows + 0.5, columns + 0.5) @ self.axes.T
 
     def project(self, place: Vector) -> tuple[float, float, float]:
         """Return row, column (pixels) and depth (m) of a point; the depth is negative behind it."""
@@ -58,7 +58,7 @@ class ThermalImage:
         return HEIGHT / 2 - up * scale, WIDTH / 2 - left * scale, ahead
 
 
-def pixel_rays(
+def directions_through_pixels(
     rows: NDArray[np.floating[Any]], columns: NDArray[np.floating[Any]]
 ) -> NDArray[np.float64]:
     """Return unit vectors (ahead, left, up) through points of the image in pixels, shape (n, 3)."""
@@ -72,7 +72,7 @@ _ROWS, _COLUMNS = (
     g.ravel().astype(np.float64) + COARSE / 2
     for g in np.meshgrid(np.arange(0, HEIGHT, COARSE), np.arange(0, WIDTH, COARSE), indexing="ij")
 )
-_COARSE_RAYS = pixel_rays(_ROWS, _COLUMNS)
+_COARSE_RAYS = directions_through_pixels(_ROWS, _COLUMNS)
 
 
 class ThermalCamera:
@@ -208,7 +208,7 @@ class HeatWatch:
             return False
         sight = np.array(place) - image.origin
         distance = float(np.linalg.norm(sight))
-        range_to_solid, _ = self._map.distances(image.origin, sight[None, :] / distance, REACH)
+        range_to_solid, _ = self._map.cast_rays(image.origin, sight[None, :] / distance, REACH)
         return bool(range_to_solid[0] >= distance - 0.3)
 
 
@@ -238,9 +238,9 @@ def find_spots(image: ThermalImage, site_map: SiteMap, air: float) -> tuple[Spot
         # The background is coarse: the surface in the middle of a cell stands for all of the cell.
         cells = np.unique(rows // COARSE * WIDTH + columns // COARSE)
         middles = (np.column_stack(np.divmod(cells, WIDTH)) + 0.5) * COARSE
-        beside = pixel_rays(middles[:, 0], middles[:, 1]) @ image.axes.T
+        beside = directions_through_pixels(middles[:, 0], middles[:, 1]) @ image.axes.T
         rays = np.concatenate([image.rays(rows[probed], columns[probed]), beside])
-        depths, solids = site_map.distances(image.origin, rays, REACH)
+        depths, solids = site_map.cast_rays(image.origin, rays, REACH)
         solids_hit = [int(k) for k in solids if k >= 0]
         depths, solids = depths[: len(probed)], solids[: len(probed)]
         if not np.isfinite(depths).any():

@@ -77,11 +77,11 @@ class AbnormalRecording:
     """expected power above the lines if all pumps run well"""
     excess: float
     """measured power beyond the normal one"""
-    envelope: NDArray[np.float64]
+    envelope_spectrum: NDArray[np.float64]
     """share of the sound that varies at each rate, one value each 1 / RECORDING Hz; 0 to 1"""
 
 
-def power_above_lines(samples: NDArray[np.float32]) -> float | None:
+def noise_band_power(samples: NDArray[np.float32]) -> float | None:
     """Return the mean power above the lines, or None if the recording has a bang of metal."""
     blocks = samples.reshape(BLOCKS, -1)
     bins_per_hertz = blocks.shape[1] / RATE
@@ -92,7 +92,7 @@ def power_above_lines(samples: NDArray[np.float32]) -> float | None:
     return None if powers.max() > BANG * np.median(powers) else float(powers.mean())
 
 
-def envelope(samples: NDArray[np.float32]) -> NDArray[np.float64]:
+def envelope_spectrum(samples: NDArray[np.float32]) -> NDArray[np.float64]:
     """Return the spectrum of the squared envelope in the ringing band, relative to its mean.
 
     See Randall and Antoni, Rolling element bearing diagnostics, 2011.
@@ -118,7 +118,7 @@ def learn_baseline(positions: tuple[tuple[str, Vector], ...]) -> Baseline:
         for distance in RINGS:
             for angle in rng.uniform(0.0, 2 * math.pi, RECORDINGS_PER_RING).tolist():
                 listener = (x + distance * math.cos(angle), y + distance * math.sin(angle), z)
-                band_power = power_above_lines(
+                band_power = noise_band_power(
                     sound_at(listener, positions, {}, round(RECORDING * RATE), rng)
                 )
                 if band_power is not None:
@@ -156,7 +156,7 @@ class PumpWatch:
             self._recordings.clear()
             return ()
         samples = self._microphone.record_sound(now, pose, RECORDING)
-        band_power = power_above_lines(samples)
+        band_power = noise_band_power(samples)
         if band_power is None:
             return ()
         baseline = learn_baseline(tuple(self._positions.items()))
@@ -170,7 +170,7 @@ class PumpWatch:
             self._count_quiet(listener)
             return ()
         self._recordings.append(
-            AbnormalRecording(listener, normal, band_power - normal, envelope(samples))
+            AbnormalRecording(listener, normal, band_power - normal, envelope_spectrum(samples))
         )
         self._reported = dict.fromkeys(self._reported, 0)
         if len(self._recordings) < MIN_RECORDINGS:
@@ -188,7 +188,7 @@ class PumpWatch:
         low, high = math.floor(rate * (1 - SLIP)), math.ceil(rate * (1 + SLIP))
         best = max(self._recordings, key=lambda recording: recording.excess / recording.normal)
         total = best.excess + best.normal
-        swell = float(best.envelope[low : high + 1].max()) * total / best.excess
+        swell = float(best.envelope_spectrum[low : high + 1].max()) * total / best.excess
         # With another faulty pump near, the impacts may come from that one.
         impacts = is_only_pump and swell > BEARING_SHARE
         description = "with impacts as of a bearing" if impacts else "louder over 2 kHz"

@@ -19,7 +19,7 @@ class SiteMap:
         self._walkable = np.array([e.role in WALKING_ROLES for e in self._rays.elements])
         self._equipment = np.array([e.role in EQUIPMENT for e in self._rays.elements])
 
-    def distances(
+    def cast_rays(
         self, origin: NDArray[np.float64], directions: NDArray[np.float64], reach: float
     ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         """Return the distance (m) to the first solid on each ray, and the number of that solid.

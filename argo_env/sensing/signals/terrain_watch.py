@@ -81,7 +81,7 @@ class Pattern:
 
 
 @lru_cache(maxsize=128)
-def make_pattern(
+def make_scan_pattern(
     backwards: bool, row: float, count: int, columns: int, farthest: float = FARTHEST
 ) -> Pattern:
     """Return a pattern of `count` rows, `row` (m) apart, with `columns` rays each.
@@ -128,7 +128,7 @@ class TerrainScanner:
         expected, walkable = np.zeros(len(planar)), np.ones(len(planar), dtype=bool)
         odd = np.flatnonzero(np.abs(below) > PLANAR)
         if len(odd):
-            depth, solids = self._map.distances(origin, directions[odd], float(reach[odd].max()))
+            depth, solids = self._map.cast_rays(origin, directions[odd], float(reach[odd].max()))
             expected[odd] = (np.minimum(depth, reach[odd]) - planar[odd]) * fall[odd]
             walkable[odd] = self._map.walkable(solids)
         hits = origin + measured[:, None] * directions
@@ -158,7 +158,7 @@ class TerrainScanner:
         Returns None if there is none within 2 m.
         """
         down = np.array([[0.0, 0.0, -1.0]])
-        depth, _ = self._map.distances(position, down, 2.0)
+        depth, _ = self._map.cast_rays(position, down, 2.0)
         return float(position[2] - depth[0]) if np.isfinite(depth[0]) else None
 
     def _expected_range(
@@ -175,7 +175,7 @@ class TerrainScanner:
         origins = origin + np.repeat(POSITION_OFFSETS, len(rays), axis=0)
         reach, planar, fall = pattern.reach[rays], pattern.planar[rays], pattern.fall[rays]
         all_directions = np.tile(directions, (len(POSITION_OFFSETS), 1))
-        depth, _ = self._map.distances(origins, all_directions, float(reach.max()))
+        depth, _ = self._map.cast_rays(origins, all_directions, float(reach.max()))
         expected = (np.minimum(depth.reshape(len(POSITION_OFFSETS), -1), reach) - planar) * fall
         return expected.min(axis=0), expected.max(axis=0)
 
@@ -264,7 +264,7 @@ class TerrainWatch:
         self._update_reported(scan)
         if not any(self._new_rays(scan, kind).any() for kind in _KINDS):
             return ()
-        close = make_pattern(self._backwards, CLOSE_ROW, CLOSE_ROWS, CLOSE_COLUMNS)
+        close = make_scan_pattern(self._backwards, CLOSE_ROW, CLOSE_ROWS, CLOSE_COLUMNS)
         scan = self._scanner.scan(pose, close)
         return tuple(f for kind in _KINDS for f in self._detections(scan, kind))
 
@@ -279,7 +279,7 @@ class TerrainWatch:
         )
         if self._last is None:
             self._last, self._seen_far = (now, pose), True
-            return make_pattern(self._backwards, row, rows, columns)
+            return make_scan_pattern(self._backwards, row, rows, columns)
         then, before = self._last
         ahead = (pose.x - before.x) * math.cos(pose.yaw) + (pose.y - before.y) * math.sin(pose.yaw)
         turned = abs(wrap(pose.yaw - before.yaw)) + abs(pose.pitch - before.pitch)
@@ -290,12 +290,12 @@ class TerrainWatch:
         if turning and not moving:
             # Both ends of the robot swing round, so scan ahead and behind in turn.
             self._backwards, self._seen_far = not self._backwards, False
-            return make_pattern(self._backwards, ROW, TURNING_ROWS, COLUMNS, TURNING_REACH)
+            return make_scan_pattern(self._backwards, ROW, TURNING_ROWS, COLUMNS, TURNING_REACH)
         backwards = ahead < 0 if moving else self._backwards
         if self._seen_far and backwards == self._backwards and moving and not turning:
             rows = min(rows, 1 + math.ceil(abs(ahead) / row))
         self._backwards, self._seen_far = backwards, True
-        return make_pattern(backwards, row, rows, columns)
+        return make_scan_pattern(backwards, row, rows, columns)
 
     def _new_rays(self, scan: Scan, kind: EventKind) -> NDArray[np.bool_]:
         """Return which rays show something of that kind that was not reported."""

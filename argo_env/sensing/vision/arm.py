@@ -48,7 +48,7 @@ def forward_kinematics(joints: NDArray[np.float64], pose: BodyPose) -> CameraPos
     return CameraPose(body @ eye + np.array([pose.x, pose.y, pose.z]), optical)
 
 
-def inverse(
+def inverse_kinematics(
     eye: NDArray[np.float64], target: NDArray[np.float64], pose: BodyPose
 ) -> Iterator[NDArray[np.float64]]:
     """Yield all joint positions that bring the lens to `eye` and point it at `target` (m).

@@ -28,7 +28,7 @@ _UPRIGHT = 0.9  # cosine to the vertical, at least, of an upright face
 _FILLED = 0.8  # ratio of the areas of a patch's hull and of its ellipse or rectangle, at least
 
 
-def find_outlines(
+def find_poses_by_outline(
     photo: Photo, instrument: Instrument, planned: FacePose
 ) -> list[tuple[float, FacePose]]:
     """Return the poses, without roll, of all bright patches that could be the face.
@@ -154,7 +154,7 @@ _ROLLS = np.radians(np.arange(-93, 94, 3))
 _DARKEST = 0.03  # of full scale: faces whose white is darker are ignored
 
 
-def spacing(instrument: Instrument) -> float:
+def template_spacing(instrument: Instrument) -> float:
     """Return the distance in m between the points of a face that is compared with pictures."""
     return 0.004 if instrument.shape.round else 0.0045
 
@@ -170,7 +170,7 @@ class _RolledFaces:
 
 @cache
 def _rolled_faces(instrument: Instrument, blur: float) -> _RolledFaces:
-    template = make_template(instrument, 1.5 * spacing(instrument), blur)
+    template = make_template(instrument, 1.5 * template_spacing(instrument), blur)
     faces = template.brightness[None]
     if instrument.rolled:
         image = blurred_texture(instrument.kind, blur)
@@ -242,7 +242,7 @@ def find_face(photo: Photo, instrument: Instrument, planned: FacePose) -> Fit | 
     rough, fine = photo.blurred(_ROUGH / pixel_size), photo.blurred(_SOFT / pixel_size)
     outlines = [
         (filled, pose)
-        for filled, pose in find_outlines(photo, instrument, planned)
+        for filled, pose in find_poses_by_outline(photo, instrument, planned)
         if _is_allowed(pose, planned, 0.03)
     ]
     starts: list[tuple[float, FacePose]] = []
@@ -276,7 +276,7 @@ def _best_fit(
     fits = []
     for pose in _best_distinct(starts, _MAX_FITS):
         for blur, blurred in ((_ROUGH, rough), (_SOFT, fine)):
-            template = make_template(instrument, spacing(instrument), blur)
+            template = make_template(instrument, template_spacing(instrument), blur)
             fit = refine(blurred, template, pose, instrument.rolled, 8)
             pose = fit.pose
         if _is_allowed(fit.pose, planned):
@@ -344,7 +344,7 @@ def refine_coarse_to_fine(photo: Photo, instrument: Instrument, pose: FacePose) 
     # Round the blur, so that there are few different templates.
     own = math.ceil(_OWN_BLUR * pixel_size / _BLUR_STEP) * _BLUR_STEP
     for blur in (_ROUGH, _SOFT, max(_SHARP, own)):
-        template = make_template(instrument, spacing(instrument), blur)
+        template = make_template(instrument, template_spacing(instrument), blur)
         blurred = photo.blurred(math.sqrt(max(blur**2 - own**2, 0.0)) / pixel_size)
         pose = refine(blurred, template, pose, instrument.rolled).pose
     return compare(blurred, template, pose)

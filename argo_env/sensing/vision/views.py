@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import SensorSpec
 from argo_env.sensing.vision.align import FacePose
-from argo_env.sensing.vision.arm import JOINTS, CameraPose, forward_kinematics, inverse
+from argo_env.sensing.vision.arm import JOINTS, CameraPose, forward_kinematics, inverse_kinematics
 from argo_env.site import Site
 from argo_env.site.shapes import Solid, crossing, half_extents
 from argo_env.world.world import World
@@ -83,7 +83,7 @@ def plan_views(
     for k in np.argsort(cost, kind="stable"):
         if not math.isfinite(cost[k]):
             return
-        for joints in inverse(eyes[k], face.center, pose):
+        for joints in inverse_kinematics(eyes[k], face.center, pose):
             if _can_reach(world, joints):
                 sight = eyes[k] - face.center
                 distance = float(np.linalg.norm(sight))

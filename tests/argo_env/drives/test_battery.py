@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_env.drives.battery import ESTIMATE_ERROR, Battery, electric_load, estimated_charge
+from argo_env.drives.battery import ESTIMATE_ERROR, Battery, estimated_charge, power_draw
 from argo_env.robot.pose import BodyPose
 from tests.conftest import examples
 
@@ -72,5 +72,5 @@ def test_the_voltage_is_between_23_and_28_at_rest_and_falls(robot):
     ],
 )
 def test_what_it_draws(robot, after, measuring, name):
-    watts = electric_load(robot.power, HERE, after, 0.1, measuring)
+    watts = power_draw(robot.power, HERE, after, 0.1, measuring)
     assert watts == getattr(robot.power, name)

@@ -149,7 +149,7 @@ def test_body_neither_sinks_nor_hovers(simulation, robot, paths, way):
 def test_touches_nothing_on_the_way(simulation, robot, paths, way):
     path = paths[way]
     drive = KinematicDrive(simulation, robot)
-    drive.set_pose(level(path.start))
+    drive.place_robot(level(path.start))
     drive.follow(path, None)
     while drive.step() is DriveStatus.MOVING:
         assert simulation.touches() == ()
@@ -192,7 +192,7 @@ def test_arrives_at_once_without_motions(simulation, robot):
 def test_halt_stops_at_once(simulation, robot, paths):
     path = paths["flat"]
     drive = KinematicDrive(simulation, robot)
-    drive.set_pose(level(path.start))
+    drive.place_robot(level(path.start))
     drive.follow(path, None)
     for _ in range(60):
         drive.step()
@@ -206,7 +206,7 @@ def test_halt_stops_at_once(simulation, robot, paths):
 
 def test_goes_on_from_where_it_was_halted(simulation, robot, paths, navigator, catalog):
     drive = KinematicDrive(simulation, robot)
-    drive.set_pose(level(paths["flat"].start))
+    drive.place_robot(level(paths["flat"].start))
     drive.follow(paths["flat"], None)
     lattice = navigator.lattice.state_poses()[:, :2]
     while not 0.03 < np.hypot(*(lattice - (drive.pose.x, drive.pose.y)).T).min() < 0.1:

@@ -34,7 +34,7 @@ def level(pose):
 
 def follow(drive, path, velocity=None):
     """Return the drive's poses at the start and after every step."""
-    drive.set_pose(level(path.start))
+    drive.place_robot(level(path.start))
     drive.follow(path, velocity)
     poses, status = [drive.pose], DriveStatus.MOVING
     while status is DriveStatus.MOVING:
@@ -111,7 +111,7 @@ def test_halt_stops_at_once_and_forgets_the_path():
     here = Pose(x=0, y=0, z=0, yaw=0)
     there = Pose(x=4, y=0, z=0, yaw=0)
     drive = RouteDrive(ROBOT)
-    drive.set_pose(BodyPose(0, 0, 0, 0))
+    drive.place_robot(BodyPose(0, 0, 0, 0))
     drive.follow(Path(here, (Motion(here, there),)), 0.5)
     for _ in range(20):
         assert drive.step() is DriveStatus.MOVING

@@ -364,7 +364,7 @@ def taken(yard, tmp_path_factory):
     view = yard.plan_to_view(start, 1).end
     with World(site, robot) as world:
         drive = KinematicDrive(world, robot)
-        drive.set_pose(BodyPose(view.x, view.y, view.z, view.yaw))
+        drive.place_robot(BodyPose(view.x, view.y, view.z, view.yaw))
         world.show_value(1, 3.0)
         sensor = CameraSensor(world, 1)
         with recording_to(file) as recorder:

@@ -72,7 +72,7 @@ def test_skipped_updates_would_have_detected_nothing(yard, level, was_low, charg
         battery.charge = 0.0
         for each in (watch, skipping):
             each.update(0.0, HERE)
-    if not watch.can_skip(min(charges), max(charges)):
+    if not watch.can_skip_updates(min(charges), max(charges)):
         return
     for charge in charges:
         battery.charge = charge

@@ -31,7 +31,7 @@ def report_times_along(yard, *goals, pressed=(), share=1.0):
     """
     drive = Powertrain(RouteDrive(yard.robot))
     watch = DriveWatch(drive, yard.robot)
-    drive.set_pose(BodyPose(START.x, START.y, START.z, START.yaw))
+    drive.place_robot(BodyPose(START.x, START.y, START.z, START.yaw))
     drive.speed_share = share
     reports, step, here = [], 0, START
     for goal in goals:

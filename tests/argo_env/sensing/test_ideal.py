@@ -7,14 +7,14 @@ import pytest
 
 from argo_compiler.base.errors import NotFound
 from argo_env.robot.pose import BodyPose
-from argo_env.sensing.ideal import IdealSensor, draw_values
+from argo_env.sensing.ideal import IdealSensor, draw_nominal_values
 from argo_env.sensing.sensor import MeasurementError
 from tests.yard import gauged
 
 
 @pytest.fixture(scope="module")
 def truth(umad):
-    return draw_values(umad, np.random.default_rng(7))
+    return draw_nominal_values(umad, np.random.default_rng(7))
 
 
 @pytest.fixture(scope="module")
@@ -88,10 +88,10 @@ def test_unknown_checkpoint(sensor):
 
 
 def test_drawn_values_are_nominal_and_the_seeds_own(umad, truth):
-    assert draw_values(umad, np.random.default_rng(7)) == truth
-    assert draw_values(umad, np.random.default_rng(8)) != truth
+    assert draw_nominal_values(umad, np.random.default_rng(7)) == truth
+    assert draw_nominal_values(umad, np.random.default_rng(8)) != truth
     for seed in range(20):
-        values = draw_values(umad, np.random.default_rng(seed))
+        values = draw_nominal_values(umad, np.random.default_rng(seed))
         assert set(values) == {c.id for c in umad.checkpoints}
         for checkpoint in umad.checkpoints:
             value = values[checkpoint.id]
@@ -106,5 +106,5 @@ def test_drawn_values_are_nominal_and_the_seeds_own(umad, truth):
 def test_drawn_values_are_nominal_however_narrow_that_is(low, high, least, most):
     site = gauged(low, high)
     for seed in range(100):
-        values = draw_values(site, np.random.default_rng(seed)).values()
+        values = draw_nominal_values(site, np.random.default_rng(seed)).values()
         assert all(least <= value <= most for value in values)

@@ -117,7 +117,7 @@ def test_most_detections_are_skipped_on_stairs(
     detections, detect = [], usual._detect
     monkeypatch.setattr(usual, "_detect", lambda: (detections.append(1), detect()))
     drive = KinematicDrive(usual, robot)
-    drive.set_pose(BodyPose(start.x, start.y, start.z, start.yaw))
+    drive.place_robot(BodyPose(start.x, start.y, start.z, start.yaw))
     drive.follow(path, None)
     steep = steep_detections = 0
     while drive.step() is DriveStatus.MOVING:

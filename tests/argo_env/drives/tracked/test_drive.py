@@ -31,7 +31,7 @@ def straight(a, length, gear=1):
 
 def follow(drive, path, velocity=None, most=2000, start=None, world=None, touched=None):
     """Follow the path; return the last status and the poses at the start and after each step."""
-    drive.set_pose(start or level(path.start))
+    drive.place_robot(start or level(path.start))
     drive.follow(path, velocity)
     status, poses = DriveStatus.MOVING, [drive.pose]
     while status is DriveStatus.MOVING:
@@ -119,7 +119,7 @@ def test_arrives_without_motions(drive):
 @pytest.mark.parametrize("seconds", [1.0, 3.0])
 def test_halt_brakes_then_says_arrived(drive, seconds):
     path = straight(at(4.0, -2.05, -0.03), 4.0)
-    drive.set_pose(level(path.start))
+    drive.place_robot(level(path.start))
     drive.follow(path, None)
     for _ in range(round(seconds / drive.time_step)):
         assert drive.step() is DriveStatus.MOVING
@@ -139,7 +139,7 @@ def test_halt_brakes_then_says_arrived(drive, seconds):
 @pytest.mark.long
 def test_halts_on_a_flight_and_goes_on(drive, navigator):
     path = navigator.plan(at(1.9, 2.8, 2.5), at(1.9, 7.95, 5.0))
-    drive.set_pose(level(path.start))
+    drive.place_robot(level(path.start))
     drive.follow(path, None)
     while drive.pose.z < 3.2:
         assert drive.step() is DriveStatus.MOVING
@@ -182,7 +182,7 @@ def test_a_wall_on_the_path_is_reported_after_recovery_was_tried(drive):
 
 
 def test_being_stuck_is_noticed_within_the_window(drive):
-    drive.set_pose(BodyPose(1.9, 7.7, 0.0, 0.0))
+    drive.place_robot(BodyPose(1.9, 7.7, 0.0, 0.0))
     drive.follow(straight(at(1.9, 7.7, 0.0), 2.3), None)
     farthest, standing = -math.inf, 0.0
     while not drive.incidents:
@@ -193,7 +193,7 @@ def test_being_stuck_is_noticed_within_the_window(drive):
 
 
 def test_tipping_over_is_reported(drive):
-    drive.set_pose(BodyPose(5.0, -2.05, 0.6, 0.0, math.radians(75)))
+    drive.place_robot(BodyPose(5.0, -2.05, 0.6, 0.0, math.radians(75)))
     drive.follow(straight(at(5.0, -2.05, -0.03), 2.0), None)
     status = DriveStatus.MOVING
     for _ in range(50):
@@ -240,7 +240,7 @@ def test_twins_drive_the_same_bit_by_bit(drive, ground, robot, navigator):
     path = navigator.plan(at(12.3, 5.55, 2.5), at(12.3, 5.55, 5.0))
     twin = TrackedDrive(ground, robot)
     for each in (drive, twin):
-        each.set_pose(level(path.start))
+        each.place_robot(level(path.start))
         each.follow(path, 0.3)
     for _ in range(250):
         assert drive.step() is twin.step()

@@ -16,7 +16,7 @@ def test_rays_on_the_map_end_where_they_do_in_the_world(umad, simulation, naviga
     turn, spread = rng.uniform(0, 2 * np.pi), [0.3, 1.0, 3.0][seed % 3]
     around, up = turn + rng.uniform(-spread, spread, 150), rng.uniform(-1.2, 0.8, 150)
     rays = np.column_stack([np.cos(around) * np.cos(up), np.sin(around) * np.cos(up), np.sin(up)])
-    on_map, solids = SiteMap(umad).distances(origin, rays, REACH)
+    on_map, solids = SiteMap(umad).cast_rays(origin, rays, REACH)
     in_world = simulation.ray_lengths(tuple(origin.tolist()), origin + REACH * rays)
     differ = np.abs(np.minimum(on_map, REACH) - np.minimum(in_world, REACH)) > 0.01
     # The bodies of checkpoints are not on the map, and edges differ slightly.
@@ -31,7 +31,7 @@ def test_the_nearest_equipment_is_named(site_map):
 
 
 def test_a_ray_into_the_sky_ends_nowhere(site_map):
-    distances, solids = site_map.distances(
+    distances, solids = site_map.cast_rays(
         np.array([-3.0, -3.0, 5.0]), np.array([[0.0, 0.0, 1.0]]), REACH
     )
     assert (distances[0], solids[0]) == (np.inf, -1)

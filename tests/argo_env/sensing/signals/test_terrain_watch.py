@@ -107,7 +107,7 @@ def test_stairs_landings_railings_and_rims_are_no_obstacles(
         Pose(x=3.05, y=-2.55, z=-0.03) if goal[2] > 0 else Pose(x=12.3, y=8, z=2.5)
     )
     drive = KinematicDrive(simulation, robot)
-    drive.set_pose(BodyPose(here.x, here.y, here.z, here.yaw))
+    drive.place_robot(BodyPose(here.x, here.y, here.z, here.yaw))
     drive.follow(navigator.plan(here, Pose(x=goal[0], y=goal[1], z=goal[2])), None)
     poses = [(0.0, drive.pose)]
     while drive.step() is DriveStatus.MOVING:

@@ -15,7 +15,7 @@ from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import robot_folder
 from argo_env.run.action import TURNS
 from argo_env.sensing.vision.align import FacePose
-from argo_env.sensing.vision.arm import JOINTS, forward_kinematics, inverse
+from argo_env.sensing.vision.arm import JOINTS, forward_kinematics, inverse_kinematics
 from argo_env.sensing.vision.views import plan_views, solids_near
 from argo_env.site.shapes import Box
 from tests.argo_env.robot.test_models import load
@@ -75,7 +75,7 @@ def test_forward_kinematics_equals_that_of_pybullet(tracker, joints, pose):
 def test_inverse_kinematics_brings_the_lens_there(tracker, joints, pose, reach):
     camera = forward_kinematics(np.array(joints), pose)
     target = camera.position + reach * camera.rotation[:, 2]
-    solutions = list(inverse(camera.position, target, pose))
+    solutions = list(inverse_kinematics(camera.position, target, pose))
     for solution in solutions:
         again = forward_kinematics(solution, pose)
         assert again.position == pytest.approx(camera.position, abs=1e-6)

@@ -12,7 +12,7 @@ from argo_env.sensing.sensor import MeasurementError
 from argo_env.sensing.vision.faces import draw_face, face_file
 from argo_env.sensing.vision.sensor import CameraSensor
 from argo_env.site.shapes import Box
-from argo_env.world.placement import AS_PLANNED, Placement, draw_placement
+from argo_env.world.placement import AS_PLANNED, Placement, draw_checkpoint_placement
 from tests.processes import run_python
 
 pytest.importorskip("cv2")
@@ -168,7 +168,7 @@ def test_shipped_faces_are_the_drawn_ones(kind):
 
 def test_placements_fill_what_the_rules_allow():
     rng = np.random.default_rng(0)
-    drawn = [draw_placement(rng) for _ in range(500)]
+    drawn = [draw_checkpoint_placement(rng) for _ in range(500)]
     distances = [math.hypot(*p.offset) for p in drawn]
     assert 0.095 < max(distances) <= 0.1
     # Half of a sphere's volume lies beyond 0.79 of its radius.
@@ -177,7 +177,7 @@ def test_placements_fill_what_the_rules_allow():
         values = [getattr(p, angle) for p in drawn]
         assert -math.pi / 2 <= min(values) < -1.5
         assert 1.5 < max(values) <= math.pi / 2
-    assert draw_placement(rng, upright=True).roll == 0.0
+    assert draw_checkpoint_placement(rng, keep_upright=True).roll == 0.0
 
 
 def test_importing_argo_env_needs_no_opencv():

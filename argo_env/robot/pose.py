@@ -12,7 +12,7 @@ PoseArray = NDArray[np.float64]
 
 
 def pose_tuple_at(poses: PoseArray, index: int) -> PoseTuple:
-    """Return one pose of an array as a tuple."""
+    """Return the pose at an index of an array of poses as a tuple."""
     x, y, z, yaw, pitch = poses[index].tolist()
     return x, y, z, yaw, pitch
 

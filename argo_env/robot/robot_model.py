@@ -95,7 +95,7 @@ def read_model(path: Path) -> RobotModel:
 
 
 def from_rpy(rpy: Vector) -> Quaternion:
-    """Return roll, pitch and yaw (rad, fixed axes) as a quaternion."""
+    """Convert roll, pitch and yaw (rad, about fixed axes, in this order) to a quaternion."""
     roll, pitch, yaw = (angle / 2 for angle in rpy)
     x = (math.sin(roll), 0.0, 0.0, math.cos(roll))
     y = (0.0, math.sin(pitch), 0.0, math.cos(pitch))
@@ -104,7 +104,7 @@ def from_rpy(rpy: Vector) -> Quaternion:
 
 
 def multiply(a: Quaternion, b: Quaternion) -> Quaternion:
-    """Return the rotation that applies `b` first, then `a`."""
+    """Return the product of two quaternions: the rotation that applies `b` first, then `a`."""
     ax, ay, az, aw = a
     bx, by, bz, bw = b
     return (

@@ -34,7 +34,10 @@ class MotionKind(StrEnum):
 
 
 def motion_kind(gear: int, on_stairs: bool) -> MotionKind:
-    """Return the kind of a motion in gear +1 or -1; on stairs, the robot's front is downhill."""
+    """Return the kind of a straight motion, forwards for gear +1 and backwards for gear -1.
+
+    On stairs, the robot's front is downhill.
+    """
     if on_stairs:
         return MotionKind.DOWN if gear > 0 else MotionKind.UP
     return MotionKind.AHEAD if gear > 0 else MotionKind.REVERSE

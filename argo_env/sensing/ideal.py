@@ -24,9 +24,10 @@ class IdealSensor:
         self._truth = truth
 
     def measure(self, checkpoint_id: int, pose: BodyPose) -> Measurement:
-        """Return the true value of the checkpoint.
+        """Return the true value of the checkpoint, and the camera's distance from it.
 
-        Raises MeasurementError if the camera can't see the face from this pose.
+        Raises MeasurementError if the raised camera of a robot at `pose` is too near, too far, or
+        too oblique to the checkpoint's face, or if something hides the face.
         """
         checkpoint = self._world.actual_checkpoint(checkpoint_id)
         sensor = self._robot.sensor
@@ -53,9 +54,10 @@ class IdealSensor:
 
 
 def draw_nominal_values(site: Site, rng: np.random.Generator) -> dict[int, float]:
-    """Return a true value for every checkpoint, drawn from the nominal part of its scale.
+    """Draw a true value for each checkpoint from its nominal range; return them by its id.
 
-    Values have two decimals, except where the range is too narrow for that.
+    Values are in the checkpoint's unit, lie on its scale, and have two decimals, except where the
+    range is too narrow for that.
     """
     values = {}
     for c in site.checkpoints:

@@ -32,17 +32,20 @@ _SHOTS = 8  # pictures of the test pattern in one self-test
 
 
 class OnboardSensor:
-    """Sensor that may fail or become noisy. It holds its present condition, which faults change."""
+    """Sensor that wraps another one, and may fail or become noisy.
+
+    It holds its present condition, which faults change.
+    """
 
     def __init__(self, sensor: Sensor, site: Site, seed: int, usual_noise: float = 0.0) -> None:
-        """`usual_noise`: noise of the sensor without a fault, as a share of the scale."""
+        """`usual_noise`: standard deviation of noise without a fault, as a share of the scale."""
         self._sensor = sensor
         self._site = site
         self._seed = seed
         self._tests = generator(seed, "instrument")
         self.name = sensor.name
         self.time = 0.0
-        """s, time of the next measurement"""
+        """s, simulated time of the next measurement; the run sets it"""
         self.failed = False
         """True while the camera gives no picture"""
         self.usual_noise = usual_noise
@@ -51,9 +54,10 @@ class OnboardSensor:
         """standard deviation of the present noise, as a share of the checkpoint's scale"""
 
     def measure(self, checkpoint_id: int, pose: BodyPose) -> Measurement:
-        """Read the checkpoint with the wrapped sensor, and add the present noise.
+        """Read the checkpoint with the wrapped sensor, and add the present noise to the value.
 
-        Raises MeasurementError also while the camera gives no picture.
+        A value with noise stays within the checkpoint's scale, and is rounded to two decimals.
+        Raises MeasurementError if the wrapped sensor does, and while the camera gives no picture.
         """
         if self.failed:
             raise MeasurementError("the camera gives no picture")
@@ -67,9 +71,10 @@ class OnboardSensor:
         return replace(measurement, value=round(min(max(value, scale.low), scale.high), 2))
 
     def read_test_pattern(self) -> tuple[float, ...] | None:
-        """Return readings of the test pattern inside the camera's housing, from several pictures.
+        """Return one reading for each of several pictures of the pattern in the camera's housing.
 
-        The pattern shows 0 on a scale of 0 to 1. Returns None if the camera gives no picture.
+        The pattern shows 0 on a scale of 0 to 1, so each reading is an error. Returns None if the
+        camera gives no picture.
         """
         if self.failed:
             return None
@@ -78,7 +83,7 @@ class OnboardSensor:
 
 
 LOW, FULL = 0.2, 0.99
-"""shares of the charge: the battery is low below `LOW`, and charged again from `FULL` on"""
+"""charge, 0 to 1, below which the battery is low, and from which on it is charged again"""
 WINDOW = 10.0  # s over which the distance driven is compared with the planned one
 SLOW = 0.6  # share of the planned speed below which something is wrong
 _SAMPLE = 0.2  # s between the poses of the planned path that the robot's pose is compared with
@@ -89,14 +94,15 @@ NOISY = 0.01  # standard deviation in the test pattern above which the camera is
 class BatteryWatch:
     """Watch for the charge of the battery, estimated from voltage and current.
 
-    It holds whether the battery was low: it reports a low battery again only after it was charged.
+    It reports a low battery once, and then once that the battery is charged again; only after that
+    it reports a low battery again.
     """
 
     name = "battery"
     period = 1.0
 
     def __init__(self, battery: Battery, low: float = LOW) -> None:
-        """`low`: the share of the charge below which the battery is low."""
+        """`low`: the charge, 0 to 1, below which the battery is low."""
         self._battery = battery
         self._level = low
         self._low = False
@@ -104,11 +110,11 @@ class BatteryWatch:
     def restore(self, reported: Sequence[ReportedDetection], now: float) -> None:  # noqa: ARG002
         self._low = bool(reported) and reported[-1].kind is EventKind.LOW_BATTERY
 
-    def can_skip_updates(self, lowest: float, highest: float) -> bool:
+    def can_skip_updates(self, lowest_charge: float, highest_charge: float) -> bool:
         """Return True if no estimate of the charge can reach the level of the next detection."""
         if self._low:
-            return highest + ESTIMATE_ERROR < FULL
-        return lowest - ESTIMATE_ERROR > self._level
+            return highest_charge + ESTIMATE_ERROR < FULL
+        return lowest_charge - ESTIMATE_ERROR > self._level
 
     def update(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
         voltage = self._battery.voltage
@@ -123,7 +129,10 @@ class BatteryWatch:
 
 
 class ConnectionWatch:
-    """Watch for the connection to the base station. It counts the replies that were missed."""
+    """Watch for the connection to the base station: it reports when it is lost and restored.
+
+    It holds the number of replies in a row that were missed.
+    """
 
     name = "connection"
     period = 0.5
@@ -138,7 +147,7 @@ class ConnectionWatch:
         lost = bool(reported) and reported[-1].kind is EventKind.CONNECTION_LOST
         self._missed = self._limit if lost else 0
 
-    def can_skip_updates(self, lowest: float, highest: float) -> bool:  # noqa: ARG002
+    def can_skip_updates(self, lowest_charge: float, highest_charge: float) -> bool:  # noqa: ARG002
         """Return True if the network has no shadows and the last reply has arrived."""
         return not self._network.shadows and not self._missed
 
@@ -171,7 +180,7 @@ class EmergencyStopWatch:
     def restore(self, reported: Sequence[ReportedDetection], now: float) -> None:  # noqa: ARG002
         self._pressed = bool(reported) and self._drive.stop_pressed
 
-    def can_skip_updates(self, lowest: float, highest: float) -> bool:  # noqa: ARG002
+    def can_skip_updates(self, lowest_charge: float, highest_charge: float) -> bool:  # noqa: ARG002
         """Return True if the circuit has not changed since the last update."""
         return self._pressed == self._drive.stop_pressed
 
@@ -185,7 +194,8 @@ class EmergencyStopWatch:
 class DriveWatch:
     """Watch for the speed of the drive, compared with the planned one.
 
-    It holds the planned path and the robot's progress along it over the last `WINDOW` seconds.
+    It reports a drive that makes less than the share `SLOW` of the planned speed. It holds the
+    planned path, and the robot's progress along it over the last `WINDOW` seconds.
     """
 
     name = "drive"
@@ -237,7 +247,8 @@ class DriveWatch:
     def _nearest(self, pose: BodyPose) -> int:
         """Return the index of the planned pose nearest to `pose`.
 
-        The search begins at the last index and ends where twice the planned speed would lead.
+        The search begins at the index of the previous update, and ends where twice the planned
+        speed would have led since then.
         """
         nearest, least = self._index, math.inf
         last = self._index + round(2 * self.period / _SAMPLE)
@@ -252,7 +263,10 @@ class DriveWatch:
 
 
 class CameraWatch:
-    """Watch for the camera, by pictures of a test pattern. It holds if the last test failed."""
+    """Watch for the camera, by pictures of a test pattern.
+
+    It holds whether the previous test failed, and reports only the first of consecutive failures.
+    """
 
     name = "camera"
     period = 5.0
@@ -288,7 +302,7 @@ def onboard_watches(
 ) -> tuple[Watch, ...]:
     """Return all watches for the robot itself, for one run.
 
-    `low_battery` is the share of the charge below which the battery is low; None means `LOW`.
+    `low_battery` is the charge, 0 to 1, below which the battery is low; None means `LOW`.
     """
     return (
         EmergencyStopWatch(drive),
@@ -300,7 +314,11 @@ def onboard_watches(
 
 
 def _sample_poses(path: Path, velocity: float | None, robot: RobotSpec) -> NDArray[np.float64]:
-    """Return x, y, z (m) and yaw (rad) every _SAMPLE s along the path, shape (n, 4)."""
+    """Return x, y, z (m) and yaw (rad) every _SAMPLE s on the path as planned, shape (n, 4).
+
+    `velocity` (m/s) is the planned speed on the flat; None means the robot's own speeds. The last
+    row is the end of the path.
+    """
     rows: list[NDArray[np.float64]] = []
     first = 0.0
     for motion in path.motions:

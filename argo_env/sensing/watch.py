@@ -41,7 +41,7 @@ class Watch(Protocol):
 
 @dataclass(frozen=True)
 class ReportedDetection:
-    """A detection that a watch reported before the run was resumed, and the robot's pose then."""
+    """A detection reported before a run was interrupted, and the robot's pose at the report."""
 
     kind: EventKind
     pose: BodyPose
@@ -51,10 +51,11 @@ class ReportedDetection:
 class SkippableWatch(Watch, Protocol):
     """A watch that knows when its updates have no effect until a fault begins or ends."""
 
-    def can_skip_updates(self, lowest: float, highest: float) -> bool:
+    def can_skip_updates(self, lowest_charge: float, highest_charge: float) -> bool:
         """Return True if no update detects or changes anything until a fault begins or ends.
 
-        The charge of the battery stays between `lowest` and `highest` (0 to 1) in the meantime.
+        Until then, the charge of the battery stays between `lowest_charge` and `highest_charge` (0
+        to 1).
         """
         ...
 
@@ -64,5 +65,8 @@ class RestorableWatch(Watch, Protocol):
     """A watch whose detections can't be recognized by their position after a run is resumed."""
 
     def restore(self, reported: Sequence[ReportedDetection], now: float) -> None:
-        """Continue at time `now` (s) as the watch that made these reports, in this order."""
+        """Set a new watch to the state of the one that made these reports, oldest first.
+
+        The resumed run continues at time `now` (s).
+        """
         ...

@@ -27,9 +27,10 @@ _ORIFICE = 0.05  # m: nearer than this to the leak the concentration does not in
 def concentration(
     release: Release, weather: Weather, ground_z: float, points: NDArray[np.float64], now: float
 ) -> NDArray[np.float64]:
-    """Return the concentration at `points` (m), shape (n, 3), at time `now` (s), in ppm.
+    """Return the concentration of a release's gas at `points` (m), shape (n, 3), in ppm.
 
-    Gas that escaped before the end of the release continues to disperse after it.
+    `now` (s) is the time, `ground_z` (m) the height of the ground. Gas that escaped before the end
+    of the release continues to disperse after it.
     """
     result = leak_concentration(release.leak, weather, ground_z, points, now - release.start)
     if release.end is not None:
@@ -42,7 +43,7 @@ def leak_concentration(
 ) -> NDArray[np.float64]:
     """Return the concentration in ppm at `points` (m) from a leak that began `age` seconds ago.
 
-    It is 0 if `age` is 0 or less.
+    The leak has not stopped. The concentration is 0 if `age` is 0 or less.
     """
     if age <= 0.0:
         return np.zeros(len(points))

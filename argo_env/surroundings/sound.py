@@ -56,9 +56,9 @@ def pressure(level: float) -> float:
 
 @lru_cache(maxsize=64)
 def shaft_rate(pump: str) -> float:
-    """Return a pump's speed in turns per second: a motor with four poles at 50 Hz, less slip.
+    """Return a pump's speed in turns per second, 24 or 25, which depends on its name only.
 
-    It is what the pump's type plate shows.
+    It is that of a motor with four poles at 50 Hz, less slip, as the pump's type plate shows it.
     """
     return float(generator(0, "shaft", pump).integers(24, 26))
 
@@ -95,7 +95,8 @@ def pump_sound(pump: str, fault: PumpFault | None) -> NDArray[np.float32]:
 def alarm_sound(start: float, samples: int, level: float) -> NDArray[np.float64]:
     """Return the pressure (Pa) of the alarm in `samples` samples from time `start` (s) on.
 
-    The alarm sounds all the time.
+    There are RATE samples a second. Tones begin at the multiples of ALARM_PERIOD, whenever the
+    alarm began.
     """
     time = start + np.arange(samples) / RATE
     tone = math.sqrt(2) * pressure(level) * np.sin(2 * math.pi * ALARM_TONE * time)

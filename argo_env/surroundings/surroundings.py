@@ -106,12 +106,12 @@ class Surroundings:
 
     @property
     def releases(self) -> tuple[Release, ...]:
-        """Gas that escapes or has escaped."""
+        """Gas that has escaped from leaks that ended, then gas that escapes now."""
         now = [Release(s, t) for s, t in self._active if isinstance(s, GasLeak)]
         return (*self._ended, *now)
 
     def add(self, source: Source, now: float = 0.0) -> None:
-        """Add a source that is active from time `now` (s) on, in addition to equal sources.
+        """Add a source that is active from time `now` (s) on, even if an equal one is active.
 
         Raises NotFound if the site does not have the source's pump.
         """
@@ -164,5 +164,5 @@ class RadioNetwork:
         self.shadows: list[Shadow] = []
 
     def is_connected(self, pose: BodyPose) -> bool:
-        """Return True if a robot at `pose` has a connection."""
+        """Return True if a robot at `pose` has a signal: it is in none of the shadows."""
         return not any(shadow.contains(pose, self._site) for shadow in self.shadows)

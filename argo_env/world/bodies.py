@@ -104,7 +104,7 @@ class Bodies(Connection):
             self._sync_robot()
 
     def set_joints(self, positions: Mapping[str, float]) -> None:
-        """Set joints of the robot to positions (rad), by name."""
+        """Set joints of the robot to positions (rad), given by their names."""
         for name, position in positions.items():
             if self._posture.get(name) != position:
                 self._posture[name], self._robot_bounds = position, None
@@ -139,7 +139,7 @@ class Bodies(Connection):
         self._scene_changed = True
 
     def displace(self, checkpoint_id: int, placement: Placement) -> None:
-        """Move a checkpoint away from its planned pose.
+        """Set the displacement of a checkpoint from its planned pose, instead of an earlier one.
 
         Raises NotFound if there is no such checkpoint.
         """
@@ -152,7 +152,7 @@ class Bodies(Connection):
         self._detect()
 
     def placement(self, checkpoint_id: int) -> Placement:
-        """Return the displacement of a checkpoint from its planned pose."""
+        """Return the displacement of a checkpoint from its planned pose; `AS_PLANNED` if none."""
         return self._placements.get(checkpoint_id, AS_PLANNED)
 
     def actual_checkpoint(self, checkpoint_id: int) -> SiteCheckpoint:
@@ -165,9 +165,9 @@ class Bodies(Connection):
         )
 
     def add_screen(self, name: str, solid: Solid, colour: Vector) -> int:
-        """Add a solid that blocks lines of sight, and return its number.
+        """Add a solid to the world, which blocks lines of sight, and return its number.
 
-        `colour` is red, green and blue from 0 to 1.
+        `name` is its name as an obstacle. `colour` is red, green and blue from 0 to 1.
         """
         client = self._client
         shape: dict[str, Any]
@@ -201,7 +201,10 @@ class Bodies(Connection):
         self._detect()
 
     def has_only_fixed_solids(self, low: Vector, high: Vector) -> bool:
-        """Return True if a box (m) has no checkpoint near it, and there are no screens."""
+        """Return True if nothing near the box between two corners (m) can move or be removed.
+
+        That is, there is no checkpoint near it, and no screen in the world.
+        """
         box = SolidBounds(np.array(low) - _NEAR_CHECKPOINT, np.array(high) + _NEAR_CHECKPOINT)
         return not self._screens and not self._bounds_of_checkpoints().overlapping(box).any()
 

@@ -40,12 +40,12 @@ class SolidBounds:
 
     @staticmethod
     def enclosing(boxes: "list[SolidBounds]") -> "SolidBounds":
-        """Return the box around boxes."""
+        """Return the smallest box that contains all the boxes."""
         low, high = [box.low for box in boxes], [box.high for box in boxes]
         return SolidBounds(np.min(low, axis=0), np.max(high, axis=0))
 
     def overlapping(self, box: "SolidBounds") -> NDArray[np.bool_]:
-        """Return which of these boxes overlap with one box."""
+        """Return a mask of these boxes, True for those that overlap with or touch `box`."""
         return np.asarray(((self.low <= box.high) & (self.high >= box.low)).all(axis=-1))
 
     def select_boxes(self, mask: NDArray[np.bool_]) -> "SolidBounds":

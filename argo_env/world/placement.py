@@ -28,16 +28,16 @@ AS_PLANNED = Placement()
 
 
 def displaced_checkpoint(checkpoint: SiteCheckpoint, placement: Placement) -> SiteCheckpoint:
-    """Return the planned checkpoint with its position and yaw after the displacement."""
+    """Return the checkpoint with its position and yaw after the displacement; roll is left out."""
     x, y, z = (p + d for p, d in zip(checkpoint.position, placement.offset, strict=True))
     return replace(checkpoint, position=(x, y, z), yaw=checkpoint.yaw + placement.turn)
 
 
 def draw_checkpoint_placement(rng: np.random.Generator, keep_upright: bool = False) -> Placement:
-    """Return a random placement within the limits that the competition states (thesis, 1.2).
+    """Draw a random displacement of a checkpoint, within the competition's limits (thesis, 1.2).
 
-    The offset is uniform in a sphere, turn and roll are uniform up to ±90°. Level gauges are
-    `keep_upright`: they have no roll, since they work only when keep_upright.
+    The offset is uniform in a sphere, turn and roll are uniform up to ±90°. With `keep_upright`,
+    the roll is 0: level gauges work only when upright.
     """
     direction = rng.normal(size=3)
     direction *= MAX_OFFSET * rng.uniform() ** (1 / 3) / np.linalg.norm(direction)

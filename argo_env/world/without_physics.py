@@ -26,7 +26,7 @@ class AnyWorld(Protocol):
         ...
 
     def touches(self) -> tuple[Touch, ...]:
-        """Return the robot's contacts, except of its tracks and flippers with the ground."""
+        """Return the robot's contacts, except of its tracks and flippers with walkable ground."""
         ...
 
     def show_value(self, checkpoint_id: int, value: float) -> None:
@@ -34,11 +34,11 @@ class AnyWorld(Protocol):
         ...
 
     def obstacle_between(self, origin: Vector, target: Vector) -> str | None:
-        """Return the name of the first obstacle on a straight line, or None if there is none."""
+        """Return the name of the first obstacle between two points (m); None if there is none."""
         ...
 
     def displace(self, checkpoint_id: int, placement: Placement) -> None:
-        """Move a checkpoint away from its planned pose."""
+        """Set the displacement of a checkpoint from its planned pose, instead of an earlier one."""
         ...
 
     def actual_checkpoint(self, checkpoint_id: int) -> SiteCheckpoint:
@@ -65,7 +65,7 @@ class WorldWithoutPhysics:
         """Do nothing: this world has no instruments."""
 
     def displace(self, checkpoint_id: int, placement: Placement) -> None:
-        """Move a checkpoint away from its planned pose."""
+        """Set the displacement of a checkpoint from its planned pose, instead of an earlier one."""
         self._placements[checkpoint_id] = placement
 
     def actual_checkpoint(self, checkpoint_id: int) -> SiteCheckpoint:
@@ -81,7 +81,7 @@ class WorldWithoutPhysics:
         return ()
 
     def obstacle_between(self, origin: Vector, target: Vector) -> str | None:
-        """Return the name of the first element on a straight line, or None if there is none."""
+        """Return the name of the first element between two points (m); None if there is none."""
         line = np.array(target) - np.array(origin)
         length = float(np.linalg.norm(line))
         direction = line / length if length else np.array([0.0, 0.0, 1.0])

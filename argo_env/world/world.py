@@ -102,13 +102,16 @@ class World(Bodies):
     def set_drive_touches(self, touches: tuple[Touch, ...]) -> None:
         """Set the contacts that a drive with forces has had since the last call.
 
-        From then on `touches` returns these contacts once, and apart from them only overlaps of the
-        arm.
+        The next call of `touches` returns these contacts. From then on, `touches` itself looks for
+        contacts of the arm only.
         """
         self._drive_touches = touches
 
     def touches(self) -> tuple[Touch, ...]:
-        """Return the robot's contacts, except of its tracks and flippers with walkable ground."""
+        """Return the robot's contacts, except of its tracks and flippers with walkable ground.
+
+        After a call of `set_drive_touches`, they are those of the drive and those of the arm.
+        """
         touches = []
         for contact in self._contacts():
             body, link_a, link_b, point, distance = (
@@ -131,10 +134,11 @@ class World(Bodies):
         return (*(drive_touches or ()), *touches)
 
     def stays_clear(self, pose: BodyPose) -> bool:
-        """Return True if `touches` would surely be empty with the robot at `pose` too.
+        """Return True if `touches` would surely be empty with the robot at `pose`.
 
-        PyBullet is not asked. Always False in a world with a window, after `set_drive_touches`, or
-        if the last call of `touches` did not find the robot clear by its bounding boxes.
+        This is found by bounding boxes, without PyBullet; False means that it is not sure. The
+        result is always False in a world with a window, after `set_drive_touches`, and if these
+        boxes did not show the robot to be clear in the last call of `touches`.
         """
         return (
             self._was_clear
@@ -161,10 +165,11 @@ class World(Bodies):
         return contacts
 
     def arm_obstacle(self, positions: Mapping[str, float], clearance: float) -> str | None:
-        """Return the name of an obstacle nearer to the arm than `clearance` (m), or None.
+        """Return the name of an obstacle nearer than `clearance` (m) to the arm at `positions`.
 
-        The arm's joints are taken to be at `positions` (rad); in the end no joint has moved. The
-        obstacle is an element, a checkpoint or a screen, or a link of the robot.
+        These are positions of joints (rad) by name; after the check, all joints are where they were
+        before. An obstacle is an element, a checkpoint, a screen, or another link of the robot.
+        Returns None if there is none.
         """
         names = list(positions)
         before = dict(zip(names, self.joint_positions(names), strict=True))
@@ -220,10 +225,11 @@ class World(Bodies):
     def heights_below(
         self, points: NDArray[np.float64], below: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Return the height (m) of the first solid under each of `points`, shape (n, 2).
+        """Return the height (m) of the first solid under each of `points` (x and y), shape (n, 2).
 
-        Rays go down from the heights `below` (m), shape (n,). Where there is nothing within 2 m, as
-        in the seam between two plates, the result is 2 m less than `below`.
+        Rays go down from the heights `below` (m), shape (n,), and pass through the robot. Where
+        there is nothing within 2 m, as in the seam between two plates, the result is 2 m less than
+        `below`.
         """
         depth = below - 2.0
         hits = self._rays(np.column_stack([points, below]), np.column_stack([points, depth]))
@@ -275,7 +281,10 @@ class World(Bodies):
         return hits
 
     def obstacle_between(self, origin: Vector, target: Vector) -> str | None:
-        """Return the name of the first obstacle on a straight line, except the robot, or None."""
+        """Return the name of the first obstacle between two points (m), or None if there is none.
+
+        The robot is no obstacle.
+        """
         body, link, _, point, _ = pybullet.rayTest(
             origin, target, collisionFilterMask=SITE_BIT, physicsClientId=self._client
         )[0]

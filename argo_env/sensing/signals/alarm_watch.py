@@ -42,9 +42,11 @@ def has_alarm_tone(samples: NDArray[np.float32]) -> bool:
 
 
 def matches_alarm_beat(recordings: Sequence[tuple[float, bool]]) -> bool:
-    """Return True if recordings match the alarm's beat, whenever the alarm began.
+    """Return True if recordings match the beat of an alarm that began at any time.
 
-    Each recording is its time (s) and whether it has the tone.
+    Each recording is given as its start time (s), and True if it has the tone. At most
+    `MAX_MISMATCHES` of them may differ from the beat. The result is False for fewer than
+    `BEAT_RECORDINGS`.
     """
     if len(recordings) < BEAT_RECORDINGS:
         return False

@@ -33,6 +33,6 @@ def to_site(pose: BodyPose, position: Vector) -> NDArray[np.float64]:
 
 
 def to_vector(values: NDArray[np.float64]) -> Vector:
-    """Return the array, in m, shape (3,), as a vector that is rounded to the millimetre."""
+    """Convert an array of 3 coordinates (m) to a tuple, rounded to the millimetre."""
     x, y, z = (round(v, 3) for v in values.tolist())
     return x, y, z

@@ -44,7 +44,10 @@ class GasSensor:
         self._last: float | None = None
 
     def measure_concentration(self, now: float, pose: BodyPose) -> float:
-        """Return the concentration that the sensor shows at time `now` (s), in ppm."""
+        """Return the concentration of methane that the sensor shows at time `now` (s), in ppm.
+
+        The sensor lags behind the air at the robot's nose: each call continues from the last one.
+        """
         step = 0.0 if self._last is None else now - self._last
         self._last = now
         noise, drift, gust = map(float, self._rng.standard_normal(3))
@@ -79,7 +82,7 @@ class UltrasonicMicrophone:
         self._rng = rng
 
     def measure_level(self, pose: BodyPose) -> float:
-        """Return the sound level in dB."""
+        """Return the measured sound level in the band about 40 kHz, in dB, with noise and bangs."""
         noise = float(self._rng.standard_normal())
         bang, height = map(float, self._rng.random(2))
         levels = [self.BACKGROUND]
@@ -116,7 +119,8 @@ CLEAR_RANGE = 3.0  # m from where a leak was strongest within which silence mean
 class Hysteresis:
     """Switch with hysteresis. It holds the last values and whether it is on.
 
-    It goes on when enough of the last values are high, and off when all of them are low.
+    It goes on when `votes` of the last `VOTERS` values are `on` or more, and off when all of them
+    are less than `off`.
     """
 
     def __init__(self, on: float, off: float, votes: int) -> None:
@@ -126,7 +130,7 @@ class Hysteresis:
         self.active = False
 
     def update(self, value: float) -> bool:
-        """Add a value, and return whether the switch is on now."""
+        """Add a value, and return True if the switch is on now."""
         self._values.append(value)
         on, off = self._limits
         if sum(v >= on for v in self._values) >= self._votes:
@@ -168,7 +172,10 @@ class GasWatch:
         self._valid_from = 0.0  # s, from when on silence means that there is no leak
 
     def restore(self, reported: Sequence[ReportedDetection], now: float) -> None:
-        """Continue from these reports; each leak counts as strongest where it was reported."""
+        """Restore the leaks that were reported and not cleared, each strongest where reported.
+
+        Silence counts again `WARMING_UP` seconds after `now` (s).
+        """
         for detection in reported:
             if detection.kind is EventKind.GAS_LEAK:
                 self._reported.append(_Leak([detection.pose], detection.pose, 1.0))

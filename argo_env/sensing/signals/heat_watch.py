@@ -52,7 +52,10 @@ class ThermalImage:
         return directions_through_pixels(rows + 0.5, columns + 0.5) @ self.axes.T
 
     def project(self, place: Vector) -> tuple[float, float, float]:
-        """Return row, column (pixels) and depth (m) of a point; the depth is negative behind it."""
+        """Return row and column (px) of a point of the site (m), and its depth (m).
+
+        The depth is along the camera's axis, and negative for points behind the camera.
+        """
         ahead, left, up = ((np.array(place) - self.origin) @ self.axes).tolist()
         scale = FOCAL / max(ahead, 1e-6)
         return HEIGHT / 2 - up * scale, WIDTH / 2 - left * scale, ahead
@@ -61,7 +64,10 @@ class ThermalImage:
 def directions_through_pixels(
     rows: NDArray[np.floating[Any]], columns: NDArray[np.floating[Any]]
 ) -> NDArray[np.float64]:
-    """Return unit vectors (ahead, left, up) through points of the image in pixels, shape (n, 3)."""
+    """Return unit vectors from the camera through points of its image, shape (n, 3).
+
+    `rows` and `columns` are in px; the vectors are along the camera's axes (ahead, left, up).
+    """
     rays = np.column_stack(
         [np.full(len(rows), FOCAL), WIDTH / 2 - columns, HEIGHT / 2 - np.asarray(rows)]
     )
@@ -76,7 +82,7 @@ _COARSE_RAYS = directions_through_pixels(_ROWS, _COLUMNS)
 
 
 class ThermalCamera:
-    """Thermal camera, which holds its constant offset: the seed draws it once."""
+    """Thermal camera. It holds its constant error of temperature, which is drawn once."""
 
     def __init__(self, surroundings: Surroundings, world: World, rng: np.random.Generator) -> None:
         self._surroundings = surroundings
@@ -86,7 +92,7 @@ class ThermalCamera:
         self._roles = {e.material: e.role for e in world.site.elements}
 
     def take_image(self, pose: BodyPose, pan: float) -> ThermalImage:
-        """Take an image with the camera turned by `pan` (rad, to the left)."""
+        """Take an image from a robot at `pose`, with the camera turned left by `pan` (rad)."""
         c, s = math.cos(pan), math.sin(pan)
         axes = rotation(pose) @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
         image = ThermalImage(np.empty((HEIGHT, WIDTH)), to_site(pose, PLACE), axes)
@@ -162,8 +168,9 @@ class _ReportedSpot:
 class HeatWatch:
     """Watch for hot spots. It holds the spots that it has reported, and unconfirmed ones.
 
-    It looks ahead to the left and to the right in turn, and keeps looking at a suspected spot until
-    a second image confirms it. It reports each spot once.
+    It looks ahead to the left and to the right in turn. After an image with a spot not yet
+    reported, it takes the next one in the same direction, and reports the spot if that one shows it
+    too. It reports each spot once, and again only after it has been gone.
     """
 
     name = "heat"
@@ -215,8 +222,8 @@ class HeatWatch:
 def find_spots(image: ThermalImage, site_map: SiteMap, air: float) -> tuple[Spot, ...]:
     """Return the hot spots in an image: warmer than its surfaces can be without a fault.
 
-    A spot counts if the median of its warmest pixels is more than MARGIN (K) above the highest
-    temperature that the surfaces at its position can have.
+    A spot has at least PIXELS pixels, and the median of its warmest ones is more than MARGIN (K)
+    above the highest temperature that the surfaces at its position can have.
 
     Args:
         image: image of the thermal camera.

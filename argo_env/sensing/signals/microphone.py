@@ -29,7 +29,7 @@ BANG_SHARE, BANG = 0.01, 90.0
 
 
 def pump_positions(site: Site) -> dict[str, Vector]:
-    """Return the middle of each pump by its name, in m."""
+    """Return the position (m) of the middle of each pump, by the name of the pump."""
     return {
         pump.name: (*pump.center, floor.z + PUMP_HEIGHT)
         for floor in site.spec.floors
@@ -77,7 +77,10 @@ class Microphone:
         self._rng = rng
 
     def record_sound(self, now: float, pose: BodyPose, duration: float) -> NDArray[np.float32]:
-        """Record for `duration` (s) from time `now` (s) on; return Pa, RATE samples a second."""
+        """Record sound from time `now` (s) on for `duration` (s), with the robot at `pose`.
+
+        Returns the pressure in Pa, RATE samples a second.
+        """
         count = round(duration * RATE)
         x, y, z = to_site(pose, NOSE).tolist()
         sources = self._surroundings.sources

@@ -59,7 +59,7 @@ RINGS, RECORDINGS_PER_RING = (0.8, 1.6, 3.2), 3
 
 @dataclass(frozen=True)
 class Baseline:
-    """Power above the lines when all pumps run well."""
+    """Power in the noise band when all pumps run well, as `noise_band_power` returns it."""
 
     site: float
     """power of the site itself"""
@@ -74,15 +74,18 @@ class AbnormalRecording:
     listener: Vector
     """m, position of the microphone"""
     normal: float
-    """expected power above the lines if all pumps run well"""
+    """expected power in the noise band if all pumps run well"""
     excess: float
     """measured power beyond the normal one"""
     envelope_spectrum: NDArray[np.float64]
-    """share of the sound that varies at each rate, one value each 1 / RECORDING Hz; 0 to 1"""
+    """share, 0 to 1, of the sound that varies at each rate, one value each 1 / RECORDING Hz"""
 
 
 def noise_band_power(samples: NDArray[np.float32]) -> float | None:
-    """Return the mean power above the lines, or None if the recording has a bang of metal."""
+    """Return the mean power in `BAND`, above the spectral lines of normal pumps.
+
+    `samples` are a recording (Pa, RATE samples a second). Returns None if it has a bang of metal.
+    """
     blocks = samples.reshape(BLOCKS, -1)
     bins_per_hertz = blocks.shape[1] / RATE
     spectra = np.fft.rfft(blocks)[
@@ -93,8 +96,9 @@ def noise_band_power(samples: NDArray[np.float32]) -> float | None:
 
 
 def envelope_spectrum(samples: NDArray[np.float32]) -> NDArray[np.float64]:
-    """Return the spectrum of the squared envelope in the ringing band, relative to its mean.
+    """Return the spectrum of a recording's squared envelope in the ringing band.
 
+    The magnitudes are relative to that at 0 Hz; there is one for each 1 / duration Hz.
     See Randall and Antoni, Rolling element bearing diagnostics, 2011.
     """
     bins_per_hertz = len(samples) / RATE
@@ -108,8 +112,9 @@ def envelope_spectrum(samples: NDArray[np.float32]) -> NDArray[np.float64]:
 
 @lru_cache(maxsize=16)
 def learn_baseline(positions: tuple[tuple[str, Vector], ...]) -> Baseline:
-    """Return the baseline of the pumps at these positions, fitted to recordings around them.
+    """Return the baseline of the pumps with these names and positions (m).
 
+    It is fitted to recordings around the pumps.
     The recordings are simulated with all pumps running well, as if made at commissioning.
     """
     rng = generator(0, "commissioning")
@@ -207,7 +212,12 @@ class PumpWatch:
 def faulty_pumps(
     recordings: tuple[AbnormalRecording, ...], positions: dict[str, Vector], baseline: Baseline
 ) -> list[str]:
-    """Return the near pumps without whose fault the recordings can't be explained."""
+    """Return the names of the pumps that must have a fault, given abnormal recordings.
+
+    These are pumps near a recording without whose fault the recordings can't be explained. The
+    list is empty if faults of pumps don't explain the recordings at all. `positions` (m) are those
+    of all pumps by name.
+    """
     listeners = [recording.listener for recording in recordings]
     distance = {
         name: min(math.dist(listener, position) for listener in listeners)

@@ -22,9 +22,9 @@ class SiteMap:
     def cast_rays(
         self, origin: NDArray[np.float64], directions: NDArray[np.float64], reach: float
     ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-        """Return the distance (m) to the first solid on each ray, and the number of that solid.
+        """Return the distance (m) to the first solid on each ray, and the index of that solid.
 
-        Where there is no solid within `reach`, the distance is inf and the number -1.
+        Where there is no solid within `reach`, the distance is inf and the index -1.
 
         Args:
             origin: start of the rays in m, shape (3,), or one for each ray, shape (n, 3).
@@ -34,15 +34,15 @@ class SiteMap:
         return self._rays.first_hits(origin, directions, reach)
 
     def element_of(self, solid: int) -> Element:
-        """Return the element that a solid belongs to."""
+        """Return the element that the solid with this index, from `cast_rays`, belongs to."""
         return self._rays.elements[solid]
 
     def walkable(self, solids: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Return which of the solids are there to walk on; False for the number -1."""
+        """Return a mask of the solids (indices from `cast_rays`) to walk on; False for index -1."""
         return np.asarray(self._walkable[solids] & (solids >= 0))
 
     def near_checkpoint(self, points: NDArray[np.float64], radius: float) -> NDArray[np.bool_]:
-        """Return which of `points`, shape (n, 3), lie within `radius` (m) of any checkpoint."""
+        """Return a mask of the points (m), shape (n, 3), within `radius` (m) of any checkpoint."""
         if not len(self._checkpoints) or not len(points):
             return np.zeros(len(points), dtype=bool)
         apart = points[:, None, :] - self._checkpoints
@@ -51,7 +51,7 @@ class SiteMap:
     def nearest_equipment(self, point: Vector) -> str:
         """Return the name of the vessel, pipe or pump nearest to `point` (m).
 
-        Without any equipment it is the floor, such as `floor 1`.
+        On a site without equipment, the result is the floor at this height, such as `floor 1`.
         """
         if not self._equipment.any():
             return f"floor {self.site.floor_at(point[2])}"

@@ -82,23 +82,34 @@ class Pattern:
 
 @lru_cache(maxsize=128)
 def make_scan_pattern(
-    backwards: bool, row: float, count: int, columns: int, farthest: float = FARTHEST
+    backwards: bool,
+    row_spacing: float,
+    row_count: int,
+    column_count: int,
+    farthest: float = FARTHEST,
 ) -> Pattern:
-    """Return a pattern of `count` rows, `row` (m) apart, with `columns` rays each.
+    """Return rays to `row_count` rows of points across the lane, `row_spacing` (m) apart.
 
-    The last row is `farthest` (m) from the robot's middle. Every other row is shifted by half the
+    The lane is ahead of the robot, or behind it if `backwards`. Each row has `column_count` rays;
+    the last row is `farthest` (m) from the robot's middle. Every other row is shifted by half the
     gap between columns, so that the next row hits what lies between two columns.
     """
-    rows = farthest - row * np.arange(count)[::-1]
-    step = 2 * HALF_LANE / columns
-    along, left = np.meshgrid(rows, (np.arange(columns) + 0.25) * step - HALF_LANE, indexing="ij")
+    rows = farthest - row_spacing * np.arange(row_count)[::-1]
+    step = 2 * HALF_LANE / column_count
+    lefts = (np.arange(column_count) + 0.25) * step - HALF_LANE
+    along, left = np.meshgrid(rows, lefts, indexing="ij")
     left[1::2] += step / 2
     scanner, along = (REAR, -along) if backwards else (FRONT, along)
     rays = np.column_stack([along.ravel(), left.ravel(), np.zeros(along.size)]) - np.array(scanner)
     planar = np.linalg.norm(rays, axis=1)
     fall = scanner[2] / planar
     return Pattern(
-        scanner, rays / planar[:, None], planar, fall, planar + DEEPEST / fall, (count, columns)
+        scanner,
+        rays / planar[:, None],
+        planar,
+        fall,
+        planar + DEEPEST / fall,
+        (row_count, column_count),
     )
 
 
@@ -111,7 +122,7 @@ class TerrainScanner:
         self._rng = rng
 
     def scan(self, pose: BodyPose, pattern: Pattern) -> Scan:
-        """Scan from the robot's true pose `pose`.
+        """Scan along the rays of a pattern from the robot's true pose, and compare with the map.
 
         The points of the result have the error of the robot's localization.
         """
@@ -242,8 +253,8 @@ class _ReportedObstacle:
 class TerrainWatch:
     """Watch for obstacles and holes in the lane that the robot drives along, ahead or behind.
 
-    It holds its last scan's time and pose, and the obstacles that it has reported. It reports each
-    obstacle once, and again if more of it appears as the robot comes nearer.
+    It holds the time and pose of its last scan, and the obstacles that it has reported. It reports
+    each obstacle once, and again if more of it appears as the robot comes nearer.
     """
 
     name = "terrain"

@@ -59,7 +59,10 @@ class Fit:
 
 
 def sample_image(image: NDArray[np.float32], pixels: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the image's values at `pixels` (column and row), shape (..., 2); NaN outside of it."""
+    """Return the image's values at `pixels`, column and row, shape (..., 2).
+
+    Values are interpolated between pixels; they are NaN outside of the image.
+    """
     import cv2
 
     pixels = pixels.astype(np.float32)
@@ -80,7 +83,7 @@ def sample_image(image: NDArray[np.float32], pixels: NDArray[np.float64]) -> NDA
 
 
 def compare(photo: Photo, template: Template, pose: FacePose) -> Fit:
-    """Return how much of the drawn face, at `pose`, looks as in the picture."""
+    """Compare the drawn face, at `pose`, with the picture; return `pose` and how much matches."""
     values, weights = _sample_template(photo, template, pose)
     face, gain, offset = _brightness_levels(values, template, weights)
     match = _match(values, template, weights, gain, offset) if face else 0.0
@@ -90,10 +93,10 @@ def compare(photo: Photo, template: Template, pose: FacePose) -> Fit:
 def refine(
     photo: Photo, template: Template, pose: FacePose, rolled: bool, iterations: int = 12
 ) -> Fit:
-    """Return the pose near `pose` at which most of the drawn face looks as in the picture.
+    """Return the fit near `pose` at which most of the drawn face looks as in the picture.
 
-    The search starts at `pose`, makes at most `iterations` steps, and ends at a local maximum of
-    `Fit.match`. The roll is changed only if `rolled` is True.
+    The search starts at `pose`, and ends at a local maximum of `Fit.match`, or after `iterations`
+    steps. The roll is changed only if `rolled` is True.
     """
     free = 5 if rolled else 4
     parameters = np.array([pose.x, pose.y, pose.z, pose.yaw, pose.roll])

@@ -35,7 +35,10 @@ class CameraPose:
 
 
 def forward_kinematics(joints: NDArray[np.float64], pose: BodyPose) -> CameraPose:
-    """Return the camera's pose for joints (rad, ordered as `JOINTS`) of the robot at `pose`."""
+    """Return the camera's pose for positions of the arm's joints, with the robot at `pose`.
+
+    `joints` are in rad, in the order of `JOINTS`.
+    """
     yaw, shoulder, elbow, wrist, pan = joints.tolist()
     reach = _UPPER_ARM * math.sin(shoulder) + _FOREARM * math.sin(shoulder + elbow)
     rise = _UPPER_ARM * math.cos(shoulder) + _FOREARM * math.cos(shoulder + elbow)
@@ -51,11 +54,11 @@ def forward_kinematics(joints: NDArray[np.float64], pose: BodyPose) -> CameraPos
 def inverse_kinematics(
     eye: NDArray[np.float64], target: NDArray[np.float64], pose: BodyPose
 ) -> Iterator[NDArray[np.float64]]:
-    """Yield all joint positions that bring the lens to `eye` and point it at `target` (m).
+    """Yield all joint positions that bring the lens to `eye` and point it at `target`.
 
-    Positions are in rad, in the order of `JOINTS`. There are up to eight: the arm's yaw or that
-    plus a half turn, the camera's picture upright or upside down, the elbow bent either way. There
-    are none if `eye` is out of reach.
+    Both are points of the site in m. Joint positions are in rad, in the order of `JOINTS`. There
+    are up to eight: the arm's yaw or that plus a half turn, the camera's picture upright or upside
+    down, the elbow bent either way. There are none if `eye` is out of reach.
     """
     body = _about_z(pose.yaw) @ _about_y(pose.pitch) @ _about_x(pose.roll)
     sight = body.T @ (target - eye)

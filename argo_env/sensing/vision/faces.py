@@ -141,14 +141,14 @@ _DRAWINGS: dict[CheckpointKind, Callable[[_Sheet], None]] = {
 
 
 def draw_face(kind: CheckpointKind) -> Image.Image:
-    """Draw the face as seen from the front, to the edges of its shape, with `PIXELS_PER_METRE`."""
+    """Return the drawn face of an instrument, seen from the front, with `PIXELS_PER_METRE`."""
     sheet = _Sheet(FACES[kind])
     _DRAWINGS[kind](sheet)
     return sheet.finished()
 
 
 def face_file(kind: CheckpointKind) -> Path:
-    """Return the path of the drawn face that the models show."""
+    """Return the path of the PNG with the drawn face of this kind of instrument."""
     return resources.urdf() / "checkpoints" / f"{kind.value.replace(' ', '_')}_face.png"
 
 
@@ -175,7 +175,7 @@ def face_mesh(kind: CheckpointKind) -> str:
 
 
 def write_faces() -> None:
-    """Draw all faces, and write them with their meshes into the folder of the models."""
+    """Draw the faces of all kinds, and write them with their meshes to `urdf/checkpoints/`."""
     for kind in CheckpointKind:
         path = face_file(kind)
         draw_face(kind).quantize(32).save(path, optimize=True)

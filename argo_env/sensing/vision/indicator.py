@@ -34,7 +34,10 @@ class IndicatorPosition:
 def find_indicator(
     photo: Photo, instrument: Instrument, pose: FacePose
 ) -> IndicatorPosition | None:
-    """Return the position of the indicator, or None if nothing red is on the scale."""
+    """Return the position of the indicator of an instrument whose face is at `pose`.
+
+    Returns None if nothing red is on the scale.
+    """
     indicator = instrument.indicator
     shares = np.linspace(-_MARGIN, 1 + _MARGIN, _STEPS)
     positions = indicator.low + shares * (indicator.high - indicator.low)

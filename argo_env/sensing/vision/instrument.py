@@ -74,14 +74,14 @@ class Template:
 
 @cache
 def texture(kind: CheckpointKind) -> NDArray[np.float32]:
-    """Return the drawn face as brightness from 0 to 1, shape (height, width)."""
+    """Return the drawn face of an instrument as brightness, 0 to 1, shape (height, width)."""
     with Image.open(face_file(kind)) as image:
         return np.asarray(image.convert("L")).astype(np.float32) / np.float32(255)
 
 
 @cache
 def blurred_texture(kind: CheckpointKind, blur: float) -> NDArray[np.float32]:
-    """Return the drawn face, blurred by `blur` (m)."""
+    """Return `texture`, blurred by a Gaussian filter with the standard deviation `blur` (m)."""
     import cv2
 
     return np.asarray(cv2.GaussianBlur(texture(kind), (0, 0), blur * PIXELS_PER_METRE))
@@ -114,13 +114,16 @@ def make_template(instrument: Instrument, spacing: float, blur: float) -> Templa
 
 
 def grid(x: float, y: NDArray[np.float64], z: NDArray[np.float64]) -> Points:
-    """Return all points with these coordinates (m), shape (n, 3)."""
+    """Return the points with `x` and each pair of values of `y` and `z` (m), shape (n, 3)."""
     ys, zs = np.meshgrid(y, z)
     return np.column_stack([np.full(ys.size, x), ys.ravel(), zs.ravel()])
 
 
 def turn_points(points: Points, angles: Points) -> Points:
-    """Turn points clockwise about the instrument's x axis by angles (rad), shape (m, n, 3)."""
+    """Return n points turned about the instrument's x axis by each of m angles, shape (m, n, 3).
+
+    `points` (m) have the shape (n, 3); angles (rad) are clockwise as seen from the front.
+    """
     cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
     x, y, z = points.T
     return np.stack(
@@ -152,7 +155,7 @@ _FLOAT = np.linspace(-0.012, 0.012, 7)  # m from the middle, points of the float
 
 
 def lift_points(points: NDArray[np.float64], heights: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Move points up by heights (m), shape (m, n, 3)."""
+    """Return n points (m), shape (n, 3), moved up by each of m heights (m), shape (m, n, 3)."""
     return np.asarray(points[None] + heights[:, None, None] * np.array([0.0, 0.0, 1.0]))
 
 

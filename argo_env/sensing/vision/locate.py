@@ -31,9 +31,10 @@ _FILLED = 0.8  # ratio of the areas of a patch's hull and of its ellipse or rect
 def find_poses_by_outline(
     photo: Photo, instrument: Instrument, planned: FacePose
 ) -> list[tuple[float, FacePose]]:
-    """Return the poses, without roll, of all bright patches that could be the face.
+    """Return the poses, without roll, of all bright patches of the picture that could be the face.
 
-    Each has a number from 0 to 1: how well the hull of the patch fills the outline of a face.
+    Each pose comes after a number from 0 to 1: how well the hull of the patch fills the outline of
+    a face. `planned` is the planned pose of the face.
     """
     import cv2
 
@@ -155,7 +156,7 @@ _DARKEST = 0.03  # of full scale: faces whose white is darker are ignored
 
 
 def template_spacing(instrument: Instrument) -> float:
-    """Return the distance in m between the points of a face that is compared with pictures."""
+    """Return the distance (m) between the points of the face's template (see `make_template`)."""
     return 0.004 if instrument.shape.round else 0.0045
 
 
@@ -192,10 +193,11 @@ def _rolled_faces(instrument: Instrument, blur: float) -> _RolledFaces:
 def likely_rolls(
     photo: Photo, instrument: Instrument, pose: FacePose, blur: float
 ) -> list[tuple[float, FacePose]]:
-    """Return `pose` with the rolls at which the face is most similar to the picture.
+    """Return `pose` with each of the three rolls at which the face is most similar to the picture.
 
-    Each has its likeness from 0 to 1. There is none if too little of the face is visible, or if the
-    picture is too dark.
+    Each comes after its likeness from 0 to 1, the most similar first. For an instrument that can't
+    be rolled, the only roll is 0. The list is empty if too little of the face is visible, or if the
+    picture is too dark. `blur` (m) is that of the face to compare with.
     """
     faces = _rolled_faces(instrument, blur)
     spots = photo.lens.project(pose.to_site(faces.template.points), photo.pose)

@@ -99,7 +99,10 @@ class Photo:
 
 
 def make_photo(picture: NDArray[np.uint8], lens: Lens, pose: CameraPose) -> Photo:
-    """Return the picture's brightness and redness; the redness does not depend on the light."""
+    """Return a photo with the picture's brightness and redness, blurred a little against noise.
+
+    The redness does not depend on the light.
+    """
     import cv2
 
     colours = np.asarray(cv2.GaussianBlur(picture.astype(np.float32) / 255, (0, 0), _DENOISE))

@@ -43,7 +43,7 @@ class ArmView:
 
 
 def solids_near(site: Site, point: NDArray[np.float64], reach: float) -> tuple[Solid, ...]:
-    """Return the site's solids within `reach` (m) of a point, along each axis."""
+    """Return the site's solids whose bounding box is within `reach` (m) of a point on each axis."""
     return tuple(
         solid
         for element in site.elements
@@ -64,7 +64,8 @@ def plan_views(
     """Yield views of the face from a robot at `pose`, those with the least cost first.
 
     Views cost less if they are frontal and near, and if their direction from the face differs from
-    that of used positions.
+    that of used positions. Views are left out if most of the face is hidden, or if the arm can't
+    reach them without contact.
 
     Args:
         world: world in which contacts of the arm are checked.

@@ -54,7 +54,7 @@ class Battery:
         return self._remaining <= 0.0
 
     def wear(self, share: float) -> None:
-        """Reduce the capacity to this share of it; the charge stays the same share."""
+        """Reduce the capacity to this share of it; the charge, a share of the capacity, stays."""
         charge = self.charge
         self.capacity *= share
         self.charge = charge
@@ -109,7 +109,7 @@ def estimated_charge(voltage: float, current: float) -> float:
 def power_draw(
     power: PowerSpec, before: BodyPose, after: BodyPose, seconds: float, measuring: bool
 ) -> float:
-    """Return the power (W) that the robot draws between two poses that are `seconds` apart.
+    """Return the power (W) that the robot draws to move from one pose to another in `seconds`.
 
     `measuring` states whether it measures, which counts only while it stands.
     """
@@ -131,10 +131,11 @@ def power_draw_per_step(
     seconds: float,
     measuring: bool,
 ) -> NDArray[np.float64]:
-    """Return the power (W) for each of n steps, equal to `power_draw` to the last bit.
+    """Return the power (W) that the robot draws in each of n steps of `seconds`, shape (n,).
 
     `distances` (m) of the steps have the shape (n,); `poses` before the first step and after each,
-    which have no roll, the shape (n + 1, 5). `seconds` is the duration of a step.
+    which have no roll, the shape (n + 1, 5). The values equal those of `power_draw` to the last
+    bit.
     """
     before, after = poses[:-1], poses[1:]
     least = _MOVING * seconds

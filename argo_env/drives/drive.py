@@ -1,4 +1,4 @@
-"""Protocol of drives, which move the robot along a path, and the angles of its flippers."""
+"""Protocol of drives, which move the robot along a path, and angles of the robot's flippers."""
 
 import math
 from collections.abc import Sequence
@@ -57,11 +57,11 @@ class Drive(Protocol):
 
     @property
     def incidents(self) -> Sequence[Incident]:
-        """Faults of the drive since `place_robot`, whether or not the robot could continue."""
+        """Faults of the drive since the last `place_robot`, even if the robot could continue."""
         ...
 
     def place_robot(self, pose: BodyPose) -> None:
-        """Set the robot to the pose, at rest."""
+        """Put the robot at the pose, at rest, without driving there; discard the path."""
         ...
 
     def follow(self, path: Path, velocity: float | None) -> None:

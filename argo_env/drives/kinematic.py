@@ -162,7 +162,7 @@ class KinematicDrive(NonCopyable, TimedDrive):
         self._poses: list[BodyPose] = []  # along the motion
 
     def place_robot(self, pose: BodyPose) -> None:
-        """Set the robot to the pose, at rest."""
+        """Put the robot at the pose, at rest, without driving there; discard the path."""
         super().place_robot(pose)
         self._show()
 

@@ -69,7 +69,7 @@ class Powertrain:
         return self._drive.incidents
 
     def place_robot(self, pose: BodyPose) -> None:
-        """Set the robot to the pose, at rest."""
+        """Put the robot at the pose, at rest, without driving there; discard the path."""
         self.path_and_velocity = None
         self._drive.place_robot(pose)
 
@@ -108,7 +108,7 @@ class Powertrain:
         return isinstance(self._drive, TimedDrive) and self._drive.can_batch_steps
 
     def steps_ahead(self, limit: int) -> StepsAhead:
-        """Predict the next steps, at most `limit`, as long as the robot can touch nothing.
+        """Predict the next steps, up to `limit`, as far as the robot surely touches nothing.
 
         In all of them the emergency stop holds the robot, or the robot surely moves.
         """
@@ -128,7 +128,10 @@ class Powertrain:
         return StepsAhead(poses[: len(made)], made)
 
     def advance(self, ahead: StepsAhead, passed: int, count: int) -> None:
-        """Make the next `count` of the predicted steps, of which the first `passed` were made."""
+        """Make `count` of the steps that `steps_ahead` predicted, after the first `passed` of them.
+
+        Earlier calls must have made those.
+        """
         if self.stop_pressed:
             self.held_steps += count
             return

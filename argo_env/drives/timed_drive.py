@@ -46,7 +46,7 @@ class TimedDrive(ABC):
         return ()
 
     def place_robot(self, pose: BodyPose) -> None:
-        """Set the robot to the pose, at rest."""
+        """Put the robot at the pose, at rest, without driving there; discard the path."""
         self.halt()
         self._pose = pose
 

@@ -58,14 +58,14 @@ class Fault(Model):
         return None
 
     def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
-        """Return the fault with all its fields set: those that are None are drawn.
+        """Return a resolved copy of the fault, in which `rng` has drawn the fields left to chance.
 
         Raises ArgoError if the site does not have the place, checkpoint or pump of the fault.
         """
         return self
 
     def elements_with_fault(self, site: Site) -> tuple[Element, ...]:
-        """Return the site's elements with this fault, which must be resolved."""
+        """Return all elements of the site, changed by this fault, which must be resolved."""
         return site.elements
 
     def can_explain(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
@@ -85,7 +85,10 @@ class Fault(Model):
         """
 
     def revert(self, targets: "FaultTargets", now: float) -> None:
-        """Revert the effect; without `adds_up`, revert that of all faults of its kind."""
+        """Revert the fault's effect at time `now` (s).
+
+        Unless `adds_up` is True, this also reverts the effects of other faults of its kind.
+        """
 
     def _copy_with(self, **fields: Any) -> Self:
         return self.model_copy(update=fields)

@@ -60,23 +60,23 @@ class FaultFile(Model):
 
 
 def resolve_faults(faults: Sequence[AnyFault], site: Site, seed: int) -> tuple[AnyFault, ...]:
-    """Return the faults with all fields set; each is drawn by its own seed, or by the run's `seed`.
+    """Return the faults resolved; the seed of each, or else the run's `seed`, draws its fields.
 
-    Raises ArgoError, with the fault's number in the list, if the site does not have the place,
+    Raises ArgoError, with the fault's index in the list, if the site does not have the place,
     checkpoint or pump of a fault.
     """
     return tuple(_resolve_in_list(fault, number, site, seed) for number, fault in enumerate(faults))
 
 
 def resolve_fault(fault: AnyFault, number: int, site: Site, seed: int) -> AnyFault:
-    """Return the fault that `resolve_faults` would return for this number in a list."""
+    """Return the resolved fault as `resolve_faults` would, at index `number` of its list."""
     own = seed if fault.seed is None else fault.seed
     rng = generator(own, "fault", fault.kind, number if fault.seed is None else 0)
     return fault.resolve_for(site, rng)
 
 
 def find_site_errors(faults: Sequence[AnyFault], site: Site, seed: int) -> dict[int, str]:
-    """Return an error for each fault that does not fit the site, by its number in the list."""
+    """Return the error of each fault that does not fit the site, by its index in the list."""
     errors = {}
     for number, fault in enumerate(faults):
         try:
@@ -94,7 +94,7 @@ def _resolve_in_list(fault: AnyFault, number: int, site: Site, seed: int) -> Any
 
 
 def site_with_faults(site: Site, faults: Sequence[AnyFault]) -> Site:
-    """Return the site with resolved faults: bricks lie on it, and plates are missing."""
+    """Return the site with its elements changed by resolved faults, such as bricks added."""
     for fault in faults:
         site = site.with_elements(fault.elements_with_fault(site))
     return site

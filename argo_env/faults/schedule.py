@@ -35,17 +35,17 @@ class FaultSchedule:
 
     @property
     def last_change(self) -> float:
-        """Time in s at which the last fault began or ended; 0 if there is none."""
+        """Time in s of the most recent start or end of a fault; 0 before the first one."""
         return self._changes[self._next - 1][0] if self._next else 0.0
 
     def add(self, fault: AnyFault) -> None:
-        """Add a resolved fault that begins at the present time or later."""
+        """Add a resolved fault, which must not begin before the time of the last `advance`."""
         self.faults = (*self.faults, fault)
         upcoming = [*self._changes[self._next :], *_changes([fault])]
         self._changes[self._next :] = sorted(upcoming, key=_change_key)
 
     def advance(self, now: float) -> None:
-        """Start and end all faults that are due at time `now` (s)."""
+        """Apply and revert all faults that begin or end up to time `now` (s), in order of time."""
         while self.pending and self._changes[self._next][0] <= now + 1e-9:
             at, begins, fault = self._changes[self._next]
             self._next += 1

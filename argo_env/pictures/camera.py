@@ -40,9 +40,9 @@ class Camera:
         return matrix
 
     def project(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return column and row (px) and depth (m) of points, shape (n, 3).
+        """Return column and row (px) and depth (m) of points (m), shape (n, 3), in the same shape.
 
-        The depth is along the camera's line of sight.
+        The depth is along the camera's line of sight, less than 0 behind the camera.
         """
         view = np.array(self.view_matrix).reshape(4, 4).T
         projection = np.array(self.projection_matrix).reshape(4, 4).T

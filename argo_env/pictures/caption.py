@@ -21,12 +21,15 @@ _TONES = {Tone.GOOD: _NORMAL, Tone.NOTICE: (255, 196, 92, 255), Tone.BAD: _ABNOR
 
 
 def add_caption(frame: Image.Image, record: RunRecord, t: float, floor: int) -> Image.Image:
-    """Return the RGB frame with a bar at its bottom that describes the run at the time t (s)."""
+    """Return a copy of the RGB frame with a bar at its bottom that describes the run at `t` (s).
+
+    `floor` is the number of the floor that the robot is on.
+    """
     return add_bar(frame, *_caption_texts(record, t, floor))
 
 
 def add_bar(frame: Image.Image, left: Sequence[Text], right: Sequence[Text]) -> Image.Image:
-    """Return the RGB frame with a bar at its bottom, and texts at the left and the right of it."""
+    """Return a copy of the RGB frame with a bar at its bottom that has texts at both ends."""
     width, height = frame.size
     bar = Image.new("RGBA", (width, round(height * HEIGHT)), _BAR)
     draw = ImageDraw.Draw(bar)
@@ -52,7 +55,7 @@ def add_bar(frame: Image.Image, left: Sequence[Text], right: Sequence[Text]) -> 
 
 
 def add_verdict(frame: Image.Image, record: RunRecord) -> Image.Image:
-    """Return the RGB frame with a bar above its caption that contains the verdict of the run."""
+    """Return a copy of the RGB frame with the verdict of the run in a bar above the caption."""
     width, height = frame.size
     headline = record.headline
     word, ink = headline.word, _TONES[headline.tone]

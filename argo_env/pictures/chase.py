@@ -42,7 +42,7 @@ class ChaseCamera:
         self._height = float(_HEIGHTS[0])
 
     def next_camera(self, pose: BodyPose) -> Camera:
-        """Return the camera for the next frame.
+        """Return the camera for the next frame, with the robot at `pose`; move towards a good view.
 
         The scene must show the floors that the frame shows.
         """

@@ -32,8 +32,8 @@ def draw_drive(
         view: View of the camera.
         camera: Camera behind the robot.
         goal: Position of the goal in m.
-        time: Time in s.
-        floors: Floors of the robot and of the goal.
+        time: Time in s for the caption.
+        floors: Numbers of the floors of the robot and of the goal.
         time_to_goal: Time (s) to the goal at planning speeds; infinite without a path.
     """
     frame = Image.fromarray(view.colours)

@@ -131,9 +131,9 @@ def write_gif(
 
 
 def make_palette(samples: list[Image.Image]) -> Image.Image:
-    """Return a palette image with the colours of all the samples, RGB images of one size.
+    """Return a palette image with GIF_COLOURS colours that represent those of the samples.
 
-    Median cut chooses GIF_COLOURS of their colours.
+    The samples are RGB images of one size. Median cut chooses the colours.
     """
     width, height = samples[0].size
     sheet = Image.new("RGB", (width, height * len(samples)))
@@ -175,7 +175,7 @@ def make_shots(
     size: tuple[int, int],
     frame_time: float,
 ) -> Iterator[FilmShot]:
-    """Yield a shot for each of the times (s), and only one for consecutive equal times.
+    """Yield a shot for each of the times, and only one for consecutive equal times.
 
     Args:
         motion: Motion of the robot.
@@ -194,7 +194,7 @@ def make_shots(
 
 
 def draw_frame(record: RunRecord, scene: Scene, shot: FilmShot, end: float) -> Image.Image:
-    """Return the frame of a shot; at the `end` (s) of the run it contains the verdict."""
+    """Return the drawn frame of a shot; from the `end` (s) of the run on it shows the verdict."""
     scene.show_floors(shot.floor, _DECKS)
     scene.place_robot(shot.pose, shot.joints)
     view = scene.render_from(shot.camera)

@@ -18,7 +18,7 @@ _BIAS = 0.06  # m that a lit surface may be behind the shadow map, whose pixels 
 
 
 def backdrop(size: tuple[int, int]) -> NDArray[np.float64]:
-    """Return a soft sky, light at the bottom, shape (height, width, 3)."""
+    """Return colours of a sky that is lighter at the bottom, 0 to 255, shape (height, width, 3)."""
     width, height = size
     share = np.linspace(0.0, 1.0, height)[:, None, None]
     return np.broadcast_to(_SKY[0] + share * (_SKY[1] - _SKY[0]), (height, width, 3))
@@ -34,7 +34,7 @@ def shade_view(view: CameraView, brightness: NDArray[np.float64]) -> NDArray[np.
 
 
 def depth_shading(view: CameraView, radius: float, strength: float) -> NDArray[np.float64]:
-    """Return brightness that separates things from what is behind them, shape (height, width).
+    """Return brightness, up to 1, that sets things off from their background, shape as the depth.
 
     What is farther away than its surroundings gets darker: the depth buffer minus its blurred self
     (Luft, Colditz and Deussen, "Image enhancement by unsharp masking the depth buffer", 2006).
@@ -42,7 +42,7 @@ def depth_shading(view: CameraView, radius: float, strength: float) -> NDArray[n
     Args:
         view: View to shade.
         radius: Radius of the blur in px.
-        strength: Darkening for a step of 1 in 10.
+        strength: Share of the brightness that is lost where the depth is 10 % over the blurred one.
     """
     seen = np.isfinite(view.depth)
     if not seen.any():

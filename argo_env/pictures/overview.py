@@ -75,7 +75,14 @@ def site_view(site: Site, robot: RobotSpec, camera: Camera, sun: Camera) -> LitV
 
 
 def add_robot(site_only: LitView, robot: Scene, camera: Camera, sun: Camera) -> LitView:
-    """Return the view with the robot of a scene that contains nothing else."""
+    """Return the view of the site with the robot in it, and with its shadow.
+
+    Args:
+        site_only: View of the site alone, from `camera` and with the shadow map of `sun`.
+        robot: Scene that contains the robot alone.
+        camera: Camera of the view.
+        sun: Camera at the sun.
+    """
     seen, lit = robot.render_from(camera), robot.render_from(sun)
     front = seen.depth < site_only.view.depth
     colours = np.where(front[:, :, None], seen.colours, site_only.view.colours)
@@ -159,7 +166,7 @@ def write_overview(record: RunRecord, site: Site, robot: RobotSpec, file: Path) 
 
 
 def site_camera(site: Site, size: tuple[int, int]) -> Camera:
-    """Return a camera in the south-west and above that sees the whole site."""
+    """Return a camera above the south-west of the site that has the whole site in view."""
     x0, y0, x1, y1 = site.spec.ground
     low, high = site.spec.ground_z, site.spec.floors[-1].z + site.spec.storey
     middle = np.array([(x0 + x1) / 2, (y0 + y1) / 2, low + 0.37 * (high - low)])

@@ -61,7 +61,7 @@ def write_route(
     travel: SiteTravel,
     folder: FilePath,
 ) -> list[FilePath]:
-    """Write `floor-<number>.png` for each floor that a path or a task touches.
+    """Write `floor-<number>.png` for each floor of the written or the suggested path.
 
     Rounds are drawn once, and tasks that are executed only in some cases are omitted.
 

@@ -94,12 +94,15 @@ class Scene(Connection):
         self._place(self._robot_body, _HIDDEN, (0.0, 0.0, 0.0))
 
     def render_from(self, camera: Camera) -> CameraView:
-        """Return the camera's view, without shadows."""
+        """Return the view of a camera of what the scene shows, without shadows."""
         colours, buffer = self._render(camera.view_matrix, camera.projection_matrix, camera.size)
         return CameraView(colours, depth_in_metres(buffer, camera))
 
     def occluded(self, start: Vector, ends: list[Vector]) -> NDArray[np.bool_]:
-        """Return a mask of the ends that the site, without railings, hides from `start`."""
+        """Return a mask of those `ends` (m) that the site hides from the point `start` (m).
+
+        Railings hide nothing.
+        """
         hits = pybullet.rayTestBatch(
             [start] * len(ends),
             ends,

@@ -46,9 +46,9 @@ def draw_site_plan(
 ) -> bytes:
     """Return a PNG of the floors with checkpoints, docking stations, places and stairs.
 
-    Flaws are numbered at their marks, and described below the plans. With `safe_states`, the
-    reachable part of the decks is shaded and the unreachable part hatched, if a docking station is
-    usable.
+    Flaws are numbered at their marks, and described below the plans. With `safe_states`, poses and
+    moves at which the robot touches nothing, the part of the decks that it can reach is shaded and
+    the other part hatched, if a docking station is usable.
     """
     sheet = make_sheet(floor_plans(site))
     image = sheet.image.copy()

@@ -188,7 +188,7 @@ class TrackedDrive(NonCopyable):
         return self._follower.motion if self._follower else None
 
     def place_robot(self, pose: BodyPose) -> None:
-        """Set the robot to the pose, at rest; it settles on the ground within a moment."""
+        """Put the robot at the pose, at rest on the ground; discard the path and the incidents."""
         self._clear()
         self.incidents.clear()
         self._flippers = Flippers()

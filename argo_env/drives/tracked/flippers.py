@@ -88,9 +88,9 @@ class Flippers:
         self.angle = RAISED
 
     def step(self, flight: Flight | None, motion: Motion | None, pose: BodyPose, dt: float) -> bool:
-        """Update the commanded angle after `dt` (s); return True if the robot should go slowly.
+        """Update `angle` for the next `dt` (s); return True if the robot should go slowly.
 
-        `flight` is the one that the motion is on; None: it is not on stairs.
+        `flight` is the one that the motion is on, None if that is not on stairs.
         """
         if flight is None or motion is None:
             self._towards(RAISED, FLIPPER_RATE, dt)

@@ -19,7 +19,7 @@ Matrix = NDArray[np.float64]
 def lump_links(
     urdf: Path, arm: Mapping[str, float], moving: tuple[str, ...], mass_scale: float
 ) -> str:
-    """Return the robot's URDF, as text, with only the joints in `moving` left.
+    """Return the robot's URDF, as text, with only the joints named in `moving` left.
 
     All other joints are fixed at the angles of `arm` (deg), or 0, and their links become part of
     the link that carries them. All masses are multiplied by `mass_scale`.

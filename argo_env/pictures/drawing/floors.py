@@ -45,9 +45,9 @@ def floor_plans(site: Site) -> tuple[FloorPlan, ...]:
 
 @lru_cache(maxsize=8)
 def aisle_plans(width: float, depth: float, floors: int, ends: int = 1) -> tuple[FloorPlan, ...]:
-    """Return the plans of floors with one open deck each, from (0, 0) on.
+    """Return the plans of floors numbered from 1, each with a deck from (0, 0) to (width, depth).
 
-    Stairs are all along the side x = 0, and along x = width if there are stairs at two ends.
+    Lengths are in m. Stairs are all along the side x = 0, and along x = width if `ends` is 2.
     """
     deck = _box((-0.6, -0.6, width + 0.6, depth + 0.6))
     edges = [-2.1 + 0.3 * k for k in range(5)]
@@ -59,7 +59,7 @@ def aisle_plans(width: float, depth: float, floors: int, ends: int = 1) -> tuple
 
 
 def empty_floor_plans(points: Sequence[Point], numbers: Iterable[int]) -> tuple[FloorPlan, ...]:
-    """Return plans without outlines, whose bounds contain the points."""
+    """Return a plan without outlines for each floor number; all have bounds around the points."""
     low = [min(p[axis] for p in points) for axis in (0, 1)]
     high = [max(p[axis] for p in points) for axis in (0, 1)]
     margin = 0.08 * max(high[0] - low[0], high[1] - low[1], 1.0)

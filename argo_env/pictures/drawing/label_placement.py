@@ -97,7 +97,10 @@ def draw_plate(
     floor: int,
     large: bool = False,
 ) -> None:
-    """Draw a name on a plate beside a position, where it covers nothing."""
+    """Draw a text on a plate beside a position, where it covers no other mark if possible.
+
+    The plate lies in the panel of the floor, and its area is then occupied in `labels`.
+    """
     size, rim = (12, INK) if large else (11, SOFT)
     face = font(size)
     wide = draw.textlength(text, font=face) / 2 + (size - 7.0) * FINER

@@ -48,7 +48,7 @@ class PathLine:
 
 
 def path_lines(sheet: FloorSheet, path: Sequence[PathPoint]) -> list[PathLine]:
-    """Return the lines of the path, on the floors that the sheet has."""
+    """Return one line for each stretch of the path on one floor, for floors that the sheet has."""
     made = []
     for floor, stretch in groupby(path, key=lambda point: point.floor):
         if floor not in sheet.panels:
@@ -99,7 +99,7 @@ def draw_thin_lines(
 def draw_stairs_taken(
     draw: ImageDraw.ImageDraw, sheet: FloorSheet, labels: LabelPlacer, path: Sequence[PathPoint]
 ) -> bool:
-    """Draw a mark where stairs were taken, with the floor that they lead to.
+    """Draw a mark at each position where the path changes floors, with the other floor's number.
 
     Returns:
         True if any were taken on the floors that the sheet has.

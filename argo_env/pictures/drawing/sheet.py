@@ -72,7 +72,7 @@ class FloorSheet:
 
 
 def make_sheet(plans: Sequence[FloorPlan], dim: Sequence[int] = ()) -> FloorSheet:
-    """Return the sheet of these floors, in their order; those numbered in `dim` are pale."""
+    """Arrange and draw the plans of floors in their order; those numbered in `dim` are pale."""
     grid = max((_Grid.arrange(plans, n) for n in range(1, len(plans) + 1)), key=lambda g: g.scale)
     scale = grid.scale
     beside = (_WIDTH - scale * sum(grid.widths)) / (len(grid.widths) + 1)
@@ -92,7 +92,7 @@ def make_sheet(plans: Sequence[FloorPlan], dim: Sequence[int] = ()) -> FloorShee
 
 
 def font(size: float) -> Font:
-    """Return the font of pictures, for a height in px of the picture."""
+    """Return the font of pictures for texts with a height of `size` px in the reduced picture."""
     return _font(round(size * FINER))
 
 
@@ -155,7 +155,10 @@ def _draw(image: Image.Image, panel: Panel, scale: float, dim: bool) -> None:
 
 @lru_cache(maxsize=4)  # a sheet takes 11 MB
 def site_sheet(scenario: str, low: int, high: int, requested: tuple[int, ...]) -> FloorSheet:
-    """Return the floors of a site from `low` to `high`; those that are not `requested` are pale."""
+    """Return a sheet of the floors numbered `low` to `high` of a scenario's site.
+
+    Floors that are not in `requested` are pale.
+    """
     plans = [plan for plan in _plans(scenario) if low <= plan.number <= high]
     return make_sheet(plans, [p.number for p in plans if p.number not in requested])
 

@@ -56,7 +56,10 @@ STYLES = {
 def paint_disc(
     draw: ImageDraw.ImageDraw, position: Pixel, radius: float, state: str, name: str
 ) -> None:
-    """Draw the disc of a checkpoint with its number; `radius` in px of the picture."""
+    """Draw the disc of a checkpoint with its name, in the style of its state (see `STYLES`).
+
+    `radius` is in px of the reduced picture.
+    """
     (x, y), r, style = position, radius * FINER, STYLES[state]
     draw.ellipse((x - r, y - r, x + r, y + r), style.fill, style.rim, round(1.5 * FINER))
     if style.struck:
@@ -67,13 +70,16 @@ def paint_disc(
 
 
 def paint_station(draw: ImageDraw.ImageDraw, position: Pixel, half: float) -> None:
-    """Draw the square of a station; `half` of its side in px of the picture."""
+    """Draw the square of a station; `half` is half its side in px of the reduced picture."""
     (x, y), r = position, half * FINER
     draw.rectangle((x - r, y - r, x + r, y + r), fill=INK, outline=PAPER, width=FINER)
 
 
 def paint_ring(draw: ImageDraw.ImageDraw, position: Pixel, radius: float) -> None:
-    """Draw the ring about a chosen checkpoint; `radius` of its disc in px of the picture."""
+    """Draw a ring about the disc of a chosen checkpoint.
+
+    `radius` is that of the disc, in px of the reduced picture.
+    """
     for wider, ink in ((5.0, PAPER), (4.5, ROBOT), (1.5, PAPER)):
         draw_disc(draw, position, (radius + wider) * FINER, ink)
 
@@ -103,7 +109,7 @@ def paint_point(draw: ImageDraw.ImageDraw, position: Pixel) -> None:
 def paint_stairs(
     draw: ImageDraw.ImageDraw, position: Pixel, floor: int, up: bool, ink: Ink
 ) -> None:
-    """Draw the mark of stairs to a floor above or below."""
+    """Draw the mark of stairs to the floor with this number, with an arrow up or down."""
     x, y = position
     wide, high = STAIRS[0] * FINER, STAIRS[1] * FINER
     draw.rounded_rectangle((x - wide, y - high, x + wide, y + high), high, fill=ink)
@@ -195,7 +201,7 @@ def _draw_entry(draw: ImageDraw.ImageDraw, text: str, x: float, y: float) -> flo
 def draw_length_scale(
     draw: ImageDraw.ImageDraw, sheet: FloorSheet, right: float, y: float
 ) -> float:
-    """Draw a bar of some metres that ends at `right`, and return the x at which it begins."""
+    """Draw a bar of some metres that ends at x = `right`; return the x at which its text begins."""
     metres = max((m for m in _BARS if m * sheet.scale <= _LONGEST), default=_BARS[0])
     left, tick, face = right - metres * sheet.scale, 4 * FINER, font(12)
     bar = [(left, y - tick), (left, y + tick), (left, y), (right, y), (right, y - tick)]
@@ -206,7 +212,7 @@ def draw_length_scale(
 
 
 def _draw_time_scale(draw: ImageDraw.ImageDraw, right: float, y: float, end: float) -> None:
-    """Draw the colours of the path from its start to now."""
+    """Draw the scale of the path's colours, from 0 s to `end` (s)."""
     face, text = font(12), f"{end:.0f} s"
     draw.text((right, y), text, fill=SOFT, font=face, anchor="rm")
     right -= draw.textlength(text, font=face) + 6 * FINER

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from argo_compiler.base.errors import ArgoError
 from argo_env.evaluation.case import EvaluationCase, PlanName
-from argo_env.evaluation.estimates.rates import Stratum, allocation
+from argo_env.evaluation.estimates.rates import Stratum, allocate_runs
 from argo_env.evaluation.plan import EvaluationPlan, PlannedRun
 from argo_env.evaluation.pool.backend import WorkerBackend
 from argo_env.evaluation.pool.pool import CompletedCall, Pool
@@ -279,7 +279,7 @@ def _by_strata(plan: EvaluationPlan, rows: Sequence[RunRow]) -> Iterator[Iterato
         yield iter(runs)
         if plan.stopping.width is not None and should_stop(plan, rows):
             return
-        counts = allocation(_strata(plan, rows), min(remaining, plan.stopping.every * cases))
+        counts = allocate_runs(_strata(plan, rows), min(remaining, plan.stopping.every * cases))
 
 
 def _strata(plan: EvaluationPlan, rows: Sequence[RunRow]) -> list[Stratum]:

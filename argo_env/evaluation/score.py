@@ -75,7 +75,7 @@ class ScoringRules(Model):
     safety: SafetyRules
 
     @property
-    def most(self) -> float:
+    def max_score(self) -> float:
         """Largest possible score in points: the sum of the weights."""
         return self.reliability.weight + self.robustness.weight + self.safety.weight
 

@@ -37,7 +37,7 @@ class Canvas:
         """Height in px, with margins."""
         return (self.y1 - self.y0) * self.scale + 2 * MARGIN
 
-    def at(self, x: float, y: float) -> Point:
+    def to_pixels(self, x: float, y: float) -> Point:
         """Return the position in px of a point in m; the second axis points up."""
         return MARGIN + (x - self.x0) * self.scale, MARGIN + (self.y1 - y) * self.scale
 
@@ -47,7 +47,8 @@ class Canvas:
         `axes` are the indices of the site's axes that the drawing has.
         """
         shapes = (
-            polyline((self.at(*p) for p in outline(solid, axes)), closed=True) for solid in solids
+            polyline((self.to_pixels(*p) for p in outline(solid, axes)), closed=True)
+            for solid in solids
         )
         return node("path", d="".join(shapes), class_=f"site-{role}")
 
@@ -65,17 +66,17 @@ class Canvas:
 
     def draw_axes(self, names: tuple[str, str]) -> list[Node]:
         """Draw the frame with coordinates every 2 m along both axes, which have these names."""
-        left, top = self.at(self.x0, self.y1)
-        right, bottom = self.at(self.x1, self.y0)
+        left, top = self.to_pixels(self.x0, self.y1)
+        right, bottom = self.to_pixels(self.x1, self.y0)
         marks = [
             node("rect", x=left, y=top, width=right - left, height=bottom - top, class_="frame")
         ]
         for x in _every(2, self.x0, self.x1):
-            px = self.at(x, self.y0)[0]
+            px = self.to_pixels(x, self.y0)[0]
             marks.append(node("path", d=f"M{px:.1f},{bottom:.1f}v5", class_="tick"))
             marks.append(_text(px, bottom + 16, f"{x}", "axis middle"))
         for y in _every(2, self.y0, self.y1):
-            py = self.at(self.x0, y)[1]
+            py = self.to_pixels(self.x0, y)[1]
             marks.append(node("path", d=f"M{left:.1f},{py:.1f}h-5", class_="tick"))
             marks.append(_text(left - 8, py + 4, f"{y}", "axis end"))
         marks.append(_text(right, bottom + 30, f"{names[0]} in m", "axis end"))
@@ -84,7 +85,7 @@ class Canvas:
 
     def draw_scale_bar(self) -> Node:
         """Draw a bar of 1 m above the frame's right end."""
-        right, top = self.at(self.x1, self.y1)
+        right, top = self.to_pixels(self.x1, self.y1)
         return node(
             "g",
             node("path", d=f"M{right - self.scale:.1f},{top - 9:.1f}v-4v4h{self.scale:g}v-4"),
@@ -131,7 +132,7 @@ def draw_floor(site: Site, record: RunRecord, number: int) -> Node:
     marks = [_checkpoint(canvas, c, measured) for c in site.checkpoints if c.floor == number]
     contacts = [_cross(canvas, c.x, c.y) for c in record.contacts if site.floor_at(c.z) == number]
     findings = [
-        draw_finding(*canvas.at(at[0], at[1]), k, "found" if a.place else "noticed")
+        draw_finding(*canvas.to_pixels(at[0], at[1]), k, "found" if a.place else "noticed")
         for k, a in enumerate(record.anomalies, start=1)
         if (at := a.place or a.noticed_from) is not None
         and a.floor == number
@@ -155,11 +156,11 @@ def draw_floor(site: Site, record: RunRecord, number: int) -> Node:
 
 def _path(canvas: Canvas, parts: list[list[PathSample]], record: RunRecord) -> list[Node]:
     end = record.path[-1].t if record.path else 0.0
-    drawn = draw_track(parts, lambda s: (s.x, s.y), canvas.at, end, _ASIDE)
+    drawn = draw_track(parts, lambda s: (s.x, s.y), canvas.to_pixels, end, _ASIDE)
     length = sum(math.dist((a.x, a.y), (b.x, b.y)) for part in parts for a, b in pairwise(part))
     if length <= _ARROWS_UP_TO:
         for part in parts:
-            drawn += draw_arrow_heads(part, canvas.at, 1.6, _ASIDE)
+            drawn += draw_arrow_heads(part, canvas.to_pixels, 1.6, _ASIDE)
     return drawn + _flags(canvas, parts, record)
 
 
@@ -168,9 +169,9 @@ def _flags(canvas: Canvas, parts: list[list[PathSample]], record: RunRecord) -> 
     first, last = record.path[0], record.path[-1]
     flags = []
     if parts and parts[0][0] is first:
-        flags.append(draw_flag(canvas.at(first.x, first.y), "S", "start"))
+        flags.append(draw_flag(canvas.to_pixels(first.x, first.y), "S", "start"))
     if parts and parts[-1][-1] is last:
-        x, y = canvas.at(last.x, last.y)
+        x, y = canvas.to_pixels(last.x, last.y)
         near = flags and math.dist((first.x, first.y), (last.x, last.y)) < 0.4
         flags.append(draw_flag((x + (20 if near else 0), y), "E", "end"))
     return flags
@@ -178,7 +179,7 @@ def _flags(canvas: Canvas, parts: list[list[PathSample]], record: RunRecord) -> 
 
 def _checkpoint(canvas: Canvas, checkpoint: SiteCheckpoint, measured: dict[int, bool]) -> Node:
     """Draw the face as a dot, a line in its direction, and its id on the opposite side."""
-    x, y = canvas.at(checkpoint.position[0], checkpoint.position[1])
+    x, y = canvas.to_pixels(checkpoint.position[0], checkpoint.position[1])
     cos, sin = math.cos(checkpoint.yaw), math.sin(checkpoint.yaw)
     state = {None: "unread", True: "read", False: "read abnormal"}[measured.get(checkpoint.id)]
     back = (x - 17 * cos, y + 17 * sin)
@@ -194,13 +195,13 @@ def _checkpoint(canvas: Canvas, checkpoint: SiteCheckpoint, measured: dict[int, 
 
 
 def _cross(canvas: Canvas, x: float, y: float) -> Node:
-    px, py = canvas.at(x, y)
+    px, py = canvas.to_pixels(x, y)
     return node("path", d=f"M{px - 6:.1f},{py - 6:.1f}l12,12m0,-12l-12,12", class_="contact")
 
 
 def _north(canvas: Canvas) -> Node:
     """Draw an arrow to the north, the direction of the site's y axis."""
-    right, top = canvas.at(canvas.x1, canvas.y1)
+    right, top = canvas.to_pixels(canvas.x1, canvas.y1)
     x, y = right - 20, top + 16
     return node(
         "g",
@@ -227,12 +228,12 @@ def draw_side_view(site: Site, record: RunRecord) -> Node:
     canvas = Canvas(min(xs) - 0.3, min(zs), max(xs) + 0.3, max(zs) + 0.3, _ELEVATION_SCALE)
     parts = stretches(record.path, None)
     end = record.path[-1].t if record.path else 0.0
-    drawn = draw_track(parts, lambda s: (s.x, s.z), canvas.at, end)
+    drawn = draw_track(parts, lambda s: (s.x, s.z), canvas.to_pixels, end)
     labels = [
         node(
             "text",
-            x=canvas.at(canvas.x1, 0.0)[0] - 6,
-            y=canvas.at(0.0, floor.z)[1] - 5,
+            x=canvas.to_pixels(canvas.x1, 0.0)[0] - 6,
+            y=canvas.to_pixels(0.0, floor.z)[1] - 5,
             text=f"floor {floor.number}",
             class_="axis end",
         )
@@ -240,9 +241,9 @@ def draw_side_view(site: Site, record: RunRecord) -> Node:
     ]
     if record.path:
         first, last = record.path[0], record.path[-1]
-        end_at = canvas.at(last.x, last.z)
+        end_at = canvas.to_pixels(last.x, last.z)
         near = abs(first.x - last.x) < 0.5 and abs(first.z - last.z) < 0.5
-        drawn.append(draw_flag(canvas.at(first.x, first.z), "S", "start"))
+        drawn.append(draw_flag(canvas.to_pixels(first.x, first.z), "S", "start"))
         drawn.append(draw_flag((end_at[0] + (20 if near else 0), end_at[1]), "E", "end"))
     return drawing(
         canvas.width,

@@ -38,7 +38,7 @@ class InitialState(Model):
     """anomalies found so far, in the order of time"""
 
     @property
-    def at(self) -> float:
+    def start_time(self) -> float:
         """Time at which the run begins, in s since the mission's start."""
         return round(self.progress.elapsed, 6)
 
@@ -55,7 +55,7 @@ def make_machine(mission: Mission, beginning: InitialState | None = None) -> Exe
     if beginning is None:
         return Executor(lower(mission))
     progress = beginning.progress
-    return Executor.restore(lower(mission, progress), progress, beginning.at)
+    return Executor.restore(lower(mission, progress), progress, beginning.start_time)
 
 
 def progress_now(machine: Machine, now: float, by_hand: Sequence[ByHand]) -> Progress:

@@ -153,7 +153,7 @@ def fingerprints(site: OpenedSite, spec: RunSpec) -> dict[str, str]:
     return digests
 
 
-def require_free(path: Path, replace: bool = False) -> None:
+def check_journal_path(path: Path, replace: bool = False) -> None:
     """Raise ArgoError if no new journal can be written at this path.
 
     An existing file is refused, or, with `replace`, only one that another process has open.
@@ -184,7 +184,7 @@ def create_journal(path: Path, header: Header, replace: bool = False) -> Journal
     Raises ArgoError if the file can't be written, or exists already and `replace` is False or
     another process has it open.
     """
-    require_free(path, replace)
+    check_journal_path(path, replace)
     # The header is first written to a draft, so that a journal is never without its header.
     draft = path.with_name(path.name + ".new")
     line = _line(0, header)
@@ -197,7 +197,7 @@ def create_journal(path: Path, header: Header, replace: bool = False) -> Journal
         if os.path.exists(path) and not replace:
             # Another process was faster; its draft has become the journal.
             draft.unlink(missing_ok=True)
-            require_free(path)
+            check_journal_path(path)
         os.ftruncate(file, 0)
         write_all(file, line)
         os.fsync(file)

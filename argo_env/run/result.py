@@ -243,7 +243,7 @@ def make_record(
         mishaps=tuple(log.mishaps),
         anomalies=tuple(log.anomalies),
         faults=setup.schedule.faults if setup.schedule else (),
-        began=spec.beginning.at if spec.beginning else 0.0,
+        began=spec.beginning.start_time if spec.beginning else 0.0,
         before=progress.tallies,
         resumed=tuple(log.resumed),
         reordering=spec.reordering,

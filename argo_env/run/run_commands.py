@@ -43,14 +43,14 @@ class Supervision:
         self._mission = mission
         self._results: list[tuple[float, ByHand]] = []
 
-    def results_at(self, now: float) -> tuple[ByHand, ...]:
+    def done_by_hand(self, now: float) -> tuple[ByHand, ...]:
         """Return the tasks of the mission done by hand since the take-over.
 
         Their ages are the times from their ends to `now` (s).
         """
         return tuple(result.model_copy(update={"age": now - end}) for end, result in self._results)
 
-    def end_action(self, run: TaskRun, entry: Entry) -> None:
+    def on_action_end(self, run: TaskRun, entry: Entry) -> None:
         """Note that the action by hand has ended.
 
         Its task counts as done if the action succeeded and the task is one of the mission. `run` is
@@ -77,7 +77,7 @@ class Supervision:
             self._results.clear()
 
 
-def check_by_hand(task: Task, mission: Mission, site: Site) -> None:
+def check_task_by_hand(task: Task, mission: Mission, site: Site) -> None:
     """Raise Invalid for a task that can't be done by hand.
 
     Raises NotFound for a checkpoint that the site does not have.

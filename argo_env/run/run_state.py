@@ -102,7 +102,7 @@ class SimulationState:
         self.steps = 0
         """time steps of the drive since the run began"""
         self._beginning = spec.beginning
-        self._start_time = spec.beginning.at if spec.beginning else 0.0
+        self._start_time = spec.beginning.start_time if spec.beginning else 0.0
         self.now = self._start_time
         """s of simulated time"""
         self._mission = spec.mission
@@ -151,7 +151,7 @@ class SimulationState:
             self._arrival_path = (self.action and self.action.path) or self._arrival_path
             self.action = None
             if entry.task.by_hand:
-                self.supervision.end_action(entry.task, entry)
+                self.supervision.on_action_end(entry.task, entry)
         for event in entry.events:
             if not self.machine.finished:
                 self.execute(self.machine.handle(event.to_event(), self.now))

@@ -29,9 +29,9 @@ from argo_env.run.run_commands import (
     RunCommand,
     StopByHand,
     StopRun,
-    check_by_hand,
     check_event,
     check_scheduled_events,
+    check_task_by_hand,
     mark_abnormal,
     require_no_action,
     require_no_action_by_hand,
@@ -200,7 +200,7 @@ class Simulation(Closing):
 
         It is what a `GiveBack` needs for the machine to count them.
         """
-        return self._state.supervision.results_at(self.now)
+        return self._state.supervision.done_by_hand(self.now)
 
     def record(self) -> RunRecord:
         """Return the record of the run: complete if the run has ended, else up to now."""
@@ -279,7 +279,7 @@ class Simulation(Closing):
                 self._commit(self._state.entry().model_copy(update={"faults": (resolved,)}))
                 self._vehicle.update_faults(self.now)
             case DoByHand(task):
-                check_by_hand(task, self._spec.mission, self.setup.navigator.site)
+                check_task_by_hand(task, self._spec.mission, self.setup.navigator.site)
                 require_supervised(self._state.supervision, self.machine.running or self.task)
                 self._commit(self._state.entry().model_copy(update={"by_hand": task}))
             case StopByHand():

@@ -15,7 +15,7 @@ from argo_env.faults.loading import MAX_BYTES, decode_faults
 from argo_env.files.folders import make_folder
 from argo_env.planning.opening import open_site
 from argo_env.run.drives_and_sensors import DRIVES, SENSORS
-from argo_env.run.journal import require_free
+from argo_env.run.journal import check_journal_path
 from argo_env.run.record import RunRecord
 from argo_env.run.run_setup import check_spec
 from argo_env.run.session import simulate
@@ -96,7 +96,7 @@ class _Outputs:
 
             check_recording_path(self.recording)
         if self.journal_path and os.path.exists(self.journal_path):
-            require_free(self.journal_path, self.force)
+            check_journal_path(self.journal_path, self.force)
 
 
 _SPEC_OPTIONS = (

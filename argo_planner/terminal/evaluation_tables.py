@@ -52,7 +52,8 @@ def show_results(
         varies = score.low < score.high
         between = f" ({score.low:.1f} to {score.high:.1f})" if varies else ""
         console.print(
-            f"{escape(name)} {score.value:.1f} of {scoring.most:g} points{between}", soft_wrap=True
+            f"{escape(name)} {score.value:.1f} of {scoring.max_score:g} points{between}",
+            soft_wrap=True,
         )
     for plan in results.plan.plans:
         groups = results.by_faults(plan)

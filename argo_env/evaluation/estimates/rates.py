@@ -122,7 +122,7 @@ def stratified_rate(strata: Sequence[Stratum], level: float = LEVEL) -> Estimate
     return Estimate(value, max(0.0, value - math.sqrt(below)), min(1.0, value + math.sqrt(above)))
 
 
-def allocation(strata: Sequence[Stratum], runs: int) -> tuple[int, ...]:
+def allocate_runs(strata: Sequence[Stratum], runs: int) -> tuple[int, ...]:
     """Return how many of the further `runs` each stratum gets for the narrowest overall interval.
 
     The numbers are proportional to the weight and to the standard deviation of the outcome (Neyman

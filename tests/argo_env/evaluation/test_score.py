@@ -17,7 +17,7 @@ def score(**changes):
 
 
 def test_a_run_without_faults_or_failures_has_all_points():
-    assert score().total == RULES.most == 100
+    assert score().total == RULES.max_score == 100
 
 
 @pytest.mark.parametrize(
@@ -55,7 +55,7 @@ def test_a_users_file_is_read_and_its_errors_are_reported(tmp_path):
         "safety: {weight: 0, contact: 1, mishap: 1}\n"
     )
     own.write_text(text)
-    assert read_scoring(own).most == 10
+    assert read_scoring(own).max_score == 10
     own.write_text(text.replace("tasks_done: 1", "tasks_done: 0.5"))
     with pytest.raises(DiagnosticError, match=r"add up to 0\.5"):
         read_scoring(own)

@@ -13,7 +13,7 @@ from scipy.stats import binomtest
 from argo_compiler.base.errors import Invalid
 from argo_env.evaluation.estimates.rates import (
     Stratum,
-    allocation,
+    allocate_runs,
     clopper_pearson,
     stratified_rate,
     wilson,
@@ -119,7 +119,7 @@ def test_a_single_stratum_has_the_exact_interval():
 def test_all_further_runs_are_allocated(parts, runs):
     total = math.fsum(weight for weight, _, _ in parts)
     strata = [Stratum(w / total, min(a, b), max(a, b)) for w, a, b in parts]
-    counts = allocation(strata, runs)
+    counts = allocate_runs(strata, runs)
     assert sum(counts) == runs
     assert min(counts) >= (1 if runs >= len(strata) else 0)
 
@@ -135,4 +135,4 @@ def test_the_allocation_minimises_the_variance():
         )
 
     allocations = [counts for counts in product(range(1, 13), repeat=3) if sum(counts) == 12]
-    assert variance(allocation(strata, 12)) <= 1.05 * min(map(variance, allocations))
+    assert variance(allocate_runs(strata, 12)) <= 1.05 * min(map(variance, allocations))

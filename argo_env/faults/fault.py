@@ -29,7 +29,7 @@ class Sign(NamedTuple):
 
 
 class Fault(Model):
-    """A fault. The seed draws the fields that are None."""
+    """A fault. `resolve_for` draws fields that are None, unless None has a meaning of its own."""
 
     kind: str
     seed: int | None = Field(default=None, ge=0)
@@ -81,7 +81,7 @@ class Fault(Model):
     def apply(self, targets: "FaultTargets", now: float) -> None:
         """Apply the fault's effect at time `now` (s).
 
-        A fault that does not add up is applied again when another fault of its kind has ended.
+        Unless `adds_up` is True, it is applied again when another fault of its kind has ended.
         """
 
     def revert(self, targets: "FaultTargets", now: float) -> None:

@@ -115,7 +115,7 @@ class FaultDistribution(Model):
         return rest if rest > 1e-9 else 0.0
 
     def draw(self, seed: int) -> FaultChance | None:
-        """Draw the set of faults for the world of a seed; None means no faults."""
+        """Return the set of faults that a seed draws by the probabilities; None means no faults."""
         number = float(generator(seed, "which faults").random())
         for chance in self.chances:
             if number < chance.probability:

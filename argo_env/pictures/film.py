@@ -311,9 +311,9 @@ def write_film(
         raise Invalid(f"a film needs an even width and height from 64 px: {width}x{height}")
     frame_time = round(100 / fps) / 100 if is_gif else 1 / fps
     motion = RecordedMotion(record, robot)
-    count = math.ceil(motion.end / (speed * frame_time) - 1e-9) + 1
-    times = [min(k * speed * frame_time, motion.end) for k in range(count)]
-    times += [motion.end] * (round(VERDICT_TIME / frame_time) - 1)
+    count = math.ceil(motion.end_time / (speed * frame_time) - 1e-9) + 1
+    times = [min(k * speed * frame_time, motion.end_time) for k in range(count)]
+    times += [motion.end_time] * (round(VERDICT_TIME / frame_time) - 1)
     with (
         reporting_write_errors(file, "the film", CHOOSE_ANOTHER_PLACE),
         atomic_draft(file) as draft,
@@ -322,9 +322,9 @@ def write_film(
             shots = [*make_shots(motion, scene, times, (width, height), frame_time)]
             spread = _spread_times(times) if is_gif else []
             sampled = make_shots(motion, scene, spread, (width, height), math.inf)
-            samples = [draw_frame(record, scene, shot, motion.end) for shot in sampled]
+            samples = [draw_frame(record, scene, shot, motion.end_time) for shot in sampled]
         frames = _repeat_frames(
-            draw_frames(record, site, robot, shots, motion.end), shots, progress
+            draw_frames(record, site, robot, shots, motion.end_time), shots, progress
         )
         if is_gif:
             write_gif(frames, draft, make_palette(samples), frame_time)

@@ -37,7 +37,7 @@ class RecordedMotion:
         self._readings = [r.t for r in record.readings]
 
     @property
-    def end(self) -> float:
+    def end_time(self) -> float:
         """Time (s) of the last sample."""
         return float(self._times[-1])
 

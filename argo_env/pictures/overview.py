@@ -151,7 +151,7 @@ def write_overview(record: RunRecord, site: Site, robot: RobotSpec, file: Path) 
     sun = sun_camera(site, _SHADOW_MAP)
     site_only = site_view(site, robot, camera, sun)
     with Scene(None, robot) as scene:
-        scene.place_robot(motion.pose_at(motion.end), motion.joints_at(motion.end))
+        scene.place_robot(motion.pose_at(motion.end_time), motion.joints_at(motion.end_time))
         lit = add_robot(site_only, scene, camera, sun)
     view = lit.view
     brightness = shadow_brightness(lit.dark, float(_FINER))
@@ -191,7 +191,7 @@ def _draw_path(
     points = np.array([(p.x, p.y, p.z + _PATH_HEIGHT) for p in poses])
     pixels = camera.project(points)
     seen = _visible(pixels, view)
-    end = motion.end or 1.0
+    end = motion.end_time or 1.0
     faint = Image.new("RGBA", image.size, (0, 0, 0, 0))
     clear = Image.new("RGBA", image.size, (0, 0, 0, 0))
     on_faint, on_clear = ImageDraw.Draw(faint), ImageDraw.Draw(clear)
@@ -256,7 +256,7 @@ def _draw_markers(
     draw = ImageDraw.Draw(image)
     font = ImageFont.load_default(21.0 * _FINER)
     labels: dict[tuple[float, float, float], tuple[str, str | tuple[int, int, int]]] = {}
-    first, last = motion.pose_at(0.0), motion.pose_at(motion.end)
+    first, last = motion.pose_at(0.0), motion.pose_at(motion.end_time)
     together = math.dist((first.x, first.y, first.z), (last.x, last.y, last.z)) < 1.0
     if not together:
         labels[(last.x, last.y, last.z + _PATH_HEIGHT)] = ("end", colour(1.0))

@@ -63,7 +63,8 @@ def write_route(
 ) -> list[FilePath]:
     """Write `floor-<number>.png` for each floor of the written or the suggested path.
 
-    Rounds are drawn once, and tasks that are executed only in some cases are omitted.
+    `planned` has the written order, `route` is the suggested one. Rounds are drawn once, and tasks
+    that are executed only in some cases are omitted.
 
     Returns:
         The paths of the files in the folder.

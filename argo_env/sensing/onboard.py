@@ -168,7 +168,10 @@ class ConnectionWatch:
 
 
 class EmergencyStopWatch:
-    """Watch for the circuit of the emergency stop. It holds the last state of the circuit."""
+    """Watch for the circuit of the emergency stop: it reports when someone presses the stop.
+
+    It holds the state of the circuit at the last update.
+    """
 
     name = "emergency stop"
     period = 0.1

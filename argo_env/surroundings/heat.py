@@ -44,8 +44,8 @@ def temperatures(
 
 
 def highest_temperature(role: Role | None, air: float) -> float:
-    """Return the highest temperature (°C) of a surface without a fault, with air of `air` °C.
+    """Return the highest temperature (°C) that surfaces with a role have without a fault.
 
-    A role of None is the sky, for which it is the temperature of the air.
+    `air` (°C) is the temperature of the air. A role of None is the sky, for which it is `air`.
     """
     return air if role is None else air + SUN_GAIN[role] + OWN_HEAT.get(role, 0.0)

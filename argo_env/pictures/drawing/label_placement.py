@@ -8,7 +8,7 @@ from PIL import ImageDraw
 
 from argo_env.pictures.drawing.sheet import FINER, INK, PAPER, SIZE, SOFT, FloorSheet, Pixel, font
 
-_CELL = 4  # px of the finer picture
+_CELL = 4  # px of the enlarged picture
 _AROUND = 8  # directions that are tried
 _STEP = 6.0 * FINER  # px farther out when all directions are occupied
 _TRIES = 16
@@ -18,7 +18,8 @@ class LabelPlacer:
     """Placement of labels on a sheet.
 
     It holds the occupied area and the robot's path. Positions are those of the middle of a label,
-    in px of the finer picture; `wide` and `high` are half the label's width and height in the same.
+    in px of the enlarged picture (see `FINER`); so are `wide` and `high`, which are half of its
+    width and of its height.
     """
 
     def __init__(self, sheet: FloorSheet) -> None:

@@ -16,7 +16,7 @@ from argo_env.report.track import SHADES, colour
 
 _WIDTH = 3.0  # px
 _ASIDE = 2.2  # px to the right of the driven path, so that the path back is visible beside it
-_SPACING = 8.0  # px of the finer picture between the points of a line
+_SPACING = 8.0  # px of the enlarged picture between the points of a line
 _HEADS = 56.0  # px of the path between two arrow heads
 _HEAD = ((-4.5, -4.5), (5.5, 0.0), (-4.5, 4.5))
 _SAME_STAIRS = 1.5  # m within which two changes of floor have one mark
@@ -40,7 +40,7 @@ class PathLine:
     """An unbroken part of the path on one floor, in points at equal distances."""
 
     points: NDArray[np.float64]
-    """pixels of the finer picture, shape (n, 2), n > 1"""
+    """pixels of the enlarged picture, shape (n, 2), n > 1"""
     along: NDArray[np.float64]
     """unit vectors of the direction, shape (n, 2)"""
     shades: NDArray[np.int64]

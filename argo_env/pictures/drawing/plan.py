@@ -72,7 +72,7 @@ class PlanDrawing:
 
 
 def draw_plan(sheet: FloorSheet, plan: PlanDrawing) -> NDArray[np.uint8]:
-    """Return the picture of an episode on its floors, shape (720, 1280, 3)."""
+    """Return the picture of an episode on floor plans: red, green, blue, shape (720, 1280, 3)."""
     image = sheet.image.copy()
     draw = ImageDraw.Draw(image)
     labels = LabelPlacer(sheet)

@@ -39,12 +39,12 @@ _COLOURS: dict[Role, tuple[str, str]] = {
 
 Font = ImageFont.ImageFont | ImageFont.FreeTypeFont
 Pixel = tuple[float, float]
-"""x and y in px of the finer picture"""
+"""x and y in px of the enlarged picture"""
 
 
 @dataclass(frozen=True)
 class Panel:
-    """A floor's part of the sheet, in px of the finer picture."""
+    """A floor's part of the sheet, in px of the enlarged picture."""
 
     plan: FloorPlan
     left: int
@@ -60,7 +60,7 @@ class FloorSheet:
     panels: dict[int, Panel]
     """panels by the number of the floor"""
     scale: float
-    """size of 1 m in px of the finer picture"""
+    """size of 1 m in px of the enlarged picture"""
     image: Image.Image
     """drawn plans, FINER times as large as a picture; do not draw on it"""
 
@@ -117,7 +117,7 @@ class _Grid:
 
     @property
     def scale(self) -> float:
-        """Largest scale with which the floors fit, in px of the finer picture for 1 m."""
+        """Largest scale with which the floors fit, in px of the enlarged picture for 1 m."""
         across = (_WIDTH - FINER * _GAP * (len(self.widths) + 1)) / sum(self.widths)
         down = (_HEIGHT - FINER * (_TITLE + _GAP) * len(self.heights)) / sum(self.heights)
         return min(across, down, FINER * _LARGEST)

@@ -87,7 +87,7 @@ def paint_ring(draw: ImageDraw.ImageDraw, position: Pixel, radius: float) -> Non
 def paint_robot(
     draw: ImageDraw.ImageDraw, position: Pixel, footprint: Footprint, scale: float, heading: float
 ) -> None:
-    """Draw the robot's footprint with its front; `scale` in px of the finer picture for 1 m."""
+    """Draw the robot's footprint with its front; `scale` in px of the enlarged picture for 1 m."""
     front, rear, wide = (scale * v for v in (footprint.front, footprint.rear, footprint.half_width))
     for rim, ink in ((1.5 * FINER, PAPER), (0.0, ROBOT)):
         x0, x1, y = -rear - rim, front + rim, wide + rim
@@ -120,7 +120,7 @@ def paint_stairs(
 
 
 def draw_disc(draw: ImageDraw.ImageDraw, position: Pixel, r: float, ink: Ink) -> None:
-    """Draw a disc; `r` in px of the finer picture."""
+    """Draw a disc; `r` in px of the enlarged picture."""
     x, y = position
     draw.ellipse((x - r, y - r, x + r, y + r), fill=ink)
 

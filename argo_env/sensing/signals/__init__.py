@@ -17,8 +17,8 @@ def standard_watches(world: World, surroundings: Surroundings, seed: int) -> tup
     """Return the watches for one run: gas, heat, pumps, the alarm and the terrain ahead.
 
     They sense what is in `surroundings` and in `world`; their map is the site of the
-    `surroundings`, as it was built. The seed draws their noise. Watches hold what they have sensed,
-    so each run needs new ones.
+    `surroundings`, without what faults change. The seed draws their noise. Watches hold what they
+    have sensed, so each run needs new ones.
     """
     site_map = SiteMap(surroundings.site)
     return (

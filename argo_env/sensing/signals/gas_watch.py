@@ -82,7 +82,10 @@ class UltrasonicMicrophone:
         self._rng = rng
 
     def measure_level(self, pose: BodyPose) -> float:
-        """Return the measured sound level in the band about 40 kHz, in dB, with noise and bangs."""
+        """Return the measured sound level in the band about 40 kHz, in dB.
+
+        It has noise, and at times a bang of metal on metal.
+        """
         noise = float(self._rng.standard_normal())
         bang, height = map(float, self._rng.random(2))
         levels = [self.BACKGROUND]

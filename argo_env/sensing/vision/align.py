@@ -91,14 +91,14 @@ def compare(photo: Photo, template: Template, pose: FacePose) -> Fit:
 
 
 def refine(
-    photo: Photo, template: Template, pose: FacePose, rolled: bool, iterations: int = 12
+    photo: Photo, template: Template, pose: FacePose, fit_roll: bool, iterations: int = 12
 ) -> Fit:
     """Return the fit near `pose` at which most of the drawn face looks as in the picture.
 
     The search starts at `pose`, and ends at a local maximum of `Fit.match`, or after `iterations`
-    steps. The roll is changed only if `rolled` is True.
+    steps. The roll is changed only if `fit_roll` is True.
     """
-    free = 5 if rolled else 4
+    free = 5 if fit_roll else 4
     parameters = np.array([pose.x, pose.y, pose.z, pose.yaw, pose.roll])
     damping = 1e-3
     values, weights = _sample_template(photo, template, pose)

@@ -236,7 +236,7 @@ _SLACK = 0.015  # m, and times 10 in rad, that a pose may exceed the limits of d
 
 
 def find_face(photo: Photo, instrument: Instrument, planned: FacePose) -> Fit | None:
-    """Return the pose with the highest `Fit.match` in the picture, or None if no face is found.
+    """Search the picture for the face, and return the best fit, or None if no face is found.
 
     Only poses are searched that a displacement from the pose `planned` can lead to.
     """

@@ -47,9 +47,9 @@ def open_rows(
 ) -> RowStore:
     """Open the rows of an evaluation in its folder for writing, and store its plan beside them.
 
-    An evaluation in the folder is continued if it is the same, or has the same cases and a subset
-    of the seeds. `replace` replaces any other evaluation and keeps only its rows that belong to the
-    new plan, or to `helper`, the plan of cheap runs that help the new one.
+    An evaluation in the folder is continued if it has the same cases and the same seeds or a subset
+    of them; its rule to stop may be another. `replace` replaces any other evaluation and keeps only
+    its rows that belong to the new plan, or to `helper`, the plan of cheap runs that help it.
 
     Raises Conflict for another evaluation if `replace` is False, or if another process evaluates
     into the folder; Unavailable if the folder can't be written.
@@ -154,8 +154,8 @@ def sort_rows(plan: EvaluationPlan, rows: tuple[RunRow, ...]) -> tuple[RunRow, .
 def write_failing_specs(folder: Path, results: EvaluationResults) -> dict[str, Path]:
     """Write a spec file for each unsuccessful run, and return the paths by the rows' keys.
 
-    A run can be repeated alone from its file. At most _MAX_FAILING files are written; all other
-    spec files are removed.
+    A run can be repeated alone from its file. At most 1,000 files are written; all other spec
+    files are removed from the folder.
     """
     paths: dict[str, Path] = {}
     for row in results.rows:

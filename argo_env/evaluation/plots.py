@@ -222,7 +222,7 @@ _DARKEST = 0.5
 def outcomes_by_faults(
     results: EvaluationResults, ax: "Axes | None" = None, plan: PlanName | None = None
 ) -> "Axes":
-    """Draw a heat map of the runs by set of faults and outcome; larger shares are darker.
+    """Draw a heat map of the runs by set of faults (rows) and outcome; larger shares are darker.
 
     `plan` None stands for the runs of all plans.
     """

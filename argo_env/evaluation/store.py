@@ -153,8 +153,8 @@ class RowStore(Closing):
 def read_rows(folder: Path) -> tuple[RunRow, ...]:
     """Read all rows that are in a folder now; another process may add rows meanwhile.
 
-    Raises NotFound if the folder has no rows, Unavailable if it has Parquet files and pyarrow is
-    missing.
+    Raises NotFound if the folder has no files of rows, Unavailable if it has Parquet files and
+    pyarrow is missing.
     """
     if not (os.path.exists(folder / LOG) or has_parts(folder)):
         raise NotFound(f"{folder} has no rows of an evaluation")

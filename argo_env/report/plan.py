@@ -38,7 +38,7 @@ class Canvas:
         return (self.y1 - self.y0) * self.scale + 2 * MARGIN
 
     def to_pixels(self, x: float, y: float) -> Point:
-        """Return the position in px of a point in m; the second axis points up."""
+        """Return the position in px of a point in m, whose second coordinate points up."""
         return MARGIN + (x - self.x0) * self.scale, MARGIN + (self.y1 - y) * self.scale
 
     def draw_solids(self, role: Role, solids: Iterable[Solid], axes: tuple[int, int]) -> Node:
@@ -216,7 +216,7 @@ _SHOWN = frozenset({Role.GROUND, Role.DECK, Role.STAIR, Role.VESSEL, Role.STRUCT
 
 
 def draw_side_view(site: Site, record: RunRecord) -> Node:
-    """Draw the whole site and the driven path from the south, with x to the right and z up."""
+    """Draw the main parts of the site and the driven path from the south: x to the right, z up."""
     shown = [
         (e.role, e.solids)
         for e in site.elements

@@ -118,7 +118,7 @@ def draw_arrow_heads(
 
 
 def draw_flag(center: Point, text: str, class_: str) -> Node:
-    """Draw a round mark with a letter, for the start or the end, about a position in px."""
+    """Draw a round mark with a letter, for the start or end of the path, about a position in px."""
     return node(
         "g",
         node("circle", cx=center[0], cy=center[1], r=9.0),

@@ -103,7 +103,7 @@ class LoggedEvent(Model):
 
 
 def require_external(event: LoggedEvent) -> None:
-    """Raise Invalid for an event that can't come from outside the run."""
+    """Raise Invalid for an event that is incomplete or can't come from outside the run."""
     try:
         event.to_event()
     except ValueError as error:
@@ -115,7 +115,7 @@ def require_external(event: LoggedEvent) -> None:
 
 
 def require_event_time(t: float) -> None:
-    """Raise Invalid for a time (s) at which no event can occur."""
+    """Raise Invalid unless the time t (s) of an event is finite and at least 0."""
     if not 0 <= t < math.inf:
         raise Invalid(f"no event can occur at {t:g} s: give a time from 0 s on")
 
@@ -173,7 +173,11 @@ class Entry(Model):
 
     @property
     def is_essential(self) -> bool:
-        """True if the entry holds more than where the robot was, so that it must not be lost."""
+        """True if the entry must survive a loss of power.
+
+        It then has events, faults, the end of a task, an order by hand or to stop it, or is that of
+        the run's resumption or end.
+        """
         has_news = self.events or self.faults or self.task or self.by_hand or self.stop_by_hand
         return bool(has_news) or self.resumed or self.ended
 

@@ -120,10 +120,11 @@ class Perception:
 
 
 def blockage_from_anomaly(anomaly: Anomaly) -> Blockage | None:
-    """Return the part of the surface that an obstacle closes; None if the anomaly is no obstacle.
+    """Return the part of the surface that an obstacle closes.
 
-    The part is a little larger than what was seen, because the obstacle may reach farther than it
-    seemed from one side, and is not reported again.
+    None if the anomaly is no obstacle, or has no position. The part is a little larger than what
+    was seen, because the obstacle may reach farther than it seemed from one side, and is not
+    reported again.
     """
     if anomaly.kind not in OBSTACLES or anomaly.place is None:
         return None

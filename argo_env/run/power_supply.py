@@ -67,7 +67,11 @@ class PowerSupply:
             self.charging = charge < 1.0 and self._docked(pose)
 
     def consume(self, before: BodyPose, after: BodyPose, seconds: float, measuring: bool) -> None:
-        """Draw the energy of a step of `seconds`, or charge the battery if the robot is docked."""
+        """Draw the energy of a step of `seconds`, or charge the battery if the robot is docked.
+
+        The step has led from the pose `before` to `after`; `measuring` states that the robot
+        measures.
+        """
         if self._battery is None:
             return
         watts = power_draw(self._power, before, after, seconds, measuring)

@@ -118,7 +118,10 @@ class AnyRobot(Protocol):
         """Start an action; no other action may be running."""
 
     def advance(self, step: int, now: float, action: RobotAction | None) -> Sensed:
-        """Let time step number `step` pass, up to `now` (s), with `action` running, if any."""
+        """Let time step number `step` pass, up to `now` (s), and return what it has led to.
+
+        `action` is the running action, if there is one.
+        """
 
     def state_for_entry(self) -> dict[str, Any]:
         """Return the robot's present state as fields of an `Entry` of the log, by name.

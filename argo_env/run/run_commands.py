@@ -101,7 +101,10 @@ def check_task_by_hand(task: Task, mission: Mission, site: Site) -> None:
 
 
 def require_supervised(supervision: Supervision, running: Task | None) -> None:
-    """Raise Conflict if a person can't let the robot act by hand now."""
+    """Raise Conflict if a person can't let the robot act by hand now.
+
+    That is so if an action runs (`running` is its task), or nobody has taken the robot over.
+    """
     if running is not None:
         raise Conflict(
             f"the action of task '{running.name}' has not ended yet: stop it, or let time pass "

@@ -128,7 +128,7 @@ def make_run_setup(spec: RunSpec, navigator: Navigator, gui: bool, stack: ExitSt
         spec: the spec of the run.
         navigator: the navigator of the site.
         gui: whether the world is shown in a window.
-        stack: exit stack that closes the setup.
+        stack: exit stack that closes the world, if there is one.
 
     Raises:
         ArgoError: there can be no window.

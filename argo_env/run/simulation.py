@@ -229,11 +229,11 @@ class Simulation(Closing):
         self.end_if_finished()
 
     def fast_forward(self, until: float = math.inf) -> PoseArray:
-        """Let time pass up to the next time at which something may happen, but not beyond `until`.
+        """Let time pass until something may happen: many time steps at once if possible, else one.
 
-        This makes many time steps at once if the robot only drives, measures or stands and surely
-        touches nothing, else one. Records are the same as with `step`, and observers receive the
-        same calls except `on_step`.
+        Many are possible while the robot only drives, measures or stands and surely touches
+        nothing; they end by `until`, and a single step may end after it. Records are the same as
+        with `step`, and observers receive the same calls except `on_step`.
 
         Args:
             until: time in s.

@@ -67,7 +67,7 @@ class RunConditions(Model):
     """profiles of values, by number of the checkpoint"""
 
     def actual_start_pose(self, start: Pose) -> Pose:
-        """Return the robot's actual pose for the planned pose `start`."""
+        """Return the robot's actual start pose: the planned one, `start`, shifted and turned."""
         c, s = math.cos(start.yaw), math.sin(start.yaw)
         return start.model_copy(
             update={

@@ -85,13 +85,16 @@ class StepBatch:
         return self._poses[1 : 1 if self._ahead is None else count + 1]
 
     def pose_and_charge(self, step: int) -> tuple[PoseTuple, float | None]:
-        """Return the robot's pose after `step` steps, and the battery's charge then, 0 to 1."""
+        """Return the robot's pose after `step` steps, and the battery's charge then, 0 to 1.
+
+        The charge is None without a battery.
+        """
         charge = self._supply.charge_after(self._power, step - 1)
         return pose_tuple_at(self._poses, step), charge
 
     @property
     def charge_range(self) -> tuple[float, float]:
-        """Lowest and highest charge of the battery after the steps, 0 to 1."""
+        """Lowest and highest charge of the battery in the batch, 0 to 1; 1 without a battery."""
         return self._supply.charge_range(self._power)
 
     def advance_to(self, step: int, now: float) -> None:
@@ -183,7 +186,10 @@ class Vehicle:
         return self._action
 
     def advance(self, step: int, now: float, action: RobotAction | None) -> Sensed:
-        """Let time step number `step` pass, up to time `now` (s), with `action` running, if any."""
+        """Let time step number `step` pass, up to time `now` (s), and return what it has led to.
+
+        `action` is the running action, if there is one.
+        """
         setup, odometry, drive = self.setup, self.odometry, self.setup.drive
         if setup.schedule:
             setup.schedule.advance(now)

@@ -51,7 +51,7 @@ def number_with_noun(number: int, what: str) -> str:
 def evaluation_headline(results: EvaluationResults) -> tuple[str, str]:
     """Return the headline of an evaluation's report and its rating: `good`, `bad` or `notice`.
 
-    The headline states whether the requirements are met or, without any, how many runs succeeded.
+    The headline states whether the requirements are met or, without any, how many runs failed.
     """
     decisions = {verdict.verdict for verdict in results.verdicts}
     if Decision.MISSED in decisions:

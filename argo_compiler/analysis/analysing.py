@@ -108,7 +108,9 @@ def _analyse(mission: Mission, catalog: Catalog | None, travel: Travel | None) -
     bounds = study.bounds
     analysis = Analysis(
         diagnostics=tuple(diagnostics),
-        tasks=tuple(_task_facts(study, i) for i in range(len(flow.leaves)) if study.is_own(i)),
+        tasks=tuple(
+            _task_facts(study, i) for i in range(len(flow.leaves)) if study.is_mission_task(i)
+        ),
         groups=tuple(_group_facts(study, g) for g in range(len(flow.groups))),
         ends=_reach_verdict(study, flow.end_node),
         duration=None if bounds is None else bounds.duration,
@@ -234,7 +236,8 @@ def _unconditional_verdict(study: Study, leaf: int) -> Verdict:
         if reachability.is_reached(leaf) and reachability.unconditional_possible(flow, leaf):
             node = flow.leaves[leaf].unconditional
         elif any(
-            reachability.is_reached(flow.time_up(g)) for g in _hard_groups_ending_with(study, leaf)
+            reachability.is_reached(flow.time_up_node(g))
+            for g in _hard_groups_ending_with(study, leaf)
         ):
             return verdict
         else:
@@ -245,7 +248,8 @@ def _unconditional_verdict(study: Study, leaf: int) -> Verdict:
             alone = verdict is Verdict.POSSIBLE and not any(guard.possible for guard in conditional)
             return Verdict.ALWAYS if alone else verdict
         if any(
-            reachability.is_reached(flow.time_up(g)) for g in _hard_groups_ending_with(study, leaf)
+            reachability.is_reached(flow.time_up_node(g))
+            for g in _hard_groups_ending_with(study, leaf)
         ):
             return verdict
         while group is not None and flow.groups[group].may_end:
@@ -276,10 +280,10 @@ def _hard_groups_ending_with(study: Study, leaf: int) -> list[int]:
 def _group_facts(study: Study, number: int) -> GroupFacts:
     flow = study.flow
     group = flow.groups[number]
-    ended = _reach_verdict(study, flow.round_end(number))
+    ended = _reach_verdict(study, flow.round_end_node(number))
     repeats = ended if group.may_repeat else Verdict.NEVER
     if group.hard:
-        ends = _reach_verdict(study, flow.time_up(number))
+        ends = _reach_verdict(study, flow.time_up_node(number))
     else:
         ends = ended if group.may_end else Verdict.NEVER
     return GroupFacts(group=group.name, repeats=repeats, ends=ends)

@@ -107,7 +107,7 @@ class LeastSteps:
             for point, visits in self._visits.items()
         }
 
-    def around(self, point: ProgramPoint) -> tuple[int, ...]:
+    def groups_around(self, point: ProgramPoint) -> tuple[int, ...]:
         """Return the numbers of the groups that enclose a point of the mission, outermost first.
 
         The end of a group's round lies within the group; the points at which the group is entered
@@ -221,8 +221,8 @@ class LeastSteps:
         return min(ends, default=None)
 
     def _visit_cost(self, source: ProgramPoint, visit: _Visit) -> _VisitCost:
-        inside = self.around(("task", visit.task))
-        shared = sum(a == b for a, b in zip(inside, self.around(source), strict=False))
+        inside = self.groups_around(("task", visit.task))
+        shared = sum(a == b for a, b in zip(inside, self.groups_around(source), strict=False))
         return _VisitCost(visit, inside[shared:], *self._cost(source, visit.task))
 
     def _cost(self, source: ProgramPoint, i: int) -> tuple[float, float]:
@@ -312,7 +312,7 @@ class LeastSteps:
         for position in cut:
             if self._deadline(i) is not None:
                 yield ("missed", i), position
-            for g in self.around(("task", i)):
+            for g in self.groups_around(("task", i)):
                 if self.layout.hard[g]:
                     yield ("left", g), position
 

@@ -95,7 +95,7 @@ class _Search:
             if of_time and point[0] == "task" and steps.is_always_missed(point, spent):
                 continue
             for other, least in steps.successors(point, spent, periods, of_time=of_time):
-                around = steps.around(other)
+                around = steps.groups_around(other)
                 self._steps_left -= 1 + len(around)
                 if self._steps_left < 0:
                     return None

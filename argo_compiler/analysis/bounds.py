@@ -86,7 +86,7 @@ def longest_duration(flow: Flow, reachability: Reachability, costs: StepCosts) -
     most = 0.0
     for node, (source, target), cost, _ in level.exits:
         if target == flow.end_node:
-            end = level.most["time"][node] + cost.time.most + costs.last_clean_up(source)
+            end = level.most["time"][node] + cost.time.most + costs.final_clean_up_time(source)
             most = max(most, end)
     return most
 
@@ -107,7 +107,7 @@ def _bounds(
         (
             level.most[quantity][node]
             + getattr(cost, quantity).most
-            + (costs.last_clean_up(source) if quantity == "time" else 0.0),
+            + (costs.final_clean_up_time(source) if quantity == "time" else 0.0),
             k,
         )
         for k, (node, (source, _), cost, _) in enumerate(level.exits)

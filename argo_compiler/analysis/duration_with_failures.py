@@ -56,7 +56,7 @@ class _ReactionTimes:
         self.study = study
         self.costs = costs
         self.travel = study.travel
-        self.clean_up = study.travel.clean_up
+        self.clean_up = study.travel.clean_up_time
         self._start = study.travel.start_pose(study.mission)
         self.mission = study.mission
         self.reactions = [r for r in study.mission.reactions if r.response is not Response.REPORT]

@@ -39,7 +39,7 @@ def _endless_loops(study: Study, traps: tuple[tuple[int, ...], ...]) -> Iterator
     for trap in traps:
         if not trap:
             continue
-        path = study.path_words(trap[0])
+        path = study.shortest_path_text(trap[0])
         yield study.diagnostic(
             "endless-loop",
             f"{_tasks(study, trap)} {_follow(trap)} for ever: {but} or a person ends the loop "
@@ -72,10 +72,10 @@ def _non_terminating_loops(
     for loop in loops:
         leaves = tuple(sorted(filter(study.flow.is_leaf, loop.nodes)))
         name = study.object_name(loop.object_id)
-        values = loop.readings & (loop.scale.missing - 1)
+        values = loop.readings & (loop.scale.missing_bit - 1)
         shown = [
-            *([f"shows {loop.scale.words(values)}"] if values else []),
-            *(["has no value"] if loop.readings & loop.scale.without_value else []),
+            *([f"shows {loop.scale.regions_text(values)}"] if values else []),
+            *(["has no value"] if loop.readings & loop.scale.without_value_bits else []),
         ]
         yield study.diagnostic(
             "kept-loop",
@@ -160,14 +160,14 @@ def _ends_elsewhere(study: Study) -> Iterator[Diagnostic]:
     for number, group in enumerate(flow.groups):
         if (
             group.hard
-            and study.nominal.is_reached(flow.time_up(number))
+            and study.nominal.is_reached(flow.time_up_node(number))
             and _leads_to_end(study, group.successor)
         ):
             last_elsewhere.setdefault(
                 group.last, f"wherever the robot is when the time of group '{group.name}' is up"
             )
     for k, (leaf, where) in enumerate(sorted(last_elsewhere.items())):
-        path = f" (path: {study.path_words(leaf)})" if k < _MOST_PATHS else ""
+        path = f" (path: {study.shortest_path_text(leaf)})" if k < _MOST_PATHS else ""
         yield study.diagnostic(
             "end-elsewhere",
             f"the mission must end docked in starting area {area}, but it can end {where}{path}",

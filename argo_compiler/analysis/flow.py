@@ -86,7 +86,7 @@ class LeafFlow:
         return self.leaf.task.name
 
     @property
-    def may_give_up(self) -> bool:
+    def has_wait_limit(self) -> bool:
         """True if this is a WAIT that fails unless something ends it in time."""
         return self.wait is not None and self.wait.limit is not None
 
@@ -111,11 +111,11 @@ class Flow:
     def size(self) -> int:
         return self.end_node + 1
 
-    def round_end(self, group: int) -> int:
+    def round_end_node(self, group: int) -> int:
         """Return the number of the node at which a round of the group has ended."""
         return len(self.leaves) + group
 
-    def time_up(self, group: int) -> int:
+    def time_up_node(self, group: int) -> int:
         """Return the node at which the time of the group, or of an enclosing group, may be up."""
         return len(self.leaves) + len(self.groups) + group
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 from argo_compiler.analysis.bounds import MissionBounds
 from argo_compiler.analysis.quantities import energy_words, time_words
-from argo_compiler.analysis.reachability import reported_by_others
+from argo_compiler.analysis.reachability import externally_reported_objects
 from argo_compiler.analysis.results import Bound, Bounds, Stretch
 from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.travel import NoPath, Travel
@@ -106,7 +106,7 @@ def _too_long(study: Study, duration: Bounds, limit: float) -> Iterator[Diagnost
             "too-long",
             f"the mission takes at least {time_words(least)} if nothing fails, longer than its "
             f"maximum duration of {time_words(limit)} (shortest: "
-            f"{path_words(duration.least, time_words)})",
+            f"{bound_path_text(duration.least, time_words)})",
             "leave out tasks, shorten groups, or allow more time",
             subject="max_duration",
         )
@@ -114,7 +114,7 @@ def _too_long(study: Study, duration: Bounds, limit: float) -> Iterator[Diagnost
         yield study.diagnostic(
             "maybe-too-long",
             f"the mission may take up to {time_words(most)}, longer than its maximum duration of "
-            f"{time_words(limit)} (longest: {path_words(duration.most, time_words)})",
+            f"{time_words(limit)} (longest: {bound_path_text(duration.most, time_words)})",
             "leave out tasks, shorten groups, or add a reaction to time_up",
             subject="max_duration",
         )
@@ -123,7 +123,7 @@ def _too_long(study: Study, duration: Bounds, limit: float) -> Iterator[Diagnost
             "maybe-too-long",
             f"the mission may take longer than its maximum duration of {time_words(limit)}, as "
             "something in it has no limit (shortest: "
-            f"{path_words(duration.least, time_words)})",
+            f"{bound_path_text(duration.least, time_words)})",
             "limit what is repeated, or add a reaction to time_up",
             subject="max_duration",
         )
@@ -142,7 +142,9 @@ def _cut_short(
     if most is not None and most <= limit:
         return
     own = [
-        i for i in range(len(study.flow.leaves)) if study.is_own(i) and study.nominal.is_reached(i)
+        i
+        for i in range(len(study.flow.leaves))
+        if study.is_mission_task(i) and study.nominal.is_reached(i)
     ]
     lost = [study.name(i) for i in own if limit < bounds.completion_times[i].soonest < math.inf]
     unsure = [
@@ -171,7 +173,7 @@ def _battery_exceeded(study: Study, energy: Bounds, battery: float) -> Iterator[
         yield study.diagnostic(
             "battery-exceeded",
             f"the mission needs at least {energy_words(least)} if nothing fails, and the battery "
-            f"gives {energy_words(battery)} (least: {path_words(energy.least, energy_words)})",
+            f"gives {energy_words(battery)} (least: {bound_path_text(energy.least, energy_words)})",
             "leave out tasks or rounds, or charge in between",
             subject="tasks",
         )
@@ -181,7 +183,7 @@ def _battery_exceeded(study: Study, energy: Bounds, battery: float) -> Iterator[
         yield study.diagnostic(
             "battery-maybe-exceeded",
             f"the mission may need energy {need}, and the battery gives {energy_words(battery)} "
-            f"({'least' if most is None else 'most'}: {path_words(path, energy_words)})",
+            f"({'least' if most is None else 'most'}: {bound_path_text(path, energy_words)})",
             "limit what is repeated, or react to low_battery",
             subject="tasks",
         )
@@ -258,7 +260,7 @@ def diagnose_stale_values(study: Study) -> Iterator[Diagnostic] | None:
     """
     flow = study.flow
     comparisons: dict[str, list[tuple[int, int, int]]] = {}
-    reported = reported_by_others(flow)
+    reported = externally_reported_objects(flow)
     for i, leaf in enumerate(flow.leaves):
         for k, (conditions, _) in enumerate(leaf.conditional):
             for c, condition in enumerate(conditions):
@@ -326,7 +328,7 @@ def _youngest_ages(
     return age
 
 
-def path_words(bound: Bound, quantity_words: Callable[[float], str]) -> str:
+def bound_path_text(bound: Bound, quantity_words: Callable[[float], str]) -> str:
     """Return the text of the execution path that attains a bound, such as `A (5 s) > B (2 min)`.
 
     Each part has the time or energy from the mission's start to its end. The middle of a long path

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from argo_compiler.analysis.reachability import (
     ReachabilitySearch,
     compared_objects,
-    reported_by_others,
+    externally_reported_objects,
 )
 from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.value_regions import Scale
@@ -97,7 +97,7 @@ class _Search:
     def __init__(self, study: Study) -> None:
         self.study = study
         self.steps_left = _MOST_STEPS
-        self.reported = reported_by_others(study.flow)
+        self.reported = externally_reported_objects(study.flow)
         self.search = ReachabilitySearch(study.flow, study.nominal.fields, failures=False)
         self.guard_nodes: dict[str, set[int]] = {}
         """for each checkpoint, the nodes whose conditions compare it"""
@@ -107,7 +107,9 @@ class _Search:
                     self.guard_nodes.setdefault(condition.object_id, set()).add(i)
         for g, group in enumerate(study.flow.groups):
             for condition in group.until:
-                self.guard_nodes.setdefault(condition.object_id, set()).add(study.flow.round_end(g))
+                self.guard_nodes.setdefault(condition.object_id, set()).add(
+                    study.flow.round_end_node(g)
+                )
 
     def old_comparisons(self) -> Iterator[tuple[int, str]]:
         """Yield each leaf with the id of a checkpoint that it compares but does not measure itself.

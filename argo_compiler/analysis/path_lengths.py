@@ -175,7 +175,7 @@ class PathLengths:
         return rounds
 
     def _group_round(self, group: int, level: LevelGraph) -> GroupRound:
-        end = self.flow.round_end(group)
+        end = self.flow.round_end_node(group)
         ends: dict[Source, Cost] = {}
         exits: dict[ExitKey, Cost] = {}
         for node, (source, target), cost, _ in level.exits:

@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from argo_compiler.analysis.flow import Flow, LeafFlow
-from argo_compiler.analysis.value_regions import Fields, Scale, make_scale, sum_bits
+from argo_compiler.analysis.value_regions import Fields, Scale, make_scale, union_of_bits
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.il import Condition, ConditionType
 
@@ -75,7 +75,7 @@ class Reachability:
         if self.unconditional_possible(flow, leaf):
             yield flow.leaves[leaf].unconditional
         failure = flow.leaves[leaf].failure
-        if failure is not None and (self.failures or flow.leaves[leaf].may_give_up):
+        if failure is not None and (self.failures or flow.leaves[leaf].has_wait_limit):
             yield failure
 
     def targets_when_missed(self, flow: Flow, leaf: int) -> Iterator[int]:
@@ -131,7 +131,7 @@ def compute_reachability(flow: Flow, fields: Fields, failures: bool) -> Reachabi
     return ReachabilitySearch(flow, fields, failures).run()
 
 
-def reported_by_others(flow: Flow) -> frozenset[str]:
+def externally_reported_objects(flow: Flow) -> frozenset[str]:
     """Return the ids of the objects whose values others than the mission's tasks may report.
 
     These are the objects that a WAIT waits for, and those that are compared but that no task
@@ -193,7 +193,7 @@ class ReachabilitySearch:
         """heap of the ranks of nodes to visit"""
         self.queued = [False] * flow.size
         self.satisfying: dict[tuple[object, ...], int] = {}
-        self.reported = sum_bits(self._values(o) for o in reported_by_others(flow))
+        self.reported = union_of_bits(self._values(o) for o in externally_reported_objects(flow))
         self.late = _late_readings(flow, self._late_readings)
         self.guards: list[tuple[GuardStatus, ...]] = [()] * len(flow.leaves)
         self._effects: dict[tuple[str, bool], _Effect] = {}
@@ -215,7 +215,7 @@ class ReachabilitySearch:
         )
 
     def run(self) -> Reachability:
-        self._join(self.flow.initial, self.fields.unmeasured | self.reported)
+        self._join(self.flow.initial, self.fields.unmeasured_state | self.reported)
         while self.pending:
             node = self.order[heapq.heappop(self.pending)]
             self.queued[node] = False
@@ -256,11 +256,11 @@ class ReachabilitySearch:
 
     def _widened(self, known: int, joined: int, everything: bool) -> int:
         if everything:
-            return self.fields.anything
+            return self.fields.any_readings_state
         for o in self.fields.shift:
             if self.fields.get(known, o) != self.fields.get(joined, o):
                 scale = self.fields.scales[o]
-                joined = self.fields.set(joined, o, scale.possible | scale.without_value)
+                joined = self.fields.set(joined, o, scale.possible | scale.without_value_bits)
         return joined
 
     def successors(self, node: int, state: int) -> Iterator[tuple[int, int]]:
@@ -288,7 +288,7 @@ class ReachabilitySearch:
                 )
             if leaf.parent >= 0 and flow.timed[leaf.parent]:
                 # An action that is cancelled may still report its value.
-                yield flow.time_up(leaf.parent), state | self._after_success(leaf, state)
+                yield flow.time_up_node(leaf.parent), state | self._after_success(leaf, state)
             return
         if node == flow.end_node:
             return
@@ -302,14 +302,14 @@ class ReachabilitySearch:
         if group.hard:
             yield group.successor, state
         if group.parent >= 0 and flow.timed[group.parent]:
-            yield flow.time_up(group.parent), state
+            yield flow.time_up_node(group.parent), state
 
     def _successors_of_round(self, number: int, state: int) -> Iterator[tuple[int, int]]:
         """Yield the nodes that can follow a round's end, each with the readings possible there."""
         group = self.flow.groups[number]
         guard, ended, repeated = self._evaluate(group.until, state, None)
         by_value = bool(group.until)
-        changing = self.late[self.flow.round_end(number)] | self.reported
+        changing = self.late[self.flow.round_end_node(number)] | self.reported
         if group.may_repeat and not (by_value and guard.certain):
             yield group.start, repeated | changing if by_value else state
         if group.limited:
@@ -319,7 +319,7 @@ class ReachabilitySearch:
 
     def _fails_by_itself(self, leaf: LeafFlow) -> bool:
         """Return True if a leaf may fail although no action fails."""
-        return leaf.may_give_up or (leaf.deadline is not None and leaf.missed is None)
+        return leaf.has_wait_limit or (leaf.deadline is not None and leaf.missed is None)
 
     def _values(self, object_id: str) -> int:
         """Return the state bits of the values that an object can show; 0 if it is not tracked."""
@@ -335,7 +335,7 @@ class ReachabilitySearch:
         if shift is None or not self.failures:
             return self._values(object_id)
         scale = self.fields.scales[object_id]
-        return (scale.possible | scale.unreadable) << shift
+        return (scale.possible | scale.unreadable_bit) << shift
 
     def _after_success(self, leaf: LeafFlow, state: int) -> int:
         """Return the possible readings after a leaf's measurement succeeded, from those before."""
@@ -361,7 +361,7 @@ class ReachabilitySearch:
         scale = self.fields.scales[object_id]
         # A task that a person does without giving a value leaves no reading. That is no failure,
         # but it is treated here too.
-        return scale.without_value if self.failures else scale.failed
+        return scale.without_value_bits if self.failures else scale.failed_bit
 
     def _effect_of(self, leaf: LeafFlow) -> _Effect | None:
         """Return the change of the possible readings when a leaf has ended; None if there is none.
@@ -378,7 +378,7 @@ class ReachabilitySearch:
             if unmeasured:
                 readings |= self._without_value(object_id)
             added = self.fields.set(0, object_id, readings)
-            mask = self.fields.set(self.fields.anything, object_id, 0)
+            mask = self.fields.set(self.fields.any_readings_state, object_id, 0)
             self._effects[key] = _Effect(mask, added | self.reported)
         return self._effects[key]
 
@@ -451,7 +451,7 @@ class ReachabilitySearch:
     def _possible_readings(self, state: int, object_id: str, fresh: str | None) -> int:
         possible_readings = self.fields.get(state, object_id)
         if object_id == fresh and object_id not in self.fields.shift:
-            return possible_readings & ~self.fields.scales[object_id].without_value
+            return possible_readings & ~self.fields.scales[object_id].without_value_bits
         return possible_readings
 
     def _satisfying(self, condition: Condition) -> int:
@@ -460,7 +460,7 @@ class ReachabilitySearch:
         satisfying = self.satisfying.get(key)
         if satisfying is None:
             scale: Scale = self.fields.scales[condition.object_id]
-            satisfying = self.satisfying[key] = scale.satisfying(condition)
+            satisfying = self.satisfying[key] = scale.satisfying_bits(condition)
         return satisfying
 
 
@@ -503,7 +503,7 @@ def _successors_while_cancelling(flow: Flow, node: int) -> tuple[int, ...]:
             return flow.groups[ended].start, flow.groups[ended].successor
         group = flow.groups[node - len(flow.leaves) - len(flow.groups)]
         around = group.parent >= 0 and flow.timed[group.parent]
-        return (group.successor, *((flow.time_up(group.parent),) if around else ()))
+        return (group.successor, *((flow.time_up_node(group.parent),) if around else ()))
     leaf = flow.leaves[node]
     targets = []
     if leaf.wait is not None or leaf.deadline is not None or leaf.leaf.task.time_limit is not None:
@@ -511,5 +511,5 @@ def _successors_while_cancelling(flow: Flow, node: int) -> tuple[int, ...]:
         targets += [leaf.unconditional]
         targets += [target for target in (leaf.failure, leaf.missed) if target is not None]
     if leaf.parent >= 0 and flow.timed[leaf.parent]:
-        targets.append(flow.time_up(leaf.parent))
+        targets.append(flow.time_up_node(leaf.parent))
     return tuple(targets)

@@ -31,7 +31,7 @@ class TransitionFacts(Model):
 
 
 class TaskFacts(Model):
-    """Verdicts on one task and its transitions; there are none on START."""
+    """Verdicts on one task and its transitions; an analysis has none for a START task."""
 
     task: str
     verdict: Verdict

@@ -47,7 +47,7 @@ class GroupRound:
     """greatest duration in s, also if the round does not reach its end"""
 
     @property
-    def end(self) -> Cost | None:
+    def end_cost(self) -> Cost | None:
         return union(self.ends.values())
 
 
@@ -73,7 +73,7 @@ def union(costs: Iterable[Cost]) -> Cost | None:
 
 
 def combine_rounds(
-    number: int,
+    group_number: int,
     group: GroupFlow,
     first: GroupRound,
     later: GroupRound | None,
@@ -82,13 +82,13 @@ def combine_rounds(
     """Return the cost of all rounds of a group.
 
     Args:
-        number: Number of the group.
+        group_number: Number of the group.
         group: The group.
         first: Cost of its first round.
         later: Cost of each later round; None if there is none.
         standing_power: Power in W that the robot draws while the next round is not yet due.
     """
-    return _Combination(number, group, first, later, standing_power).rounds()
+    return _Combination(group_number, group, first, later, standing_power).rounds()
 
 
 class _Combination:
@@ -105,8 +105,8 @@ class _Combination:
         self.first = first
         self.later = later
         self.standing_power = standing_power
-        self.first_end = first.end
-        self.period = None if later is None else later.end
+        self.first_end = first.end_cost
+        self.period = None if later is None else later.end_cost
         self.every = group.every
         self.limit = group.duration or math.inf
         self.count = min(group.count or math.inf, _due_before(self.limit, self.every))

@@ -123,7 +123,7 @@ class StepCosts:
             self._join_repeats()
             self._find_too_slow()
             if reachability.failures:
-                self._include_retries(travel.clean_up)
+                self._include_retries(travel.clean_up_time)
             for (_, target), cost in list(self._steps.items()):
                 self._join(ANY, target, cost)
 
@@ -167,7 +167,7 @@ class StepCosts:
         return self._action_costs.get(leaf, FREE)
 
     def successor_times(self) -> dict[object, list[tuple[object, float]]]:
-        """Return what can follow each leaf and time-out, with the least s from end to end."""
+        """Return what can follow each leaf or time-out, with the least s between their ends."""
         following: dict[object, list[tuple[object, float]]] = {}
         for (source, target), cost in self._steps.items():
             if isinstance(source, str) or (not isinstance(source, int) and source[0] == "repeat"):
@@ -178,7 +178,7 @@ class StepCosts:
             after += [(cut, 0.0) for cut, _ in self._successors_when_cut(target)]
         return following
 
-    def last_clean_up(self, source: Source) -> float:
+    def final_clean_up_time(self, source: Source) -> float:
         """Return the longest time in s to clean up a cancelled action if the mission then ends.
 
         The mission ends after `source`. The time is 0 if no action can have been cancelled before.
@@ -189,7 +189,7 @@ class StepCosts:
             cancelled = any(position.on_way_to is not None for position in self.positions[source])
         else:
             cancelled = source[0] in ("cut", "missed")
-        return self.travel.clean_up if cancelled else 0.0
+        return self.travel.clean_up_time if cancelled else 0.0
 
     def _successors(self, leaf: int) -> Iterator[tuple[Source, int]]:
         """Yield the source and leaf of each step that can follow an ended or cancelled leaf."""
@@ -428,7 +428,7 @@ class StepCosts:
                     QuantityRange(min(work.time.least, most.time.most), most.time.most),
                     QuantityRange(min(work.energy.least, most.energy.most), most.energy.most),
                 )
-                waited = Cost(QuantityRange(0.0, travel.clean_up), NOTHING)
+                waited = Cost(QuantityRange(0.0, travel.clean_up_time), NOTHING)
                 self._join(source, target, rest + waited)
 
 

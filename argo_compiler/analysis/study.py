@@ -99,7 +99,7 @@ class Study:
     def leaf_task(self, leaf: int) -> Task:
         return self.flow.leaves[leaf].leaf.task
 
-    def is_own(self, leaf: int) -> bool:
+    def is_mission_task(self, leaf: int) -> bool:
         """Return True if a leaf is a task of the mission, not one that the machine adds."""
         return self.name(leaf) in self.position
 
@@ -117,15 +117,15 @@ class Study:
             for r in self.mission.reactions
         )
 
-    def path_words(self, leaf: int) -> str:
+    def shortest_path_text(self, leaf: int) -> str:
         """Return the names of the tasks on a shortest execution path to a leaf if nothing fails.
 
         The text is empty if there is no such path.
         """
         path = path_to(self._path_tree, self.flow.initial, leaf)
-        return "" if path is None else self.words(path)
+        return "" if path is None else self.path_text(path)
 
-    def words(self, path: tuple[int, ...]) -> str:
+    def path_text(self, path: tuple[int, ...]) -> str:
         """Return the names of the tasks on a path of nodes; a long path lacks its middle."""
         leaves = [n for n in path if n < len(self.flow.leaves)]
         if len(leaves) <= _MOST_NAMES + 1:
@@ -147,7 +147,7 @@ class Study:
             yield from self.nominal.targets_when_missed(flow, node)
             parent = flow.leaves[node].parent
             if parent >= 0 and flow.timed[parent]:
-                yield flow.time_up(parent)
+                yield flow.time_up_node(parent)
             return
         ended = flow.group_of_round_end(node)
         if ended is not None:
@@ -160,7 +160,7 @@ class Study:
         if group.hard:
             yield group.successor
         if group.parent >= 0 and flow.timed[group.parent]:
-            yield flow.time_up(group.parent)
+            yield flow.time_up_node(group.parent)
 
     def diagnostic(
         self,
@@ -177,7 +177,7 @@ class Study:
         Without a severity, the diagnostic has the severity of its code.
         """
         span = None
-        if leaf is not None and self.is_own(leaf):
+        if leaf is not None and self.is_mission_task(leaf):
             span = self.leaf_task(leaf).source
             subject = subject_of("tasks", self.name(leaf))
             if transition is not None:

@@ -42,8 +42,8 @@ def diagnose_transitions(study: Study) -> Iterator[Diagnostic]:
                     yield diagnostic
 
 
-def why_never(study: Study, leaf: int, k: int) -> str:
-    """Return the text why conditional transition `k` of a reached leaf is never taken.
+def reason_never_taken(study: Study, leaf: int, k: int) -> str:
+    """Return the reason why conditional transition `k` of a reached leaf is never taken.
 
     `k` counts the leaf's conditional transitions from 0.
     """
@@ -56,24 +56,24 @@ def why_never(study: Study, leaf: int, k: int) -> str:
         if why is not None:
             return why
         scale, readings = _possible_readings(study, condition, taken)
-        regions = readings & scale.satisfying(condition)
+        regions = readings & scale.satisfying_bits(condition)
         taken = study.with_failures.fields.set(taken, condition.object_id, regions)
     return "its conditions exclude each other"
 
 
 def _why_not(study: Study, condition: Condition, taken: int, before: int) -> str | None:
     scale, readings = _possible_readings(study, condition, taken)
-    satisfying = scale.satisfying(condition)
+    satisfying = scale.satisfying_bits(condition)
     if readings & satisfying:
         return None
     name = study.object_name(condition.object_id)
     if condition.type.compares and not scale.possible & satisfying:
         return (
-            f"{name} shows {scale.words(scale.possible)}, so {condition_text(condition)} never "
-            "holds"
+            f"{name} shows {scale.regions_text(scale.possible)}, so {condition_text(condition)} "
+            "never holds"
         )
     _, at_first = _possible_readings(study, condition, before)
-    if condition.type.compares and not at_first & (scale.missing - 1):
+    if condition.type.compares and not at_first & (scale.missing_bit - 1):
         possible = study.with_failures.fields.scales[condition.object_id].possible
         if condition.object_id in study.with_failures.fields.shift and possible:
             return (
@@ -84,7 +84,7 @@ def _why_not(study: Study, condition: Condition, taken: int, before: int) -> str
         return "its conditions exclude each other"
     if not condition.type.compares:
         return f"the reading of {name} is never such that {condition_text(condition)} here"
-    values = scale.words(at_first & (scale.missing - 1))
+    values = scale.regions_text(at_first & (scale.missing_bit - 1))
     return (
         f"the value of {name} can only be {values} here, so {condition_text(condition)} never holds"
     )
@@ -107,7 +107,7 @@ def _is_never_measured(study: Study, leaf: int, object_id: str) -> bool:
     fields = study.with_failures.fields
     if state is None or object_id not in fields.shift:
         return False
-    return not fields.get(state, object_id) & ~fields.scales[object_id].missing
+    return not fields.get(state, object_id) & ~fields.scales[object_id].missing_bit
 
 
 def _never_taken(study: Study, leaf: int, k: int, index: int) -> Diagnostic:
@@ -126,7 +126,7 @@ def _never_taken(study: Study, leaf: int, k: int, index: int) -> Diagnostic:
             )
     return study.diagnostic(
         "transition-never",
-        start + why_never(study, leaf, k),
+        start + reason_never_taken(study, leaf, k),
         "correct its bounds, move it before the transition that covers them, or remove it",
         leaf,
         index,
@@ -148,8 +148,8 @@ def _is_always_taken(study: Study, leaf: int, k: int) -> bool:
         o = condition.object_id
         readings = fields.get(guards[0].state, o)
         if o == fresh:
-            readings &= ~fields.scales[o].without_value
-        if readings & ~fields.scales[o].satisfying(condition):
+            readings &= ~fields.scales[o].without_value_bits
+        if readings & ~fields.scales[o].satisfying_bits(condition):
             return False
     return True
 
@@ -191,7 +191,7 @@ class _UnmeasuredPaths:
         if k >= len(guards) or not study.nominal.is_reached(leaf):
             return None
         readings = fields.get(guards[k].state, object_id)
-        if not readings & fields.scales[object_id].missing:
+        if not readings & fields.scales[object_id].missing_bit:
             return None
         task = study.leaf_task(leaf)
         name = study.object_name(object_id)
@@ -230,7 +230,7 @@ class _UnmeasuredPaths:
                 without = here.unconditional == target or (
                     here.parent >= 0
                     and flow.timed[here.parent]
-                    and target == flow.time_up(here.parent)
+                    and target == flow.time_up_node(here.parent)
                 )
                 return without or any(
                     target == t and object_id not in compared_objects(conditions)
@@ -241,4 +241,4 @@ class _UnmeasuredPaths:
                 study.successors, flow.initial, passable
             )
         path = path_to(self.predecessors[object_id], flow.initial, leaf)
-        return "" if path is None else study.words(path)
+        return "" if path is None else study.path_text(path)

@@ -43,7 +43,7 @@ class Travel(Protocol):
         ...
 
     @property
-    def clean_up(self) -> float:
+    def clean_up_time(self) -> float:
         """Greatest time in s from the cancellation of an action until the next one can start."""
         ...
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from argo_compiler.analysis.study import Study
-from argo_compiler.analysis.transitions import why_never
+from argo_compiler.analysis.transitions import reason_never_taken
 from argo_compiler.base.listing import quoted
 from argo_compiler.diagnostics import Diagnostic
 
@@ -15,7 +15,7 @@ def diagnose_unreachable_tasks(study: Study) -> Iterator[Diagnostic]:
     unreachable = [
         i
         for i in range(len(study.flow.leaves))
-        if not study.with_failures.is_reached(i) and study.is_own(i)
+        if not study.with_failures.is_reached(i) and study.is_mission_task(i)
     ]
     reasons = _find_reasons(study, unreachable)
     for leaf in unreachable:
@@ -51,7 +51,7 @@ def _find_reasons(study: Study, unreachable: list[int]) -> dict[int, _Reasons]:
     for number, group in enumerate(flow.groups):
         if group.successor not in reasons_for:
             continue
-        if study.with_failures.is_reached(flow.round_end(number)):
+        if study.with_failures.is_reached(flow.round_end_node(number)):
             if len(reasons_for[group.successor][0]) < _MOST_REASONS:
                 reasons_for[group.successor][0].append(
                     f"group '{group.name}', after which it would come, is repeated without limit"
@@ -72,7 +72,7 @@ def _add_reason(
             earlier = "a transition before its unconditional one is always taken"
             reasons.append(f"it would come after '{study.name(source)}', where {earlier}")
         else:
-            why = why_never(study, source, conditional)
+            why = reason_never_taken(study, source, conditional)
             reasons.append(f"the transition from '{study.name(source)}' is never taken, as {why}")
 
 

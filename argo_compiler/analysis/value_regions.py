@@ -29,23 +29,23 @@ class Scale:
     """regions of the values that the robot may call abnormal; -1 for all regions"""
 
     @cached_property
-    def missing(self) -> int:
+    def missing_bit(self) -> int:
         """Bit that says: there may be no reading."""
         return 1 << (2 * len(self.bounds) + 1)
 
     @cached_property
-    def unreadable(self) -> int:
+    def unreadable_bit(self) -> int:
         """Bit that says: the reading may be unreadable."""
-        return self.missing << 1
+        return self.missing_bit << 1
 
     @cached_property
-    def failed(self) -> int:
+    def failed_bit(self) -> int:
         """Bit that says: the reading may have failed for another reason."""
-        return self.missing << 2
+        return self.missing_bit << 2
 
     @cached_property
-    def without_value(self) -> int:
-        return self.missing | self.unreadable | self.failed
+    def without_value_bits(self) -> int:
+        return self.missing_bit | self.unreadable_bit | self.failed_bit
 
     @cached_property
     def width(self) -> int:
@@ -53,21 +53,21 @@ class Scale:
         return 2 * len(self.bounds) + 4
 
     @cached_property
-    def full(self) -> int:
+    def all_bits(self) -> int:
         """Set of all readings, those without a value included."""
         return (1 << self.width) - 1
 
-    def satisfying(self, condition: Condition) -> int:
+    def satisfying_bits(self, condition: Condition) -> int:
         """Return the bits of the readings that satisfy a condition on this object at any age."""
         match condition.type:
             case ConditionType.UNREADABLE:
-                return self.unreadable
+                return self.unreadable_bit
             case ConditionType.FAILED:
-                return self.unreadable | self.failed
+                return self.unreadable_bit | self.failed_bit
             case ConditionType.STALE:
-                return self.missing - 1
+                return self.missing_bit - 1
             case ConditionType.ABNORMAL:
-                return (self.missing - 1) & self.abnormal
+                return (self.missing_bit - 1) & self.abnormal
         low, high = condition.param1, condition.param2
         if low is None:
             return 0
@@ -79,7 +79,7 @@ class Scale:
             return 0
         return self._above(low, condition.inclusive) & self._below(high, condition.inclusive)
 
-    def words(self, regions: int) -> str:
+    def regions_text(self, regions: int) -> str:
         """Format a set of regions for people, such as `below 2, 5 or 7 to 9`."""
         pieces = []
         k = 0
@@ -118,7 +118,7 @@ class Scale:
         return (1 << (2 * at + 1 + inclusive)) - 1
 
     def _above(self, bound: float, inclusive: bool) -> int:
-        everything = self.missing - 1
+        everything = self.missing_bit - 1
         return everything & ~self._below(bound, not inclusive)
 
 
@@ -147,13 +147,13 @@ def make_scale(
     # -0.0 and 0.0 are the same bound, as a set has only one of two equal floats.
     ordered = tuple(sorted(bounds))
     scale = Scale(ordered, 0)
-    possible = scale.missing - 1
+    possible = scale.missing_bit - 1
     if range_ is not None:
         possible &= scale._above(range_.low, True) & scale._below(range_.high, True)
     if not abnormal or nominal is None:
         return Scale(ordered, possible)
     normal = scale._above(nominal.low, True) & scale._below(nominal.high, True)
-    return Scale(ordered, possible, (scale.missing - 1) & ~normal)
+    return Scale(ordered, possible, (scale.missing_bit - 1) & ~normal)
 
 
 @dataclass(frozen=True)
@@ -168,30 +168,31 @@ class Fields:
     """total number of bits"""
 
     @property
-    def unmeasured(self) -> int:
+    def unmeasured_state(self) -> int:
         """State at the mission's start: no object has a reading."""
-        return sum_bits(self.scales[o].missing << shift for o, shift in self.shift.items())
+        return union_of_bits(self.scales[o].missing_bit << shift for o, shift in self.shift.items())
 
     @property
-    def anything(self) -> int:
+    def any_readings_state(self) -> int:
+        """State in which each tracked object may have any reading, or none."""
         return (1 << self.width) - 1
 
     def get(self, state: int, object_id: str) -> int:
         scale = self.scales[object_id]
         shift = self.shift.get(object_id)
         if shift is None:
-            return scale.possible | scale.without_value
-        return (state >> shift) & scale.full
+            return scale.possible | scale.without_value_bits
+        return (state >> shift) & scale.all_bits
 
     def set(self, state: int, object_id: str, regions: int) -> int:
         shift = self.shift.get(object_id)
         if shift is None:
             return state
-        old = (state >> shift) & self.scales[object_id].full
+        old = (state >> shift) & self.scales[object_id].all_bits
         return state ^ ((old ^ regions) << shift)
 
 
-def sum_bits(parts: Iterable[int]) -> int:
+def union_of_bits(parts: Iterable[int]) -> int:
     """Return the union of bit sets.
 
     It is computed in pairs, so that few intermediate results are long.

@@ -29,50 +29,50 @@ class ClaimedScale:
     """bits of the values that may be called abnormal"""
 
     @cached_property
-    def missing(self) -> int:
+    def missing_bit(self) -> int:
         return 1 << (2 * len(self.bounds) + 1)
 
     @cached_property
-    def unreadable(self) -> int:
-        return self.missing << 1
+    def unreadable_bit(self) -> int:
+        return self.missing_bit << 1
 
     @cached_property
-    def failed(self) -> int:
-        return self.missing << 2
+    def failed_bit(self) -> int:
+        return self.missing_bit << 2
 
     @cached_property
     def width(self) -> int:
         return 2 * len(self.bounds) + 4
 
     @cached_property
-    def full(self) -> int:
+    def all_bits(self) -> int:
         return (1 << self.width) - 1
 
-    def reaching(self, low: float, high: float) -> int:
+    def region_bits_between(self, low: float, high: float) -> int:
         """Return the bits of the regions with values from `low` to `high`, both included."""
         first, last = bisect_left(self.bounds, low), bisect_left(self.bounds, high)
         first_bit = 2 * first + (low in self.bounds[first : first + 1])
         last_bit = 2 * last + (high in self.bounds[last : last + 1])
         return (1 << (last_bit + 1)) - (1 << first_bit)
 
-    def at_most(self, bound: float, inclusive: bool) -> int | None:
+    def region_bits_up_to(self, bound: float, inclusive: bool) -> int | None:
         """Return the bits of the values below a bound, and of the bound itself if `inclusive`.
 
-        Returns None if it is not one of the scale's bounds.
+        Returns None if the bound is not one of the scale's bounds.
         """
         k = bisect_left(self.bounds, bound)
         if k == len(self.bounds) or self.bounds[k] != bound:
             return None
         return (1 << (2 * k + 1 + inclusive)) - 1
 
-    def satisfying(self, condition: Condition) -> int:
+    def satisfying_bits(self, condition: Condition) -> int:
         """Return the bits of the readings that may satisfy a condition, whatever their age."""
-        all_values = self.missing - 1
+        all_values = self.missing_bit - 1
         match condition.type:
             case ConditionType.UNREADABLE:
-                return self.unreadable
+                return self.unreadable_bit
             case ConditionType.FAILED:
-                return self.unreadable | self.failed
+                return self.unreadable_bit | self.failed_bit
             case ConditionType.STALE:
                 return all_values
             case ConditionType.ABNORMAL:
@@ -81,23 +81,23 @@ class ClaimedScale:
         if low is None:
             return 0
         if condition.type is ConditionType.LESS:
-            below = self.at_most(low, condition.inclusive)
+            below = self.region_bits_up_to(low, condition.inclusive)
             return all_values if below is None else below
-        above = self.at_most(low, not condition.inclusive)
+        above = self.region_bits_up_to(low, not condition.inclusive)
         held = all_values if above is None else all_values & ~above
         if condition.type is ConditionType.WITHIN and high is not None:
-            below = self.at_most(high, condition.inclusive)
+            below = self.region_bits_up_to(high, condition.inclusive)
             held &= all_values if below is None else below
         return held
 
-    def decides(self, condition: Condition) -> bool:
+    def is_exact_for(self, condition: Condition) -> bool:
         """Return True if a condition is true for all or for none of the values of each bit."""
         return not condition.type.compares or all(
-            self.at_most(bound, False) is not None for bound in bounds_of(condition)
+            self.region_bits_up_to(bound, False) is not None for bound in compared_bounds(condition)
         )
 
 
-def bounds_of(condition: Condition) -> list[float]:
+def compared_bounds(condition: Condition) -> list[float]:
     """Return the bounds with which a condition compares values."""
     return [bound for bound in (condition.param1, condition.param2) if bound is not None]
 
@@ -126,14 +126,14 @@ class ClaimedStates:
         if any(not a < b for a, b in pairwise(bounds)):
             return False
         scale = ClaimedScale(bounds, shift, 0, 0)
-        values = abnormal = scale.missing - 1
+        values = abnormal = scale.missing_bit - 1
         if object_id in ranges:
             low, high, normal_low, normal_high = ranges[object_id]
-            values = scale.reaching(low, high)
+            values = scale.region_bits_between(low, high)
             # A region has only nominal values if it lies within their bounds.
             first, last = bisect_left(bounds, normal_low), bisect_left(bounds, normal_high)
             if normal_low in bounds[first : first + 1] and normal_high in bounds[last : last + 1]:
-                abnormal &= ~scale.reaching(normal_low, normal_high)
+                abnormal &= ~scale.region_bits_between(normal_low, normal_high)
         self.scales[object_id] = ClaimedScale(bounds, shift, values, abnormal)
         self.width = shift + scale.width
         return True
@@ -144,7 +144,7 @@ class ClaimedStates:
         It may succeed before it is cancelled; with failures, also without a value.
         """
         scale = self.scales[object_id]
-        return (scale.values | (scale.unreadable if failures else 0)) << scale.shift
+        return (scale.values | (scale.unreadable_bit if failures else 0)) << scale.shift
 
     def contains(self, point: ProgramPoint, state: int, late: int) -> bool:
         """Return True if the readings after a step to a point are among those claimed for it.
@@ -165,11 +165,11 @@ class ClaimedStates:
 
     def get(self, state: int, object_id: str) -> int:
         scale = self.scales[object_id]
-        return state >> scale.shift & scale.full
+        return state >> scale.shift & scale.all_bits
 
     def set(self, state: int, object_id: str, readings: int) -> int:
         scale = self.scales[object_id]
-        return state & ~(scale.full << scale.shift) | readings << scale.shift
+        return state & ~(scale.all_bits << scale.shift) | readings << scale.shift
 
     def restricted_to(
         self, kept: KeptReading, ranges: Mapping[str, Ranges]
@@ -183,9 +183,9 @@ class ClaimedStates:
         if not states.add_scale(kept.object_id, kept.bounds, states.width, ranges):
             return None
         scale = states.scales[kept.object_id]
-        if not 0 < kept.readings <= scale.full:
+        if not 0 < kept.readings <= scale.all_bits:
             return None
-        hole = 0 if old is None else old.full << old.shift
+        hole = 0 if old is None else old.all_bits << old.shift
         for point, state in self.readings.items():
             states.readings[point] = state & ~hole | kept.readings << scale.shift
         return states

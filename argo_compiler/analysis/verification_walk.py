@@ -15,7 +15,7 @@ from argo_compiler.analysis.verification_states import (
     ClaimedScale,
     ClaimedStates,
     Ranges,
-    bounds_of,
+    compared_bounds,
 )
 from argo_compiler.il import Action, Condition, ConditionType, Mission, OnFailure, Task
 
@@ -85,7 +85,7 @@ class MissionWalk:
         """Return the step to the mission's start (M1), where nothing has been measured."""
         state = self._reported
         for scale in self.states.scales.values():
-            state |= scale.missing << scale.shift
+            state |= scale.missing_bit << scale.shift
         return self.layout.begin, state, 0
 
     def steps(self, here: ProgramPoint) -> list[Step]:
@@ -150,7 +150,7 @@ class MissionWalk:
             return state
         scale = self.states.scales[o]
         # A success without a number is unreadable; a person may do a task without a value.
-        others = scale.unreadable | scale.missing if self.failures else 0
+        others = scale.unreadable_bit | scale.missing_bit if self.failures else 0
         return self.states.set(state, o, scale.values | others) | self._reported
 
     def _after_failure(self, task: Task, state: int) -> int:
@@ -158,8 +158,8 @@ class MissionWalk:
         if task.action is not _MEASURE or o not in self.states.scales:
             return state
         scale = self.states.scales[o]
-        others = scale.unreadable if self.failures else 0
-        return self.states.set(state, o, scale.failed | others) | self._reported
+        others = scale.unreadable_bit if self.failures else 0
+        return self.states.set(state, o, scale.failed_bit | others) | self._reported
 
     def _may_fail(self, task: Task) -> bool:
         """Return True if a task may finally fail.
@@ -279,8 +279,8 @@ class MissionWalk:
         known = self.ranges.get(condition.object_id)
         if known is None or not condition.type.compares:
             return True, False
-        scale = ClaimedScale(tuple(sorted({*known[:2], *bounds_of(condition)})), 0, 0, 0)
-        values, holding = scale.reaching(*known[:2]), scale.satisfying(condition)
+        scale = ClaimedScale(tuple(sorted({*known[:2], *compared_bounds(condition)})), 0, 0, 0)
+        values, holding = scale.region_bits_between(*known[:2]), scale.satisfying_bits(condition)
         return values & holding != 0, not values & ~holding
 
     def _exact(self, condition: Condition, fresh: str | None) -> bool:
@@ -288,13 +288,13 @@ class MissionWalk:
         scale = self.states.scales.get(condition.object_id)
         timely = condition.max_age is None or condition.object_id == fresh
         exact = timely and condition.type not in _AGED
-        return exact and scale is not None and scale.decides(condition)
+        return exact and scale is not None and scale.is_exact_for(condition)
 
     def _satisfying_readings(self, condition: Condition) -> int:
         # Hashing conditions is slow. Ids stay valid, as the mission lives as long as this object.
         satisfying = self._satisfying.get(id(condition))
         if satisfying is None:
-            satisfying = self.states.scales[condition.object_id].satisfying(condition)
+            satisfying = self.states.scales[condition.object_id].satisfying_bits(condition)
             self._satisfying[id(condition)] = satisfying
         return satisfying
 

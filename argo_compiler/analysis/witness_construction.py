@@ -22,11 +22,11 @@ def make_witnesses(study: Study, loops: Iterable[NonTerminatingLoop]) -> Witness
 
 def _invariant(study: Study, reachability: Reachability, *, failures: bool) -> Invariant:
     flow, mission, fields = study.flow, study.mission, reachability.fields
-    leaf_for = {leaf.name: i for i, leaf in enumerate(flow.leaves) if study.is_own(i)}
+    leaf_for = {leaf.name: i for i, leaf in enumerate(flow.leaves) if study.is_mission_task(i)}
     number_for = {group.name: g for g, group in enumerate(flow.groups)}
     tasks = [leaf_for.get(task.name) for task in mission.tasks]
-    rounds = [flow.round_end(number_for[group.name]) for group in mission.groups]
-    cuts = [flow.time_up(number_for[group.name]) for group in mission.groups]
+    rounds = [flow.round_end_node(number_for[group.name]) for group in mission.groups]
+    cuts = [flow.time_up_node(number_for[group.name]) for group in mission.groups]
     states, late = reachability.states, reachability.late
     return Invariant(
         failures=failures,

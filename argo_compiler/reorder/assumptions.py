@@ -64,6 +64,6 @@ def _leaves_beyond_limit(visits: Visits, matrix: TravelMatrix) -> list[int]:
     for leaf in range(len(matrix.tasks)):
         task = visits.leaf_task(leaf)
         limit = None if task.action is Action.WAIT else task.time_limit
-        if limit is not None and longest[leaf] > matrix.units_down(limit):
+        if limit is not None and longest[leaf] > matrix.units_rounded_down(limit):
             leaves.append(leaf)
     return leaves

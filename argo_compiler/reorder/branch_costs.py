@@ -51,7 +51,7 @@ class BranchCosts:
         self._seconds, self._probabilities = seconds, probabilities
         self._rounds: dict[int, float] = {}
 
-    def time(self, unit: TaskUnit) -> Row:
+    def times_after(self, unit: TaskUnit) -> Row:
         """Return the times from the end of a unit's first task to the end of each destination.
 
         A destination is a task with its action, a charger, or the mission's end. The times are in
@@ -73,8 +73,8 @@ class BranchCosts:
         )
         return float(rows[0])
 
-    def energy(self, unit: TaskUnit) -> Row:
-        """Return the energies for the same drives and tasks as `time`, always in the worst case."""
+    def energies_after(self, unit: TaskUnit) -> Row:
+        """Return the energies of what `times_after` counts, always in the worst case."""
         return self._row(unit, self._energy, {})
 
     def _row(self, unit: TaskUnit, costs: Costs, probabilities: Probabilities) -> Row:

@@ -49,7 +49,7 @@ class MissionProblem:
     seems impossible may be possible"""
 
     @property
-    def if_assumed(self) -> str:
+    def assumptions_clause(self) -> str:
         """Clause ` if …` for messages that rule out an order; empty if there are no assumptions."""
         return f" if {', and '.join(self.assumed)}" if self.assumed else ""
 
@@ -100,7 +100,7 @@ def route_problem(
         travel=_travel_times(visits, times, services, matrix),
         precedences=precedences(visits, mission.order is Order.PRECISE, requirements),
         rounds=tuple(_rounds(visits, matrix)),
-        max_duration=None if latest is None else matrix.units_down(latest[0]),
+        max_duration=None if latest is None else matrix.units_rounded_down(latest[0]),
         battery=battery,
         chargers=() if battery is None else matrix.chargers,
         unit=matrix.unit,
@@ -200,8 +200,10 @@ def _costs(
     nowhere = np.zeros((len(matrix.time), 1))  # column of a mission that ends where the robot is
     time, energy = np.hstack([matrix.time, nowhere]), np.hstack([matrix.energy, nowhere])
     branch_costs = BranchCosts(visits.chain, time, energy, matrix.unit, probabilities)
-    times = [branch_costs.time(unit) for unit in visits.task_units] + list(time[tasks:])
-    energies = [branch_costs.energy(unit) for unit in visits.task_units] + list(energy[tasks:])
+    times = [branch_costs.times_after(unit) for unit in visits.task_units] + list(time[tasks:])
+    energies = [branch_costs.energies_after(unit) for unit in visits.task_units] + list(
+        energy[tasks:]
+    )
     for row, unit in zip(times, visits.task_units, strict=False):
         if np.isneginf(row).any():
             name = visits.chain.name(unit.entry)
@@ -273,7 +275,7 @@ def _rounds(visits: Visits, matrix: TravelMatrix) -> Iterator[Round]:
             f"group '{group.name}'",
             members,
             repeat=group.count,
-            duration=matrix.units_up(group.duration),
+            duration=matrix.units_rounded_up(group.duration),
             soft=not group.hard,
         )
 
@@ -287,8 +289,8 @@ def _battery(
     if _max_energy(visits, matrix, times, energies) <= matrix.battery:
         return None
     used = np.where(np.isfinite(energies), energies, 0.0)
-    used = np.ceil(matrix.units_of_energy(used) - _ROUNDING).astype(np.int64)
-    return EnergyBudget(used, int(matrix.units_of_energy(np.array(matrix.battery))))
+    used = np.ceil(matrix.charging_times(used) - _ROUNDING).astype(np.int64)
+    return EnergyBudget(used, int(matrix.charging_times(np.array(matrix.battery))))
 
 
 def _max_energy(

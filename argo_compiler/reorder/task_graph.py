@@ -116,15 +116,15 @@ class TaskGraph:
             following[i] = [target for _, target in leaf.conditional] + [leaf.unconditional]
             following[i] += self.branch_targets(i) if i in self._own_leaf_set else ()
             if leaf.parent >= 0:
-                following[i].append(flow.time_up(leaf.parent))
+                following[i].append(flow.time_up_node(leaf.parent))
         for g, group in enumerate(flow.groups):
-            following[flow.round_end(g)].append(group.start)
+            following[flow.round_end_node(g)].append(group.start)
             if group.may_end:
-                following[flow.round_end(g)].append(group.successor)
+                following[flow.round_end_node(g)].append(group.successor)
             if group.hard:
-                following[flow.time_up(g)].append(group.successor)
+                following[flow.time_up_node(g)].append(group.successor)
             if group.parent >= 0:
-                following[flow.time_up(g)].append(flow.time_up(group.parent))
+                following[flow.time_up_node(g)].append(flow.time_up_node(group.parent))
         reached = reachable_from(following, [flow.initial])
         for i in self.own_leaves:
             if not reached[i]:
@@ -220,7 +220,7 @@ class TaskGraph:
                 level.edges.append(Edge(number, level.sink, leaf, None, tail, branches))
             else:
                 self.early_exits.add((leaf, target))
-        elif group != NOWHERE and target == flow.round_end(group):
+        elif group != NOWHERE and target == flow.round_end_node(group):
             level.edges.append(Edge(number, level.sink, leaf, None, tail))
         elif flow.group_of_round_end(target) is not None:
             pass  # the end of an outer group, whose own transition is added for that group

@@ -48,15 +48,15 @@ class TravelMatrix:
         if self.chargers and (self.battery is None or self.charging <= 0.0):
             raise Invalid("with chargers, the battery and the charging power must be given")
 
-    def units_of_energy(self, watt_hours: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the time, in units of time, that it takes to charge an energy in Wh."""
+    def charging_times(self, watt_hours: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the times, in units of time, that it takes to charge energies in Wh."""
         return watt_hours * 3600.0 / (self.charging * self.unit)
 
-    def units_up(self, seconds: float) -> int:
+    def units_rounded_up(self, seconds: float) -> int:
         """Return a time in s as whole units of time, rounded up."""
         return int(np.ceil(seconds / self.unit - _ROUNDING))
 
-    def units_down(self, seconds: float) -> int:
+    def units_rounded_down(self, seconds: float) -> int:
         """Return a time in s as whole units of time, rounded down."""
         return int(np.floor(seconds / self.unit + _ROUNDING))
 

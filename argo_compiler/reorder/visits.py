@@ -58,7 +58,7 @@ class Visits:
         return tuple(self.name(unit.entry) for unit in self.task_units)
 
     def is_optional(self, visit: int) -> bool:
-        """Return True if all tasks of a visit may be left out."""
+        """Return True if a visit's tasks are optional or WAITs, and at least one is optional."""
         tasks = [self.leaf_task(leaf) for leaf in self.task_units[visit].leaves]
         return all(task.optional or task.action is Action.WAIT for task in tasks) and any(
             task.optional for task in tasks

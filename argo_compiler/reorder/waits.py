@@ -24,7 +24,7 @@ def with_wait_times(chain: UnitChain, matrix: TravelMatrix) -> TravelMatrix:
         rule = leaves[k].leaf.task.wait
         assert rule is not None
         seconds = rule.limit if rule.duration is None else rule.duration
-        time[:, k] = work[k] = matrix.units_up(seconds or 0.0)
+        time[:, k] = work[k] = matrix.units_rounded_up(seconds or 0.0)
         energy[:, k] = 0.0
     for k, rows_before in _possible_rows(chain, waits, len(matrix.tasks)).items():
         others = [j for j in range(time.shape[1]) if j not in waits]

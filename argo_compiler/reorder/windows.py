@@ -60,8 +60,10 @@ class Windows:
             return 0, None
         latest = None
         if window.hard and window.latest is not None:
-            latest = max(-1, self._matrix.units_down(window.latest) - int(self._matrix.work[entry]))
-        return self._matrix.units_up(window.earliest), latest
+            latest = max(
+                -1, self._matrix.units_rounded_down(window.latest) - int(self._matrix.work[entry])
+            )
+        return self._matrix.units_rounded_up(window.earliest), latest
 
     def description(self, visit: int) -> str | None:
         """Return the visit's window in words, or None if it sets no latest end."""

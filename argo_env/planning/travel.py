@@ -125,7 +125,7 @@ class SiteTravel:
         return self._robot.power.standing
 
     @property
-    def clean_up(self) -> float:
+    def clean_up_time(self) -> float:
         """Greatest time in s from the cancellation of an action until the arm is stowed."""
         return self._round_up(self._robot.sensor.stowing_time) + self.time_step
 

@@ -58,7 +58,7 @@ def _claim_text(found: SuggestedOrder, claim: Claim) -> str:
         case Claim.BEST:
             return "no order is better"
         case Claim.NONE:
-            return f"no order meets all requirements{found.planned.if_assumed}"
+            return f"no order meets all requirements{found.planned.assumptions_clause}"
         case Claim.SUBSET:
             return "there is an order if any one of these is left out"
 

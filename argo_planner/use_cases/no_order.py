@@ -32,7 +32,7 @@ def explain_no_order(found: SuggestedOrder) -> Conflict | None:
 def _no_route_error(found: SuggestedOrder) -> Conflict:
     suggestion, problem = found.suggestion, found.planned.problem
     remedies: tuple[Remedy, ...] = ()
-    assumed = found.planned.if_assumed
+    assumed = found.planned.assumptions_clause
     if len(suggestion.infeasible_subset) == 1:
         text = f"this requirement can't be met{assumed}: {suggestion.infeasible_subset[0]}"
     elif suggestion.infeasible_subset:
@@ -75,7 +75,7 @@ def _empty_order_error(found: SuggestedOrder) -> Conflict:
     """Return the error for an order in which all tasks are left out."""
     problem = found.planned.problem
     limit = problem.words.get("max_duration", "requirements")
-    assumed = found.planned.if_assumed
+    assumed = found.planned.assumptions_clause
     group = {visit: one for one in problem.rounds for visit in one.members}
     alone = [
         Tour(group[visit].members if visit in group else (visit,)) for visit in range(problem.size)

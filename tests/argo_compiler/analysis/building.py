@@ -76,7 +76,7 @@ class ConstantTravel:
     A drive to where the robot is takes no time; a measurement takes 2 s.
     """
 
-    clean_up = 1.0
+    clean_up_time = 1.0
     standing_power = 0.0
 
     def __init__(self, blocked=(), battery=100.0):

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from argo_compiler.analysis import Leg, NoPath
 from argo_compiler.analysis.flow import Flow
-from argo_compiler.analysis.reachability import reported_by_others
+from argo_compiler.analysis.reachability import externally_reported_objects
 from argo_compiler.base.catalog import Area, Catalog
 from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import (
@@ -175,7 +175,7 @@ class MadeUpTravel:
 
     def __init__(self, seed, clean_up=0.0, blocked=(), standing_power=0.0):
         self.seed = seed
-        self.clean_up = clean_up
+        self.clean_up_time = clean_up
         self.battery = 5.0
         self.standing_power = standing_power
         self.blocked = blocked
@@ -270,7 +270,9 @@ class _World:
             awaited -= reacting
         else:
             awaited |= reacting | {r.until for r in mission.reactions if r.until is not None}
-        reported = reported_by_others(Flow.from_machine(hfsm, mission)) & self.checkpoints.keys()
+        reported = (
+            externally_reported_objects(Flow.from_machine(hfsm, mission)) & self.checkpoints.keys()
+        )
         if self.mode == "eventful":
             self.external = [*sorted(awaited), *sorted(reported)]
         rng, upcoming = self.rng, []
@@ -336,7 +338,7 @@ class _World:
     def _execute(self, commands):
         for command in commands:
             if isinstance(command, CancelAction):
-                self.stop_at = self.result.now + self.rng.choice([0, 1]) * self.travel.clean_up
+                self.stop_at = self.result.now + self.rng.choice([0, 1]) * self.travel.clean_up_time
             else:
                 assert isinstance(command, StartAction)
                 self._start_action(command)

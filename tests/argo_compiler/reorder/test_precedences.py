@@ -351,7 +351,7 @@ def test_a_time_limit_rules_out_no_drive_because_a_retry_continues_it():
         "'M1' may take longer than its time limit, 20 s, depending on where the robot comes from: "
         "computed as if it had none",
     )
-    assert planned.if_assumed == " if no time limit ends an action"
+    assert planned.assumptions_clause == " if no time limit ends an action"
     assert not make_problem(sequence(measure(1, time_limit=30), measure(2)), time).reasons
 
 

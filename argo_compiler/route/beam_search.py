@@ -83,7 +83,7 @@ class BeamSearch:
         self._bits, self._bound, self._equal_prizes = bits, bound, equal_prizes
         self._battery = network.problem.battery
         # The second measure is travel if waiting costs nothing, otherwise energy.
-        self._counts_travel = network.problem.waits
+        self._counts_travel = network.problem.has_free_waiting
 
     def run(self, width: int, best: LabelSolution | None, search: Search) -> BeamResult:
         """Search with at most the `width` most promising labels of each layer.
@@ -179,7 +179,7 @@ class BeamSearch:
         for node in range(network.size):
             if search.remaining_time() <= 0.0:
                 return None
-            rows = rules.rows(labels.mask, node)
+            rows = rules.rows_node_may_follow(labels.mask, node)
             rows = rows[pruned.arcs[labels.last[rows], node]]
             search.spend(_TIME_PER_NODE + _TIME_PER_LABEL * len(rows))
             earliest = int(network.earliest[network.step[node]])
@@ -187,7 +187,7 @@ class BeamSearch:
                 begin = np.maximum(time, earliest)
                 fits = begin <= pruned.latest[node]
                 origin = origin[fits]
-                masks = rules.after(labels.mask[origin], node)
+                masks = rules.with_node(labels.mask[origin], node)
                 time = begin[fits] + network.service[node]
                 extended = _Labels(
                     masks, np.full(len(origin), node), time, second[fits], origin, charger[fits]

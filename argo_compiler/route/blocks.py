@@ -13,7 +13,7 @@ from itertools import permutations
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.route.evaluation import after_rounds
+from argo_compiler.route.evaluation import state_after_rounds
 from argo_compiler.route.problem import NEVER, RouteProblem, Visit
 
 Locations = frozenset[int]
@@ -86,7 +86,7 @@ class Blocks:
         """
         return not made & (self.followers[block] | 1 << block) and not self.needs[block] & ~made
 
-    def drive(self, origins: Locations, goal: int) -> Arrival | None:
+    def worst_arrival(self, origins: Locations, goal: int) -> Arrival | None:
         """Return the worst arrival after a drive to a location, or None if it may be impossible.
 
         The robot may be at any of `origins`, its possible locations. So the longest time and the
@@ -119,7 +119,7 @@ class Blocks:
     ) -> list[tuple[Arrival, tuple[int, ...]]]:
         number, members = self._round[block], self.members[block]
         if number is None:
-            arrival = self.drive(origins, members[0])
+            arrival = self.worst_arrival(origins, members[0])
             return [] if arrival is None or not self._orders[block] else [(arrival, members)]
         if len(members) > _MOST_MEMBERS:
             least = self._least_time(members)
@@ -127,7 +127,7 @@ class Blocks:
         order_by_arrival: dict[Arrival, tuple[int, ...]] = {}
         for order in self._orders[block]:
             self._spend()
-            arrival = after_rounds(self.problem, number, order, origins)
+            arrival = state_after_rounds(self.problem, number, order, origins)
             if arrival is not None:
                 order_by_arrival.setdefault(arrival, order)
         return list(order_by_arrival.items())
@@ -175,7 +175,7 @@ class Blocks:
         while waiting:
             last, locations = waiting.pop()
             for added, origins in self._departures(locations):
-                arrival = self.drive(origins, self.problem.end)
+                arrival = self.worst_arrival(origins, self.problem.end)
                 if arrival and (last == n or not self.followers[last] & self.mandatory):
                     times[last, n] = min(times[last, n], added + arrival[0])
                 for b in range(n):
@@ -198,7 +198,7 @@ class Blocks:
         """
         departures = [(0, locations)]
         for charger in range(len(self.problem.chargers)):
-            arrival = self.drive(locations, self.problem.charger(charger))
+            arrival = self.worst_arrival(locations, self.problem.charger(charger))
             if arrival is not None and self.problem.battery is not None:
                 departures.append(
                     (arrival[0] + self.problem.battery.overhead + arrival[1], arrival[2])

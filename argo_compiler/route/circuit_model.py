@@ -26,7 +26,11 @@ def time_to_build(network: StepNetwork, pruned: Pruned) -> float:
     It is the estimated time to build the model and to presolve it. With less time left, the model
     is not worth building.
     """
-    per_arc = _TIME_PER_ARC if network.plain and not network.before.any() else 2.0 * _TIME_PER_ARC
+    per_arc = (
+        _TIME_PER_ARC
+        if network.has_additive_times and not network.before.any()
+        else 2.0 * _TIME_PER_ARC
+    )
     return per_arc * int(pruned.arcs.sum()) * (1 + len(network.chargers))
 
 
@@ -151,7 +155,7 @@ class CircuitModel:
                 model.add(battery.used + energy <= battery.capacity)
         self._begins: list[cp_model.IntVar] | None = None
         duration = work
-        if network.windowed or self._timed:
+        if network.has_windows or self._timed:
             self._begins = self._add_begins(used)
             end = model.new_int_var(0, self._horizon, "end")
             self._add_end(end, used)
@@ -288,19 +292,22 @@ class CircuitModel:
 
     # Objectives
 
-    def maximise_prize(self, least: int | None) -> None:
-        """Maximise the prize; `least`: a lower limit on it."""
+    def set_prize_objective(self, least_prize: int | None) -> None:
+        """Set the objective to maximise the prize, and its lower limit; None: no limit."""
         prize = self._prize()
-        if least is not None:
-            self.model.add(prize >= least)
+        if least_prize is not None:
+            self.model.add(prize >= least_prize)
         self.model.maximize(prize)
 
-    def minimise_cost(self, prize: int | None, most: int | None) -> None:
-        """Minimise the cost; `most`: an upper limit on it; `prize`: a lower limit on the prize."""
-        if prize is not None:
-            self.model.add(self._prize() >= prize)
-        if most is not None:
-            self.model.add(self._cost <= most)
+    def set_cost_objective(self, least_prize: int | None, greatest_cost: int | None) -> None:
+        """Set the objective to minimise the cost, and its upper limit; None: no limit.
+
+        `least_prize` is a lower limit on the prize; None: no limit.
+        """
+        if least_prize is not None:
+            self.model.add(self._prize() >= least_prize)
+        if greatest_cost is not None:
+            self.model.add(self._cost <= greatest_cost)
         self.model.minimize(self._cost)
 
     def _prize(self) -> Any:

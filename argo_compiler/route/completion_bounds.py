@@ -103,8 +103,8 @@ def completion_costs(
         if reversed_layers:
             following, rules = reversed_layers[-1], bits.layer(size)
             for node in range(m):
-                rows = rules.rows(masks, node)
-                index, exists = sets.find(size + 1, rules.after(masks[rows], node))
+                rows = rules.rows_node_may_follow(masks, node)
+                index, exists = sets.find(size + 1, rules.with_node(masks[rows], node))
                 rows, index = rows[exists], index[exists]
                 for kind in range(kinds):
                     onward = costs[kind, None, :, node] + following[kind, index, node, None]

@@ -9,7 +9,7 @@ from math import ceil, floor
 from ortools.sat.python import cp_model
 
 from argo_compiler.route.circuit_model import CircuitModel, time_to_build
-from argo_compiler.route.cp_solver import run_solver, solver_for, spend
+from argo_compiler.route.cp_solver import record_work, run_solver, solver_for
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.problem import Objective, RouteProblem, Tour
 from argo_compiler.route.search import Search, Solution
@@ -64,7 +64,7 @@ class _Attempt:
         self._least_prize = best.prize if best is not None and network.selective else 0
         """lowest prize of the routes to which bounds on the cost apply"""
         # With times in the model, the costs of precedence show sooner if the route must be better.
-        is_ordered = network.plain and bool(search.pruned.before.any())
+        is_ordered = network.has_additive_times and bool(search.pruned.before.any())
         is_tight = is_ordered and best is not None and not self._maximises_prize and best.cost > 0
         self._model = CircuitModel(
             network, search.pruned, best.cost - 1 if best is not None and is_tight else None
@@ -73,10 +73,10 @@ class _Attempt:
     def run(self) -> None:
         search, best, model = self._search, self._best, self._model
         if self._maximises_prize:
-            model.maximise_prize(None if best is None else best.prize + 1)
+            model.set_prize_objective(None if best is None else best.prize + 1)
         elif search.network.objective is not Objective.PRIZE:
             most = None if best is None else best.cost - 1
-            model.minimise_cost(self._least_prize if search.network.selective else None, most)
+            model.set_cost_objective(self._least_prize if search.network.selective else None, most)
         if best is not None and best.path is not None:
             model.hint(best.path, best.charges)
         solver = solver_for(search)
@@ -91,7 +91,7 @@ class _Attempt:
             )
 
         status = run_solver(solver, model.model, _SolutionCallback(model, search), must_stop)
-        spend(search, solver)
+        record_work(search, solver)
         if status == cp_model.INFEASIBLE:
             self._report_optimality(best)
         elif status == cp_model.OPTIMAL:

@@ -93,7 +93,7 @@ class Enumeration:
         battery, tour = self._problem.battery, partial.tour
         for charger in range(len(self._problem.chargers)):
             arrived = self._after_drive(
-                partial, self._blocks.drive(locations, self._problem.charger(charger))
+                partial, self._blocks.worst_arrival(locations, self._problem.charger(charger))
             )
             if arrived is not None and battery is not None:
                 charge = battery.overhead + arrived.used
@@ -144,7 +144,7 @@ class Enumeration:
 
     def _finish(self, made: int, origins: Locations, partial: PartialRoute) -> None:
         """Complete a partial route by the drive to the end; store it if it is feasible and best."""
-        end = self._after_drive(partial, self._blocks.drive(origins, self._problem.end))
+        end = self._after_drive(partial, self._blocks.worst_arrival(origins, self._problem.end))
         if end is None or self._blocks.mandatory & ~made or end.time > self._limit:
             return
         prize, cost = self._prize(made), self._cost(end.time, end.travel)

@@ -57,7 +57,7 @@ def evaluate(problem: RouteProblem, route: Tour) -> RouteEvaluation:
     return _Simulation(problem, route).evaluation()
 
 
-def after_rounds(
+def state_after_rounds(
     problem: RouteProblem, number: int, order: tuple[int, ...], locations: frozenset[int]
 ) -> tuple[int, int, frozenset[int]] | None:
     """Compute the robot's state after all repetitions of an outermost Round.

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.route.network import StepNetwork, network
+from argo_compiler.route.network import StepNetwork, build_network
 from argo_compiler.route.problem import NEVER, Objective, RouteProblem, Visit
 from argo_compiler.route.pruning import Pruned, prune
 from argo_compiler.route.search import Search
@@ -99,7 +99,7 @@ class _Kernel:
     def _compile(cls) -> None:
         kernel = import_module("argo_compiler.route.exchange_kernel")
         example = RouteProblem((Visit(""),) * 5, np.ones((6, 6), np.int64))
-        net = network(example, lambda step: tuple(step.parts))
+        net = build_network(example, lambda step: tuple(step.parts))
         kernel_network = _kernel_network(kernel, net, prune(net))
         state = _initial_state(kernel, kernel_network, 0)
         kernel.set_line(kernel_network, state, state[kernel.LINE], 0)
@@ -160,8 +160,8 @@ def _kernel_network(kernel: ModuleType, net: StepNetwork, pruned: Pruned) -> Any
         needs[s, : len(needed)] = needed
     first = np.searchsorted(net.step, np.arange(steps + 1))
     prizes = np.append(np.where(net.mandatory, net.prize.sum() + 1, net.prize), 0)
-    timed = net.windowed or net.limit < NEVER
-    waits = net.windowed and net.objective is Objective.DURATION
+    timed = net.has_windows or net.limit < NEVER
+    waits = net.has_windows and net.objective is Objective.DURATION
     ruins = _RUIN_SHARE if timed or net.selective or m > steps else 0.0
     arc = np.median(time[time < kernel.NO_ARC]) if (time < kernel.NO_ARC).any() else 0.0
     return kernel.KernelNetwork(

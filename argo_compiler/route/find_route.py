@@ -10,7 +10,7 @@ from argo_compiler.base.errors import Invalid
 from argo_compiler.route.assignment import assignment_bound
 from argo_compiler.route.infeasible_subset import find_infeasible_subset
 from argo_compiler.route.modes import Step
-from argo_compiler.route.network import network
+from argo_compiler.route.network import build_network
 from argo_compiler.route.portfolio import solve
 from argo_compiler.route.problem import NEVER, Objective, RouteProblem
 from argo_compiler.route.pruning import prune, unlimited_horizon
@@ -79,7 +79,7 @@ def _run_search(
         return _shortest_cycle(problem, step, limits, seed, clock)
 
     seconds = inf if limits.seconds is None else limits.seconds
-    net = network(problem, cyclic_order, lambda: clock() - begun > _ROUNDS_SHARE * seconds)
+    net = build_network(problem, cyclic_order, lambda: clock() - begun > _ROUNDS_SHARE * seconds)
     if unlimited_horizon(net) >= NEVER // 2:
         raise Invalid(
             "the times of this route problem are too long to be added up: use a larger unit"

@@ -81,7 +81,9 @@ def _count(bits: StepBits, nodes: list[int], most: int, is_time_up: Callable[[],
             return most + 1
         rules = bits.layer(size)
         following = [
-            rules.after(masks[rules.rows(masks, node)], node) for node in nodes if rules.open[node]
+            rules.with_node(masks[rules.rows_node_may_follow(masks, node)], node)
+            for node in nodes
+            if rules.open[node]
         ]
         masks = np.unique(np.concatenate([*following, masks[:0]]))
         total, size = total + len(masks), size + 1
@@ -95,13 +97,13 @@ def layers_if_few(search: Search) -> list[Layer] | None:
     """
     network, pruned = search.network, search.pruned
     most = min(_MOST_SETS, _MOST_STATES // max(1, network.size))
-    share = search.share(0.7)
+    share = search.with_time_share(0.7)
     if not search.timed:
         most = min(most, int(share.remaining_time() / (_TIME_PER_STATE * max(1, network.size))))
     sets = count_sets(network, pruned, most, lambda: share.remaining_time() <= 0.0)
-    is_ordered = network.windowed or pruned.before.any() or network.problem.battery is not None
+    is_ordered = network.has_windows or pruned.before.any() or network.problem.battery is not None
     # Windows may leave much fewer sets than the precedences do.
-    is_few = sets <= (most if is_ordered else _FEW_SETS) or network.windowed
+    is_few = sets <= (most if is_ordered else _FEW_SETS) or network.has_windows
     if not is_few or unlimited_horizon(network) >= INF or not StepBits(network, pruned).fits:
         search.add_reason(f"{int(pruned.steps.sum())} steps allow too many sets to check all")
         return None
@@ -124,7 +126,7 @@ class HeldKarp:
     name = "Held-Karp"
 
     def supports(self, problem: RouteProblem, /) -> bool:
-        return problem.battery is None and not problem.waits
+        return problem.battery is None and not problem.has_free_waiting
 
     def solve(self, search: Search, /) -> None:
         layers = layers_if_few(search)
@@ -218,12 +220,12 @@ def iter_layers(
         for node in nodes:
             if is_time_up():
                 return
-            rows = rules.rows(masks, node)
+            rows = rules.rows_node_may_follow(masks, node)
             arrival = (times[rows] + onward[None, :, node]).min(axis=1)
             begin = np.maximum(arrival, earliest[node])
             in_time = begin <= latest[node]
             origins.append(rows[in_time])
-            parts.append(rules.after(masks[rows[in_time]], node))
+            parts.append(rules.with_node(masks[rows[in_time]], node))
             ends.append(begin[in_time] + network.service[node])
         masks, inverse = np.unique(np.concatenate([*parts, masks[:0]]), return_inverse=True)
         if not len(masks):
@@ -261,7 +263,7 @@ def _can_complete(
     keep = np.ones(len(masks), np.bool_)
     last = np.full(len(network.prize), -1, np.int64)
     np.maximum.at(last, network.step, latest)
-    undecided, certain = bits.undecided(size), bits.certain(size)
+    undecided, certain = bits.undecided_steps(size), bits.certain_steps(size)
     ahead = network.mandatory & ~certain & (last < INF - 1)
     keep &= earliest <= last[ahead & ~undecided].min(initial=int(INF))
     for s in np.flatnonzero(ahead & undecided).tolist():

@@ -77,7 +77,7 @@ def _clock(seconds: float) -> str:
     return f"{minutes}:{rest:02d}"
 
 
-def reduced(problem: RouteProblem, subset: list[Requirement]) -> RouteProblem:
+def with_only_requirements(problem: RouteProblem, subset: list[Requirement]) -> RouteProblem:
     """Return the problem with only these requirements.
 
     It has no visits but those required, and those that they need.
@@ -159,10 +159,10 @@ def find_infeasible_subset(
     others = [r for r in all_requirements if r.kind != "visit"]
 
     def can_meet_others(subset: list[Requirement]) -> bool | None:
-        return is_feasible(reduced(problem, visits + subset))
+        return is_feasible(with_only_requirements(problem, visits + subset))
 
     def can_meet_visits(subset: list[Requirement]) -> bool | None:
-        return is_feasible(reduced(problem, subset + clash))
+        return is_feasible(with_only_requirements(problem, subset + clash))
 
     clash, minimal, smallest = _Finder(
         others, can_meet_others, most_checks, is_time_up

@@ -28,7 +28,7 @@ from argo_compiler.route.held_karp import (
     set_prizes,
 )
 from argo_compiler.route.lower_bounds import DualBound, TableBound
-from argo_compiler.route.modes import plus
+from argo_compiler.route.modes import add_capped
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.order_ideals import StepBits
 from argo_compiler.route.path_timing import PathTiming
@@ -54,7 +54,7 @@ def _applies(problem: RouteProblem) -> bool:
 
     Then labels need a second measure besides time, and two are enough.
     """
-    return problem.waits != (problem.battery is not None)
+    return problem.has_free_waiting != (problem.battery is not None)
 
 
 class Labels:
@@ -150,9 +150,9 @@ def solve_with_dual_prices(
 def _cost_matrices(network: StepNetwork) -> list[Vector]:
     """Return the arc costs for bounds: times, and, with chargers, times plus energies."""
     service = np.append(network.service, 0)[None, :]
-    matrices = [plus(least_arc_times(network), service)]
+    matrices = [add_capped(least_arc_times(network), service)]
     if network.problem.battery is not None and network.chargers:
-        matrices.append(plus(_times_and_energies(network), service))
+        matrices.append(add_capped(_times_and_energies(network), service))
     return matrices
 
 
@@ -309,9 +309,9 @@ def _times_and_energies(network: StepNetwork) -> NDArray[np.int64]:
     battery = network.problem.battery
     assert battery is not None
     assert network.energy is not None
-    both = plus(network.time, network.energy)
+    both = add_capped(network.time, network.energy)
     for station in network.chargers:
-        inbound = plus(station.to, station.to_energy)[:, None]
-        outbound = plus(station.out, station.out_energy)[None, :]
-        both = np.minimum(both, plus(inbound + outbound, battery.overhead))
+        inbound = add_capped(station.to, station.to_energy)[:, None]
+        outbound = add_capped(station.out, station.out_energy)[None, :]
+        both = np.minimum(both, add_capped(inbound + outbound, battery.overhead))
     return both

@@ -15,7 +15,7 @@ from ortools.sat.python import cp_model
 
 from argo_compiler.route.circuit_model import CircuitModel, time_to_build
 from argo_compiler.route.cp_sat import offer_empty_routes
-from argo_compiler.route.cp_solver import run_solver, solver_for, spend
+from argo_compiler.route.cp_solver import record_work, run_solver, solver_for
 from argo_compiler.route.linear_relaxation import LinearRelaxation
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.problem import Objective, RouteProblem
@@ -45,8 +45,8 @@ class LinearProof:
         if not network.mandatory.any():
             offer_empty_routes(search)  # the circuit model excludes them
         best = search.best
-        to_optimality = network.plain and not network.before.any()
-        search = search.share(_PROOF_SHARE if to_optimality else _BOUND_SHARE)
+        to_optimality = network.has_additive_times and not network.before.any()
+        search = search.with_time_share(_PROOF_SHARE if to_optimality else _BOUND_SHARE)
         m = network.size
         if network.selective and (best is None or best.prize < search.prize_bound):
             prizes = np.zeros((m + 1, m + 1), np.int64)
@@ -78,7 +78,7 @@ class _Stage:
         """
         search, network = self.search, self.search.network
         relaxation = LinearRelaxation(network, search.pruned, self.costs, self.least_prize or None)
-        relaxation.solve(search.share(0.5 if to_optimality else 1.0), self._best_value())
+        relaxation.solve(search.with_time_share(0.5 if to_optimality else 1.0), self._best_value())
         low, margin, cap = relaxation.bound, _FIRST_MARGIN, self._cap()
         if low is None:
             return
@@ -128,7 +128,7 @@ class _Stage:
         The bound is above `most` if there is no such route.
         """
         search, network, pruned = self.search, self.search.network, self.search.pruned
-        arcs, mandatory = relaxation.restrict(most)
+        arcs, mandatory = relaxation.possible_arcs_and_required_steps(most)
         arcs[network.size, network.size] = False
         steps = np.zeros_like(pruned.steps)
         steps[network.step[arcs[:, :-1].any(axis=0)]] = True
@@ -144,12 +144,12 @@ class _Stage:
         if _is_symmetric(network):
             model.require_at_least(_one_direction(network.size), 0)
         if self.least_prize is None:
-            model.maximise_prize(-most)
+            model.set_prize_objective(-most)
         else:
-            model.minimise_cost(self.least_prize or None, most)
+            model.set_cost_objective(self.least_prize or None, most)
         solver = solver_for(search)
         status = run_solver(solver, model.model, None, lambda: search.remaining_time() <= 0.0)
-        spend(search, solver)
+        record_work(search, solver)
         if status == cp_model.INFEASIBLE:
             return most + 1
         bound = relaxation.bound or 0

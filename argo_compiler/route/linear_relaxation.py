@@ -130,10 +130,10 @@ class LinearRelaxation:
         pairs = zip(prices, self._rows, strict=False)
         return [row for p, row in pairs if p > 0 and not row.equal and row.weights is None]
 
-    def restrict(self, most: int) -> tuple[Mask, Mask]:
-        """Return the arcs that routes with a cost up to `most` may have, and the steps they make.
+    def possible_arcs_and_required_steps(self, most: int) -> tuple[Mask, Mask]:
+        """Return the arcs that routes with a cost up to `most` may have, and the steps they need.
 
-        The steps are those that each of these routes must make. This is variable fixing by reduced
+        A step is returned if each of these routes must make it. This is variable fixing by reduced
         costs.
         """
         if self._best is None:

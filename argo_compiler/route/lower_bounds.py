@@ -98,9 +98,9 @@ class DualBound:
         includes the steps that all sets of `size` contain.
         """
         if size not in self._tables_by_size:
-            undecided, tables = self._bits.undecided(size), []
+            undecided, tables = self._bits.undecided_steps(size), []
             step_of_bit = {int(self._bits.bit(s)): s for s in np.flatnonzero(undecided).tolist()}
-            certain = both[:, self._bits.certain(size)].sum(axis=1, keepdims=True)
+            certain = both[:, self._bits.certain_steps(size)].sum(axis=1, keepdims=True)
             for first in range(0, MOST_BITS, _CHUNK):
                 table = certain if first == 0 else np.zeros_like(certain)
                 for number in range(first, first + _CHUNK):

@@ -50,17 +50,18 @@ class StepMode:
     energy: Vector | None = None
     """energy of the round after each of these drives, without the drive"""
 
-    def enter(self, drive: Vector, energy: Vector) -> tuple[Vector, Vector]:
-        """Return time and energy from the start of the drive to the step until the step's end.
+    def add_to_drives(self, times: Vector, energies: Vector) -> tuple[Vector, Vector]:
+        """Return the times and energies of drives to the step, with those of the step added.
 
-        `drive` and `energy` are the times and energies of several possible drives.
+        `times` and `energies` are those of several drives to the first visit. A resulting time is
+        NEVER if there is no such drive, or if the round has another exit after it.
         """
         if self.entries is None or self.time is None or self.energy is None:
-            return plus(drive, self.service), energy
-        index = np.minimum(np.searchsorted(self.entries, drive), len(self.entries) - 1)
-        known = self.entries[index] == drive
+            return add_capped(times, self.service), energies
+        index = np.minimum(np.searchsorted(self.entries, times), len(self.entries) - 1)
+        known = self.entries[index] == times
         time = np.where(known, self.time[index], NEVER)
-        return time, plus(energy, self.energy[index])
+        return time, add_capped(energies, self.energy[index])
 
 
 @dataclass
@@ -109,7 +110,7 @@ def modes(
     ], exact
 
 
-def plus(times: Vector, more: int | Vector) -> Vector:
+def add_capped(times: Vector, more: int | Vector) -> Vector:
     """Return the sum of times, at most NEVER."""
     total: Vector = np.minimum(times + more, NEVER)
     return total
@@ -128,8 +129,8 @@ class StepOrder(Protocol):
         """Visits in the order of their first repetition."""
         ...
 
-    def run(self, drive: int) -> "StepOutcome":
-        """Return the outcome of all repetitions after a drive to `first` of a given time.
+    def outcome_after_drive(self, drive: int) -> "StepOutcome":
+        """Return the outcome of all repetitions after a drive to `first` that takes `drive` units.
 
         The time includes the drive; the energy does not.
         """
@@ -154,7 +155,7 @@ class _SingleVisit:
     def order(self) -> tuple[int, ...]:
         return (self.first,)
 
-    def run(self, drive: int) -> StepOutcome:
+    def outcome_after_drive(self, drive: int) -> StepOutcome:
         return StepOutcome(min(drive + self.service, NEVER), 0, (self.first,))
 
 
@@ -168,7 +169,9 @@ class _RoundOrder:
         self._next_by_exit: dict[tuple[int, ...], StepOutcome] = {}
         # If the time of the first part does not depend on the drive to it, neither does that of a
         # repetition: this is its outcome without the drive.
-        self._without_drive = parts[0].run(0) if isinstance(parts[0], _SingleVisit) else None
+        self._without_drive = (
+            parts[0].outcome_after_drive(0) if isinstance(parts[0], _SingleVisit) else None
+        )
         if self._without_drive is not None:
             self._without_drive = self._add_other_parts(self._without_drive)
 
@@ -178,7 +181,7 @@ class _RoundOrder:
         The time includes the drive; the energy does not.
         """
         if self._without_drive is None:
-            return self._add_other_parts(self._parts[0].run(drive))
+            return self._add_other_parts(self._parts[0].outcome_after_drive(drive))
         outcome = self._without_drive
         return StepOutcome(min(drive + outcome.time, NEVER), outcome.energy, outcome.exit)
 
@@ -194,7 +197,9 @@ class _RoundOrder:
             self._next_by_exit[exit] = self._add_other_parts(first_part)
         return self._next_by_exit[exit]
 
-    def runs(self, drives: Vector) -> tuple[Vector, Vector, list[tuple[int, ...]], Vector]:
+    def outcomes_after_drives(
+        self, drives: Vector
+    ) -> tuple[Vector, Vector, list[tuple[int, ...]], Vector]:
         """Return times and energies of all repetitions after drives of given times, and the exits.
 
         With the exits, which are sets of possible locations, comes the index of the exit after each
@@ -203,18 +208,18 @@ class _RoundOrder:
         round_, once = self._round, self._without_drive
         more = None if once is None else self._next_repetition(once.exit)
         if once is None or more is None or more.exit != once.exit or more.time == 0:
-            outcomes = [self.run(drive) for drive in drives.tolist()]
+            outcomes = [self.outcome_after_drive(drive) for drive in drives.tolist()]
             exits = sorted({outcome.exit for outcome in outcomes})
             rows = [(end.time, end.energy, exits.index(end.exit)) for end in outcomes]
             time, energy, exit_index = np.array(rows, np.int64).reshape(-1, 3).T
             return time, energy, exits, exit_index
-        time = plus(drives, once.time)
+        time = add_capped(drives, once.time)
         repetitions = np.full(len(time), round_.repeat - 1 if round_.repeat else NEVER)
         if round_.duration:
             until_duration = -((time - round_.duration) // more.time)
             repetitions = np.minimum(repetitions, np.maximum(until_duration, 0))
         time, energy = (
-            plus(time, repetitions * more.time),
+            add_capped(time, repetitions * more.time),
             np.minimum(once.energy + repetitions * more.energy, NEVER),
         )
         interrupted = (
@@ -223,7 +228,7 @@ class _RoundOrder:
         time[interrupted] = round_.duration
         return time, energy, [once.exit, tuple(sorted(self.order))], interrupted.astype(np.int64)
 
-    def run(self, drive: int) -> StepOutcome:
+    def outcome_after_drive(self, drive: int) -> StepOutcome:
         round_ = self._round
         outcome, count = self.first_repetition(drive), 1
         while outcome.time < NEVER and (not round_.repeat or count < round_.repeat):
@@ -278,7 +283,7 @@ class _Drives:
                 energy = int(self._battery.energy[origins, part.first].max())
             self._worst[outcome.exit, part.first] = drive, energy
         drive, energy = self._worst[outcome.exit, part.first]
-        added = part.run(drive)
+        added = part.outcome_after_drive(drive)
         time = NEVER if drive >= NEVER else min(outcome.time + added.time, NEVER)
         return StepOutcome(time, min(outcome.energy + energy + added.energy, NEVER), added.exit)
 
@@ -344,7 +349,7 @@ def _undominated(
             break
         if not len(drives.entries(order.first)):
             continue  # the first visit can't be reached
-        time, energy, exits, exit_index = order.runs(drives.entries(order.first))
+        time, energy, exits, exit_index = order.outcomes_after_drives(drives.entries(order.first))
         number = np.array([numbers.setdefault(exit, len(numbers)) for exit in exits], np.int64)
         row = np.stack([time, energy, number[exit_index]])
         by_first_visit.setdefault(order.first, []).append((order, row))
@@ -447,7 +452,7 @@ def _best_orders(
     """
     orders: list[tuple[StepOrder, ...]] = []
     for k, first in _available(choices, predecessors, 0):
-        layer = {(1 << k, id(first)): [_Label(first.run(0), (first,))]}
+        layer = {(1 << k, id(first)): [_Label(first.outcome_after_drive(0), (first,))]}
         for _ in range(len(choices) - 1):
             if is_time_up():
                 return None
@@ -500,7 +505,7 @@ def _rotations(
 def _modes(order: _RoundOrder, drives: _Drives) -> list[StepMode]:
     """Return the modes of an order: one for each exit that it has after the possible drives."""
     entries = drives.entries(order.first)
-    time, energy, exits, exit_index = order.runs(entries)
+    time, energy, exits, exit_index = order.outcomes_after_drives(entries)
     modes_by_exit = []
     for number, exit in enumerate(exits):
         exit_time = np.where(exit_index == number, time, NEVER)

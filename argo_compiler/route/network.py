@@ -61,14 +61,14 @@ class StepNetwork:
         return len(self.nodes)
 
     @cached_property
-    def windowed(self) -> bool:
+    def has_windows(self) -> bool:
         """True if a step has a time window, so that the robot may wait."""
         return bool((self.earliest > 0).any() or (self.latest < NEVER).any())
 
     @property
-    def plain(self) -> bool:
+    def has_additive_times(self) -> bool:
         """True if a route's time is the sum of its arcs, without windows and battery."""
-        return self.problem.battery is None and not self.windowed
+        return self.problem.battery is None and not self.has_windows
 
     @property
     def objective(self) -> Objective:
@@ -143,7 +143,7 @@ class ChargingStation:
     out_energy: Vector
 
 
-def network(
+def build_network(
     problem: RouteProblem,
     cyclic_order: Callable[[Step], tuple[Step, ...]],
     is_time_up: Callable[[], bool] = lambda: False,
@@ -221,7 +221,9 @@ def _enter_nodes(
     time, energy = times[:, firsts], used[:, firsts]
     for column, node in enumerate(nodes):
         if node.entries is not None:
-            time[:, column], energy[:, column] = node.enter(time[:, column], energy[:, column])
+            time[:, column], energy[:, column] = node.add_to_drives(
+                time[:, column], energy[:, column]
+            )
     return time, energy
 
 

@@ -34,14 +34,14 @@ class LayerRules:
     unchanged: np.int64
     """bits with the same meaning in sets of k and of k + 1 steps; other bits start as 0"""
 
-    def rows(self, masks: Masks, node: int) -> NDArray[np.int64]:
+    def rows_node_may_follow(self, masks: Masks, node: int) -> NDArray[np.int64]:
         """Return the indices in `masks` of the sets of steps that the node may follow."""
         if not self.open[node]:
             return np.zeros(0, np.int64)
         needs, ruled = self.needs[node], self.ruled_out_by[node]
         return np.flatnonzero(((masks & needs) == needs) & ((masks & ruled) == 0))
 
-    def after(self, masks: Masks, node: int) -> Masks:
+    def with_node(self, masks: Masks, node: int) -> Masks:
         """Return the sets with the node's step added."""
         return np.asarray((masks & self.unchanged) | self.bit[node])
 
@@ -88,11 +88,11 @@ class StepBits:
                 break  # they don't fit, whatever follows
         return numbers
 
-    def undecided(self, size: int) -> NDArray[np.bool_]:
+    def undecided_steps(self, size: int) -> NDArray[np.bool_]:
         """Return, for each step, whether only some sets of `size` contain it: then it has a bit."""
         return np.asarray((self._from < size) & (size < self._to))
 
-    def certain(self, size: int) -> NDArray[np.bool_]:
+    def certain_steps(self, size: int) -> NDArray[np.bool_]:
         """Return, for each step, whether all sets of `size` contain it."""
         return np.asarray(size >= self._to)
 
@@ -114,8 +114,8 @@ class StepBits:
 
     def _rules(self, size: int) -> LayerRules:
         network, pruned = self._network, self._pruned
-        undecided, certain = self.undecided(size), self.certain(size)
-        undecided_next = self.undecided(size + 1)
+        undecided, certain = self.undecided_steps(size), self.certain_steps(size)
+        undecided_next = self.undecided_steps(size + 1)
         bit, needs, ruled = (np.zeros(len(undecided), np.int64) for _ in range(3))
         may = pruned.steps & ~certain & (self._from <= size)
         may[may] &= ~pruned.needs[~undecided & ~certain][:, may].any(axis=0)

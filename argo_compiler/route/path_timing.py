@@ -41,7 +41,7 @@ class PathTiming:
             for s in network.chargers
         ]
         self._battery = network.problem.battery
-        self._counts_travel = network.problem.waits
+        self._counts_travel = network.problem.has_free_waiting
         self.legs = 0
         """number of legs tried, those by chargers included: a measure of the work"""
 

@@ -56,10 +56,12 @@ def solve(search: Search, workers: int, chosen: Sequence[str | RouteSolver] | No
         )
         return
     network = search.network
-    is_easy = network.plain and not (network.selective or search.pruned.before.any())
+    is_easy = network.has_additive_times and not (network.selective or search.pruned.before.any())
     most = (_FIRST_TIME_PER_EASY_STEP if is_easy else _FIRST_TIME_PER_STEP) * len(network.prize)
-    _run_in_turn(search.share(_FIRST_IMPROVING_SHARE, most) if proving else search, improving)
-    _run_in_turn(search.share(_PROVING_SHARE if improving else 1.0), proving)
+    _run_in_turn(
+        search.with_time_share(_FIRST_IMPROVING_SHARE, most) if proving else search, improving
+    )
+    _run_in_turn(search.with_time_share(_PROVING_SHARE if improving else 1.0), proving)
     _run_in_turn(search, improving)
 
 
@@ -69,7 +71,7 @@ def _ranked(search: Search, solvers: list[RouteSolver]) -> list[RouteSolver]:
     Ruin and recreate is used only if no other local search supports the problem.
     """
     suited = [solver for solver in solvers if not isinstance(solver, RuinRecreate)] or solvers
-    prefers_pyvrp = search.network.selective or search.network.windowed
+    prefers_pyvrp = search.network.selective or search.network.has_windows
     # Without prizes and windows, PyVRP does not find all that the exchange search finds.
     return suited if prefers_pyvrp else suited[::-1]
 
@@ -77,7 +79,7 @@ def _ranked(search: Search, solvers: list[RouteSolver]) -> list[RouteSolver]:
 def _run_in_turn(search: Search, solvers: Sequence[RouteSolver]) -> None:
     """Run the solvers one after the other, each with an equal share of the remaining time."""
     for number, solver in enumerate(solvers):
-        _run(solver, search.share(1.0 / (len(solvers) - number)))
+        _run(solver, search.with_time_share(1.0 / (len(solvers) - number)))
 
 
 def _run(solver: RouteSolver, search: Search) -> None:

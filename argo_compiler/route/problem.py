@@ -165,7 +165,7 @@ class RouteProblem:
         return not all(visit.mandatory for visit in self.visits)
 
     @property
-    def waits(self) -> bool:
+    def has_free_waiting(self) -> bool:
         """True if the robot may have to wait for a visit and waiting costs nothing."""
         return self.objective is Objective.TRAVEL and any(v.earliest > 0 for v in self.visits)
 

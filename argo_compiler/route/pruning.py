@@ -73,7 +73,7 @@ def _orders(
 
     If `column` is too late even after `row` at its earliest, it must come before `row`.
     """
-    if not network.windowed and network.limit >= NEVER:
+    if not network.has_windows and network.limit >= NEVER:
         return network.needs, network.before
     m, count = network.size, len(network.prize)
     distances = least_path_times(network)
@@ -106,7 +106,7 @@ def least_arc_times(network: StepNetwork) -> NDArray[np.int64]:
 
 
 def horizon(network: StepNetwork) -> int:
-    """Return a time at which each route without unnecessary waiting has reached the end."""
+    """Return an upper bound on the end of all routes that wait no longer than necessary."""
     return min(network.limit, unlimited_horizon(network))
 
 

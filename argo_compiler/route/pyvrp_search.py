@@ -104,12 +104,12 @@ def _problem_data(network: StepNetwork, nodes: list[int]) -> "ProblemData":
                 group=numbers.get(s),
             )
         )
-    waits = network.windowed and network.objective is Objective.DURATION
+    waits = network.has_windows and network.objective is Objective.DURATION
     vehicle = pyvrp.VehicleType(
         start_depot=0,
         end_depot=1,
         start_late=0,
-        tw_late=worst if network.windowed else NEVER,
+        tw_late=worst if network.has_windows else NEVER,
         # Without waiting the duration is a distance, for which PyVRP's search is better.
         max_distance=worst,
         unit_distance_cost=0 if waits else 1,
@@ -118,7 +118,7 @@ def _problem_data(network: StepNetwork, nodes: list[int]) -> "ProblemData":
     locations, depots = [pyvrp.Location(0, 0)] * (n + 2), [pyvrp.Depot(n), pyvrp.Depot(n + 1)]
     # PyVRP's stubs have another type for the matrices.
     distances: list[Any] = [times]
-    durations: list[Any] = distances if network.windowed else [np.zeros_like(times)]
+    durations: list[Any] = distances if network.has_windows else [np.zeros_like(times)]
     return pyvrp.ProblemData(
         locations, clients, depots, [vehicle], distances, durations, list(groups.values())
     )

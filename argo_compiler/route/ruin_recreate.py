@@ -161,7 +161,7 @@ class LocalSearch:
             extra = near[before, node] + near[node, after] - near[before, after]
             noisy = extra * self._rng.uniform(1.0, 1.05, len(extra))
             insertions += [(float(cost), low + k, node) for k, cost in enumerate(noisy)]
-        tries = 1 if self._network.plain and self._network.limit >= NEVER else 6
+        tries = 1 if self._network.has_additive_times and self._network.limit >= NEVER else 6
         for _, position, node in sorted(insertions)[:tries]:
             longer = [*path[:position], node, *path[position:]]
             if self._timing.evaluate_path(tuple(longer)) is not None:

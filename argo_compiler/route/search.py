@@ -128,7 +128,7 @@ class Search:
                 shared.stopped = True
         return 0.0 if shared.stopped or self.proven else max(0.0, self._deadline - self.now())
 
-    def share(self, share: float, most: float = inf) -> "Search":
+    def with_time_share(self, share: float, most: float = inf) -> "Search":
         """Return a view of this search with a share of the remaining time, at most `most` s."""
         return self.until(self.now() + min(most, share * self.remaining_time()))
 

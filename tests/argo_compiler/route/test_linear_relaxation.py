@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from argo_compiler.route import Objective, RouteProblem, Visit, suggest_route
 from argo_compiler.route.linear_relaxation import LinearRelaxation
-from argo_compiler.route.network import StepNetwork, network
+from argo_compiler.route.network import StepNetwork, build_network
 from argo_compiler.route.pruning import Pruned, least_arc_times, prune
 from argo_compiler.route.search import Search, SearchLimits
 from tests.argo_compiler.route.random_problems import random_problem
@@ -45,7 +45,7 @@ def _require_best_route(
     path, charges = net.tour_path(route)
     if path is None or charges:
         return
-    arcs, mandatory = relaxation.restrict(most)
+    arcs, mandatory = relaxation.possible_arcs_and_required_steps(most)
     ends = [net.size, *path, net.size]
     assert arcs[ends[:-1], ends[1:]].all()
     assert set(np.flatnonzero(mandatory)) <= set(net.step[list(path)].tolist())
@@ -55,7 +55,7 @@ def _require_best_route(
 def test_no_bound_is_above_the_best_route(part: int) -> None:
     for seed in seeds(480)[part::4]:
         problem = random_problem(np.random.default_rng(50_000 + seed), 5)
-        net = network(problem, lambda step: tuple(step.parts))
+        net = build_network(problem, lambda step: tuple(step.parts))
         pruned = prune(net)
         if not net.size or not pruned.possible:
             continue
@@ -81,7 +81,7 @@ def test_arcs_of_the_best_route_are_left_at_its_cost(size: int) -> None:
         travel = np.rint(np.abs(places[:, None] - places).sum(axis=2)).astype(np.int64)
         travel += rng.integers(0, 5, travel.shape)
         problem = RouteProblem(tuple(Visit(f"checkpoint {k}") for k in range(size)), travel)
-        net = network(problem, lambda step: tuple(step.parts))
+        net = build_network(problem, lambda step: tuple(step.parts))
         pruned = prune(net)
         relaxation = _relaxed(net, pruned, _times(net), None)
         proven = suggest_route(problem, 60.0, explain=False, solvers=("first rules", "CP-SAT"))
@@ -92,5 +92,5 @@ def test_arcs_of_the_best_route_are_left_at_its_cost(size: int) -> None:
         assert relaxation.bound is not None
         assert 0.9 * own.cost <= relaxation.bound <= own.cost
         _require_best_route(net, relaxation, own.cost, problem)
-        left, _ = relaxation.restrict(own.cost)
+        left, _ = relaxation.possible_arcs_and_required_steps(own.cost)
         assert left.sum() < pruned.arcs.sum() / 2

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from argo_compiler.base.errors import ArgoError
-from argo_compiler.base.garbage_collector import collect_again
+from argo_compiler.base.garbage_collector import enable_garbage_collector
 from argo_compiler.base.version import __version__
 from argo_planner.lazy_group import LazyCommand, LazyGroup
 from argo_planner.terminal.output import guard_output
@@ -137,7 +137,7 @@ def argo(
     """Turn a written inspection mission into a checked plan and drive it through a site."""
     from argo_planner.terminal.stage_display import show_stages  # `argo --help` needs no stages
 
-    collect_again(seldom=context.invoked_subcommand in _SHORT)
+    enable_garbage_collector(seldom=context.invoked_subcommand in _SHORT)
     set_verbosity(verbose, quiet)
     context.with_resource(show_stages())
 

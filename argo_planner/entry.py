@@ -15,7 +15,7 @@ def main() -> None:
         end_at_once()
     except KeyboardInterrupt:
         raise SystemExit(130) from None
-    gc.disable()  # imported modules stay in memory; `collect_again` runs when a command begins
+    gc.disable()  # imported modules stay in memory; a command calls `enable_garbage_collector`
     # To find plug-ins, pydantic would read the metadata of every installed package.
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     from argo_planner import cli

@@ -37,7 +37,7 @@ def collector_held() -> Iterator[None]:
         _holding.release()
 
 
-def collect_again(seldom: bool = False) -> None:
+def enable_garbage_collector(seldom: bool = False) -> None:
     """Turn the collector on if it was turned off; it skips objects that exist already.
 
     With `seldom`, which is for commands that end soon, the collector hardly ever runs: the tables

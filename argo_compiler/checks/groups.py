@@ -264,7 +264,7 @@ def _check_endless(
     bounded = [False] * len(nesting.ranges)
     for i, r in enumerate(nesting.ranges):
         parent = nesting.parent[i]
-        bounded[i] = r.group.ends_at_once or (parent is not None and bounded[parent])
+        bounded[i] = r.group.has_hard_stop or (parent is not None and bounded[parent])
     for i in reversed(range(len(nesting.ranges))):
         parent = nesting.parent[i]
         if parent is not None:
@@ -314,7 +314,7 @@ def _can_continue(nesting: GroupNesting, task: int) -> bool:
     unless a group around that one ends with the task too and has a time-out.
     """
     for i in reversed(nesting.ending[task]):
-        if nesting.ranges[i].group.ends_at_once:
+        if nesting.ranges[i].group.has_hard_stop:
             return True
         if _is_endless(nesting.ranges[i].group):
             return False

@@ -487,7 +487,7 @@ def _pose_ports(pose: Pose | None) -> Attributes:
 
 
 def _is_timed(r: GroupRange) -> bool:
-    return r.group.ends_at_once
+    return r.group.has_hard_stop
 
 
 def _is_interpreted(text: str) -> bool:

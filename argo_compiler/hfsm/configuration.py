@@ -149,9 +149,9 @@ class Configuration:
             self.readings.pop(object_id, None)
         else:
             self.readings[object_id] = reading
-        self.reading_changed(now)
+        self.handle_reading_change(now)
 
-    def reading_changed(self, now: float) -> None:
+    def handle_reading_change(self, now: float) -> None:
         """Let the active task, if it is a WAIT, check its conditions, as a reading has changed."""
         if self.visit.leaf is not None and self.visit.leaf.wait is not None:
             self.schedule_wait_check(now)

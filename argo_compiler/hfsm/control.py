@@ -44,7 +44,7 @@ class Control:
         return self.interrupt_state.paused
 
     @property
-    def active(self) -> ReactionNode | None:
+    def active_reaction(self) -> ReactionNode | None:
         """The active reaction; None if no reaction is active."""
         active = self.interrupt_state.active
         return None if active is None else self.tables.reactions[active]
@@ -76,7 +76,7 @@ class Control:
         else:
             self.mission.resume()
         self._advance(Trigger.ALWAYS)
-        self.process_due()
+        self.process_due_changes()
 
     # Time
 
@@ -84,13 +84,13 @@ class Control:
         """Process all changes that are due up to the time `until` (s), in the order of time."""
         while (at := self.next_due) <= until:
             self.mission.now = at
-            self.process_due()
+            self.process_due_changes()
 
-    def process_due(self) -> None:
+    def process_due_changes(self) -> None:
         """Process all changes that are due now and need no action of the robot.
 
-        These are ends of waits, time-outs, tasks done by hand, the limit of a hold, and the end of
-        the mission.
+        These are starts of rounds, ends of waits, time-outs, TIME_UP, tasks done by hand, the limit
+        of a hold, and the end of the mission.
         """
         mission = self.mission
         configuration = mission.configuration
@@ -197,7 +197,7 @@ class Control:
         elif row.trigger is Trigger.RESUME and step.after != step.before:
             mission.add_entry(Cause.RESUME, event=None if step.before.paused else active)
         if row.target is Stage.BEGINNING:
-            started = self.active
+            started = self.active_reaction
             assert started is not None
             self._add_reaction_entry(started)
             self.drive_turn = mission.configuration.new_number()
@@ -237,7 +237,7 @@ class Control:
 
     def _update_hold_due(self) -> None:
         self.hold_due = math.inf
-        active = self.active
+        active = self.active_reaction
         if active is None or not self.holding or self.paused:
             return
         limit = active.state.reaction.hold_limit

@@ -157,7 +157,7 @@ class Executor:
                 limit = control.tables.max_duration
                 if limit is not None and not mission.time_up:
                     mission.time_up_at = max(mission.configuration.started_at + limit, now)
-                supervised = self.hfsm.supervised and mission.active is not None
+                supervised = self.hfsm.supervised and mission.active_task is not None
                 control.start(self._fresh and supervised)
             return self._next_command()
 
@@ -193,7 +193,7 @@ class Executor:
                 self._end_action(event)
             elif type(event) is not Tick:
                 self._handle_other(event, now)
-            control.process_due()
+            control.process_due_changes()
             return self._next_command()
         finally:
             self._call_token.append(token)
@@ -237,7 +237,7 @@ class Executor:
         now, visit = mission.now, configuration.visit
         reaction, waiting = reaction_progress(control.interrupt_state, now - control.held_since)
         return Progress(
-            active=mission.active,
+            active=mission.active_task,
             attempt=visit.attempt,
             since=0.0 if visit.leaf is None else now - visit.since,
             occurred=visit.occurred,
@@ -269,9 +269,9 @@ class Executor:
         return self._control.outcome
 
     @property
-    def active(self) -> str | None:
+    def active_task(self) -> str | None:
         """Name of the active task; None before the mission's start and at its end."""
-        return self._control.mission.active
+        return self._control.mission.active_task
 
     @property
     def running(self) -> Task | None:
@@ -301,7 +301,7 @@ class Executor:
         """
         if not self._started:
             return ()
-        configuration, active = self._control.mission.configuration, self._control.active
+        configuration, active = self._control.mission.configuration, self._control.active_reaction
         groups = (frame.group.id for frame in configuration.frames)
         reaction = () if active is None else (active.state.id,)
         return (
@@ -373,7 +373,7 @@ class Executor:
         if mission.outcome is not None or interrupt_state.paused:
             pass
         elif interrupt_state.active is not None:
-            active = control.active
+            active = control.active_reaction
             if control.driving and active is not None:
                 leaf, task, turn = None, active.task, control.drive_turn
         elif leaf is not None and leaf.wait is None and mission.configuration.awaited_round is None:

@@ -14,6 +14,6 @@ def timeout_transition(group: Group) -> StateTransition | None:
 
     The transition completes the group: what follows the group is next, as after its last round.
     """
-    if not group.ends_at_once:
+    if not group.has_hard_stop:
         return None
     return StateTransition(kind=TransitionKind.TIMEOUT, completes=group_id(group.name))

@@ -79,7 +79,7 @@ def take_rows(
 
 
 def is_interrupting(reaction: Reaction) -> bool:
-    """Return True if the reaction interrupts the mission, rather than only report the event."""
+    """Return True if the reaction interrupts or ends the mission: all responses but REPORT."""
     return reaction.response is not Response.REPORT
 
 
@@ -196,7 +196,7 @@ _OUTCOMES = {
 
 
 def reaction_outcome(reaction: Reaction) -> Outcome:
-    """Return the outcome of a mission that ends after the drive of a reaction, where that led."""
+    """Return the outcome of a mission that ends with a reaction, by where its drive led."""
     return {
         Response.RETURN: Outcome.RETURNED,
         Response.SAFE_AREA: Outcome.SHELTERED,

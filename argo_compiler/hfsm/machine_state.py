@@ -55,7 +55,7 @@ class MachineState:
         self.ended: list[tuple[str, str | None, bool]] = []
 
     @property
-    def active(self) -> str | None:
+    def active_task(self) -> str | None:
         leaf = self.configuration.leaf
         return None if leaf is None else leaf.name
 
@@ -174,7 +174,7 @@ class MachineState:
             self._fail_for_good(leaf, _OVER, leaf.missed or leaf.failure)
         elif visit.action_due <= self.now:
             self.fail(leaf, f"not done within {leaf.time_limit:g} s")
-        elif visit.limit_at <= self.now:
+        elif visit.wait_limit_at <= self.now:
             assert leaf.wait is not None
             self._fail_for_good(leaf, f"waited {leaf.wait.limit:g} s in vain", leaf.failure)
         else:
@@ -218,7 +218,7 @@ class MachineState:
                 CheckpointReading, (_VALUE, now, value, abnormal)
             )
         if configuration.visit.leaf is not leaf:
-            configuration.reading_changed(now)
+            configuration.handle_reading_change(now)
 
     def set_reading(self, object_id: str, value: float, abnormal: bool, at: float) -> None:
         """Set the reading of a checkpoint to a value that was read at the time `at` (s)."""
@@ -227,7 +227,7 @@ class MachineState:
         )
 
     def fail(self, leaf: LeafNode, reason: str, unreadable: bool = False) -> None:
-        """Handle a failure of the active task's action: retry the task, or let it fail for good."""
+        """Handle a failure of the active task's action: retry it, or let the task fail for good."""
         visit = self.configuration.visit
         if visit.attempt < leaf.retries:
             visit.attempt += 1
@@ -286,7 +286,7 @@ class MachineState:
         failure: str | None = None,
     ) -> None:
         """End the mission at once, whatever it was doing."""
-        source = self.active
+        source = self.active_task
         self.outcome = outcome
         self.configuration.clear()
         self.time_up_at = math.inf
@@ -304,7 +304,7 @@ class MachineState:
 
         Its source is the active task too, unless another one or None is given.
         """
-        target = self.active
+        target = self.active_task
         origin = target if source == "" else source
         self.trace.append(
             RawEntry(self.now, origin, target, cause, failure=failure, event=event, detail=detail)

@@ -44,7 +44,7 @@ class TaskVisit:
         return max(at, started_at + leaf.earliest) if leaf.earliest else at
 
     @property
-    def limit_at(self) -> float:
+    def wait_limit_at(self) -> float:
         """Time (s) at which the limit of a WAIT ends; infinite without one."""
         leaf = self.leaf
         if leaf is None or leaf.wait is None or leaf.wait.limit is None:
@@ -60,10 +60,14 @@ class TaskVisit:
         return math.inf if leaf is None or leaf.latest is None else started_at + leaf.latest
 
     def next_due(self, started_at: float) -> float:
-        """Return the earliest time (s) at which a wait, limit or hard window of the visit ends.
+        """Return the earliest time (s) at which the visit may change without an event.
 
-        `started_at` is the time (s) at which the mission started.
+        It changes when its wait, the wait's limit, the task's hard window or the running action's
+        time limit ends. `started_at` is the time (s) at which the mission started.
         """
         return min(
-            self.wait_end_at(started_at), self.limit_at, self.missed_at(started_at), self.action_due
+            self.wait_end_at(started_at),
+            self.wait_limit_at,
+            self.missed_at(started_at),
+            self.action_due,
         )

@@ -319,7 +319,7 @@ class Group(Model):
     source: Span | None = None
 
     @property
-    def ends_at_once(self) -> bool:
+    def has_hard_stop(self) -> bool:
         """True if the group is left as soon as its time is up, in the middle of a round."""
         return self.stop is Stop.HARD and self.max_repeat_duration > 0
 

@@ -40,7 +40,7 @@ def transition_pairs(mission: Mission) -> Iterator[tuple[str, str]]:
             onward[task.name].append(following)
     for around in group_ranges(mission):  # parents before children
         group = around.group
-        if group.ends_at_once:
+        if group.has_hard_stop:
             for task in tasks[around.first : around.last + 1]:
                 for target in onward[group.end]:
                     yield task.name, target

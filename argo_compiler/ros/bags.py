@@ -20,7 +20,14 @@ from argo_compiler.ros.compression import (
 )
 from argo_compiler.ros.messages import Received, from_message, raise_error, to_message
 from argo_compiler.ros.package import SPECIFICATION
-from argo_compiler.ros.recognition import MAGIC, MCAP, ROS1, SQLITE, first_bytes, read_first_bytes
+from argo_compiler.ros.recognition import (
+    MAGIC,
+    MCAP,
+    ROS1,
+    SQLITE,
+    first_bytes_if_readable,
+    read_first_bytes,
+)
 from argo_compiler.ros.types import RosTypes, ros1_types, ros2_types
 
 TOPIC = "/mission"
@@ -193,7 +200,7 @@ def _open_reader(path: Path, first: bytes) -> Iterator[Any]:
         if os.path.isdir(path):
             check_metadata(path)
         for file in path.glob("*") if os.path.isdir(path) else [path]:
-            if first_bytes(file).startswith(MCAP):
+            if first_bytes_if_readable(file).startswith(MCAP):
                 check_mcap_chunks(file)
         with Ros2Reader(path) as reader:
             yield reader

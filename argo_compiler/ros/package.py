@@ -14,7 +14,7 @@ def message_package() -> dict[str, bytes]:
     return build_files | dict(sorted(messages.items()))
 
 
-def definitions() -> dict[str, str]:
+def message_definitions() -> dict[str, str]:
     """Return the text of each message's definition by the message's full name."""
     return {
         f"{PACKAGE}/{path.removesuffix('.msg')}": content.decode("utf-8")

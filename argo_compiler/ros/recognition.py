@@ -14,7 +14,7 @@ MAGIC = (ROS1, MCAP, SQLITE)
 
 def is_bag(path: Path) -> bool:
     """Return True if the path is to be read as a bag: any folder, or a file that looks like one."""
-    return os.path.isdir(path) or is_bag_content(path.name, first_bytes(path))
+    return os.path.isdir(path) or is_bag_content(path.name, first_bytes_if_readable(path))
 
 
 def is_bag_content(name: str, content: bytes) -> bool:
@@ -22,7 +22,7 @@ def is_bag_content(name: str, content: bytes) -> bool:
     return Path(name).suffix.lower() in {".bag", ".mcap", ".db3"} or content.startswith(MAGIC)
 
 
-def first_bytes(path: Path) -> bytes:
+def first_bytes_if_readable(path: Path) -> bytes:
     """Return the first bytes of a file; empty if the path can't be read or is not a file."""
     if not os.path.isfile(path):  # bytes that are read from a pipe are lost for the next reader
         return b""

@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 from argo_compiler.base.errors import Unavailable
 from argo_compiler.base.extras import install_line
-from argo_compiler.ros.package import PACKAGE, SPECIFICATION, definitions
+from argo_compiler.ros.package import PACKAGE, SPECIFICATION, message_definitions
 
 E = TypeVar("E", bound=Enum)
 
@@ -24,7 +24,7 @@ class RosTypes:
             ) from None
         self.version = version
         self.store = get_typestore(Stores.ROS1_NOETIC if version == 1 else Stores.ROS2_JAZZY)
-        for name, text in definitions().items():
+        for name, text in message_definitions().items():
             self.store.register(get_types_from_msg(text, name))
 
     def new(self, message: str, /, **fields: Any) -> Any:

@@ -80,7 +80,7 @@ class Lockstep:
         name = executor.running and executor.running.name
         if executor.outcome is not None:
             return None, name, self.stopping, {}, None
-        return executor.active, name, self.stopping, dict(executor.rounds), None
+        return executor.active_task, name, self.stopping, dict(executor.rounds), None
 
     def readings(self):
         readings = self.executor.readings.items()

@@ -120,7 +120,7 @@ def test_limits_windows_waits_and_planned_rounds_are_time_outs():
     for now in (6, 7, 11, 16, 30, 31, 40, 41):
         stops = ActionStopped(machines.executor.running.name) if machines.stopping else Tick()
         machines.handle_at(now, ActionSucceeded("A", 1.0) if now == 31 else stops)
-        seen.append((now, machines.executor.active, machines.chart.running, machines.stopping))
+        seen.append((now, machines.executor.active_task, machines.chart.running, machines.stopping))
     assert seen == [
         (6, "A", "A", True),
         (7, "A", "A", False),
@@ -147,12 +147,12 @@ def test_window_that_closes_before_its_round_starts(target):
     machines.handle_at(5, ActionSucceeded("A", 2.0))
     machines.handle_at(6, ActionSucceeded("B", 3.0))
     # The window is missed when the round starts, and without a target again in the next round of H.
-    assert (machines.executor.active, machines.chart.deadline) == ("A", 30)
+    assert (machines.executor.active_task, machines.chart.deadline) == ("A", 30)
     machines.handle_at(30, Tick())
-    assert machines.executor.active == (target or "A")
+    assert machines.executor.active_task == (target or "A")
     if target is None:
         machines.handle_at(34, Tick())
-        assert machines.executor.active == "B"
+        assert machines.executor.active_task == "B"
 
 
 def test_hold_has_a_limit_and_a_supervised_mission_starts_paused():

@@ -47,7 +47,7 @@ class TestCommands:
         assert executor.next_deadline == 11
         assert executor.handle(Tick(), 11) == (CancelAction("B", "the time of 'G' is up", 2),)
         assert executor.next_deadline is None
-        assert executor.active == "D"
+        assert executor.active_task == "D"
         assert executor.handle(Tick(), 12) == ()
         assert executor.handle(ActionStopped("B"), 13) == (StartAction(mission.tasks[3], 3),)
 
@@ -78,13 +78,13 @@ class TestCommands:
         executor = started(build("A"))
         assert executor.handle(ActionFailed("A", "blocked"), 1) == ()
         assert executor.finished
-        assert executor.active is None
+        assert executor.active_task is None
 
 
 class TestViews:
     def test_before_the_start(self, executor):
         assert not executor.finished
-        assert executor.active is None
+        assert executor.active_task is None
         assert executor.configuration == ()
         assert executor.next_deadline is None
         assert executor.rounds == {}
@@ -164,7 +164,7 @@ class TestMisuse:
         with pytest.raises(ValueError, match="does not run"):
             executor.handle(ActionSucceeded("B"), 9)
         executor.handle(ActionSucceeded("A"), 1)
-        assert executor.active == "B"
+        assert executor.active_task == "B"
 
 
 class TestProgress:

@@ -127,7 +127,7 @@ class TestReactions:
     def test_end(self, response, outcome):
         play = interrupted(LEAK, reactions=(reaction(LEAK, response),))
         play.at(3, success("react to gas_leak"))
-        assert (play.outcome, play.finished, play.active) == (outcome, True, None)
+        assert (play.outcome, play.finished, play.active_task) == (outcome, True, None)
 
     @pytest.mark.rule("R4")
     def test_wait(self):
@@ -238,7 +238,7 @@ class TestPersons:
         play = Play(plan())
         play.at(1, Pause())
         assert play.at(2, success("A", 4.0)) == []
-        assert (play.active, play.values["A"].value) == ("B", 4)
+        assert (play.active_task, play.values["A"].value) == ("B", 4)
         assert play.at(3, Resume()) == ["+B"]
         assert [e.task for e in play.ended] == ["A"]
 
@@ -255,10 +255,10 @@ class TestPersons:
         group = Group(name="G", start="A", end="A", max_repeat_duration=5)
         play = Play(plan(groups=(group,)))
         assert play.at(6, Tick()) == ["-A"]
-        assert (play.active, play.running.name, play.trace[-1].time) == ("B", "A", 5)
+        assert (play.active_task, play.running.name, play.trace[-1].time) == ("B", "A", 5)
         assert play.at(7, Tick()) == []
         assert play.at(8, success("A", 1.0)) == ["+B"]
-        assert (play.values["A"].value, play.active) == (1, "B")
+        assert (play.values["A"].value, play.active_task) == (1, "B")
         with pytest.raises(ValueError, match="'B' does"):
             play.at(9, success("A"))
 
@@ -276,7 +276,7 @@ class TestPersons:
         play = Play(plan(task("A")))
         play.at(1, Pause())
         play.at(2, success("A"))
-        assert (play.active, play.outcome) == (None, None)
+        assert (play.active_task, play.outcome) == (None, None)
         play.at(3, Resume())
         assert play.outcome is Outcome.COMPLETED
 

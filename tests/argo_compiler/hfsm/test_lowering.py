@@ -106,7 +106,7 @@ def test_a_thousand_nested_groups():
     executor.handle(ActionSucceeded("B"), 2)
     assert executor.next_deadline == 3
     executor.handle(ActionSucceeded("C"), 2000)
-    assert executor.active == "D"
+    assert executor.active_task == "D"
 
 
 def test_ten_thousand_tasks():

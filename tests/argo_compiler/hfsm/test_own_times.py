@@ -78,14 +78,14 @@ class TestWaits:
         play = Play(plan(wait("W", "A", event=EventKind.ALL_CLEAR, limit=10), task("A")))
         play.at(at, CLEAR)
         assert play.ended[0].failure == ("waited 10 s in vain" if failed else None)
-        assert play.active == "A"
+        assert play.active_task == "A"
 
     @pytest.mark.rule("W2")
     def test_event_before_the_visit_does_not_count(self):
         play = Play(plan(task("A", "W"), wait("W", event=EventKind.ALL_CLEAR)))
         play.at(1, CLEAR)
         play.at(2, success("A"))
-        assert (play.active, play.next_deadline) == ("W", None)
+        assert (play.active_task, play.next_deadline) == ("W", None)
         play.at(3, CLEAR)
         assert play.finished
 
@@ -98,7 +98,7 @@ class TestWaits:
         )
         play = Play(until)
         assert play.at(4, CLEAR) == []
-        assert (play.active, play.holding) == ("W", True)
+        assert (play.active_task, play.holding) == ("W", True)
         assert play.at(20, Resume()) == ["+A"]
         assert play.ended[0].failure is None
 
@@ -107,20 +107,20 @@ class TestWaits:
         old = HIGH.model_copy(update={"max_age": 3})
         play = Play(plan(wait("W", "B", conditions=(HIGH,)), task("A"), task("B")))
         play.at(1, ReadingGiven("A", 5))
-        assert play.active == "W"
+        assert play.active_task == "W"
         assert play.at(2, ReadingGiven("A", 6)) == ["+B"]
         stale = Condition(type=ConditionType.STALE, object_id="A", max_age=3)
         play = Play(plan(wait("W", "B", conditions=(stale,)), task("A"), task("B")))
         play.at(1, ReadingGiven("A", 5))
         play.at(9, Tick())
-        assert play.active == "W"  # it has been stale for long, but nobody has looked
+        assert play.active_task == "W"  # it has been stale for long, but nobody has looked
         play.at(9, ReadingGiven("B", 1))
-        assert play.active == "B"
+        assert play.active_task == "B"
         play = Play(plan(wait("W", "B", conditions=(old,)), task("A"), task("B")))
         play.at(1, Pause())
         play.at(2, ReadingGiven("A", 6))
         play.at(6, Resume())
-        assert play.active == "W"
+        assert play.active_task == "W"
 
     @pytest.mark.rule("W3", "T7", "T8")
     def test_limit_leads_to_the_failure_branch(self):
@@ -167,7 +167,7 @@ class TestWindows:
         play.at(5, success("A"))
         assert play.next_deadline == 20
         assert play.at(20, Tick()) == ["-B"]
-        assert (play.active, play.trace[-1].cause) == ("C", Cause.MISSED)
+        assert (play.active_task, play.trace[-1].cause) == ("C", Cause.MISSED)
         assert play.readings["B"].kind is ReadingKind.FAILED
         assert play.at(21, stopped("B")) == ["+C"]
         play.at(22, success("C"))
@@ -198,7 +198,7 @@ class TestWindows:
         play.at(10, Pause())
         play.at(11, stopped("A"))
         assert play.at(30, Tick()) == []
-        assert play.active == "A"
+        assert play.active_task == "A"
         assert play.at(40, Resume()) == ["+B"]
         assert play.trace[-1].time == 40
 
@@ -297,7 +297,7 @@ class TestReadings:
             play = Play(plan(task("A", *ways), task("B"), task("C")))
             play.at(1, event)
             assert play.readings["A"].kind == kind
-            assert (play.active == "B") == (type.name in held)
+            assert (play.active_task == "B") == (type.name in held)
 
     @pytest.mark.rule("C5", "C7")
     @pytest.mark.parametrize(("at", "follows"), [(4, "C"), (5, "B")])
@@ -307,7 +307,7 @@ class TestReadings:
         play = Play(plan(task("A", "Z"), task("Z", *ways), task("B"), task("C")))
         play.at(1, success("A", 1.0))
         play.at(at, success("Z", 1.0))
-        assert play.active == follows
+        assert play.active_task == follows
 
     @pytest.mark.rule("C3", "T7")
     def test_attempts_and_stops_do_not_count(self):
@@ -337,7 +337,7 @@ class TestRounds:
     def test_begin_when_they_are_due_and_do_not_drift(self):
         play = Play(self.rounds(task("A"), max_repeat_count=4, every=10))
         assert play.at(3, success("A")) == []
-        assert (play.active, play.rounds, play.next_deadline) == ("A", {"G": 2}, 10)
+        assert (play.active_task, play.rounds, play.next_deadline) == ("A", {"G": 2}, 10)
         assert play.progress().round_of == "G"
         assert play.at(10, Tick()) == ["+A"]
         assert play.trace[-1].cause is Cause.ROUND
@@ -408,7 +408,7 @@ class TestOrder:
             plan(task("A", "B", window=window), task("B"), max_duration=10, reactions=(back,))
         )
         play.at(10, Tick())
-        assert (play.reaction, play.active) == (EventKind.TIME_UP, "A")
+        assert (play.reaction, play.active_task) == (EventKind.TIME_UP, "A")
 
     @pytest.mark.rule("I5", "R5")
     def test_action_is_begun_anew_after_an_interruption_that_is_heard_of_when_it_is_over(self):

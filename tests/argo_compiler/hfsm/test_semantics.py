@@ -319,7 +319,7 @@ def test_window_that_is_over_is_missed_when_the_round_is_due():
     executor.start(0)
     executor.handle(ActionSucceeded("A", 0), 3)
     assert executor.handle(Tick(), 7) == ()
-    assert executor.active == "A"
+    assert executor.active_task == "A"
     assert not executor.progress().failed
     assert executor.handle(Tick(), 10) == ()
     assert (executor.progress().failed, executor.rounds["G"]) == (True, 3)

@@ -28,7 +28,7 @@ from argo_compiler.ros import (
     ros2_types,
     to_message,
 )
-from argo_compiler.ros.package import SPECIFICATION, definitions
+from argo_compiler.ros.package import SPECIFICATION, message_definitions
 from tests.conftest import examples
 from tests.mission_writing import drive, start
 from tests.missions_all import FLOATS, carried_missions
@@ -85,8 +85,8 @@ def test_definitions_keep_their_type_hash_of_ros_2():
 
 
 def test_definitions_are_valid_in_both_versions():
-    assert {name.rpartition("/")[2] for name in definitions()} == set(MD5)
-    for text in definitions().values():
+    assert {name.rpartition("/")[2] for name in message_definitions()} == set(MD5)
+    for text in message_definitions().values():
         lines = [line.split("#")[0].strip() for line in text.splitlines()]
         for line in filter(None, lines):
             # ROS 2 has the stricter rules for names; a string constant would include a comment.

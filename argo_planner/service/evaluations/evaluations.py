@@ -54,17 +54,23 @@ class EvaluationFolder:
         self._path = path
 
     def evaluation_path(self, id: str) -> Path:
-        """Return the folder of one evaluation."""
+        """Return the path of an evaluation's folder, which need not exist."""
         return self._path / id
 
     def store(self, evaluation: StoredEvaluation) -> None:
-        """Store the state of an evaluation; raises Unavailable if it can't be written."""
+        """Write an evaluation to its folder, which is made if needed.
+
+        Raises Unavailable if the folder can't be made, OSError if the file can't be written.
+        """
         folder = self.evaluation_path(evaluation.job.id)
         make_folder(folder)
         write_atomically(folder / _JOB_FILE, evaluation.model_dump_json().encode())
 
     def load_all(self) -> list[StoredEvaluation]:
-        """Return all evaluations, the oldest first; a running one is returned as interrupted."""
+        """Return all stored evaluations, the oldest first; damaged ones are left out.
+
+        An evaluation that is stored as running is returned as interrupted.
+        """
         evaluations = []
         names = os.listdir(self._path) if os.path.isdir(self._path) else []
         for name in names:
@@ -78,9 +84,9 @@ class EvaluationFolder:
         return sorted(evaluations, key=lambda evaluation: evaluation.job.begun)
 
     def with_stored_rows(self, job: EvaluationJob) -> EvaluationJob:
-        """Return an evaluation that was ended early, with the standing that its stored rows give.
+        """Return an evaluation that was ended early, with the results of its rows on disk.
 
-        Returns it unchanged if there are no rows or they can't be read.
+        Returns the job unchanged if there are no rows or they can't be read.
         """
         try:
             partial_results = read_partial_results(self.evaluation_path(job.id))
@@ -90,7 +96,7 @@ class EvaluationFolder:
         return job if partial_results is None else job.with_progress(partial_results[0])
 
     def delete(self, id: str) -> None:
-        """Delete an evaluation; raises Unavailable if that fails."""
+        """Delete the folder of an evaluation; raises Unavailable if that fails."""
         try:
             shutil.rmtree(self.evaluation_path(id))
         except OSError as error:
@@ -99,14 +105,17 @@ class EvaluationFolder:
             ) from error
 
     def load_evaluation(self, id: str) -> StoredEvaluation:
-        """Return a stored evaluation; raises NotFound if it can't be read."""
+        """Return a stored evaluation; raises NotFound if it is missing or damaged.
+
+        An evaluation that is stored as running is returned as interrupted.
+        """
         try:
             return self._read(id)
         except (FileError, ValidationError):
             raise NotFound(f"the files of evaluation {id} are missing or damaged") from None
 
     def read_report(self, id: str) -> bytes:
-        """Return the report of an evaluation; raises NotFound if there is none yet."""
+        """Return the report of an evaluation as HTML; raises NotFound if there is none yet."""
         return read_bytes(self.evaluation_path(id) / REPORT, "report", _MAX_BYTES)
 
     def _read(self, id: str) -> StoredEvaluation:
@@ -135,16 +144,16 @@ class Evaluations:
         self._replays = asyncio.Semaphore(MOST_REPLAYED)
 
     async def open(self) -> None:
-        """Load the stored evaluations."""
+        """Load the stored evaluations, and add them to the jobs."""
         stored = await asyncio.to_thread(self._folder.load_all)
         self._jobs.add_past(evaluation.job for evaluation in stored)
 
     async def start(
         self, plan: str, revision: int, spec: EvaluationSpec, author: str
     ) -> EvaluationJob:
-        """Start an evaluation.
+        """Start an evaluation of a mission plan's revision, and return its job.
 
-        Raises Conflict if another one is running, Unavailable if it can't be stored.
+        Raises Conflict if another one is running, Unavailable if its folder can't be made.
         """
         async with self._turn:
             self._require_none_running()
@@ -162,7 +171,8 @@ class Evaluations:
     async def resume(self, id: str) -> EvaluationJob:
         """Resume an evaluation that was interrupted or cancelled; its stored runs are not repeated.
 
-        Raises NotFound, or Conflict if it can't be resumed.
+        Raises NotFound if there is none, Conflict if it is in another state or another evaluation
+        is running.
         """
         async with self._turn:
             job = self.find(id)
@@ -187,9 +197,10 @@ class Evaluations:
                 await self._jobs.cancel(job.id)
 
     async def delete(self, id: str) -> None:
-        """Delete an evaluation that has ended, with all its rows.
+        """Delete an evaluation that has ended, with its folder and all its rows.
 
-        Raises NotFound, Conflict if it is running, or Unavailable if it can't be deleted.
+        Raises NotFound if there is none, Conflict if it is running, Unavailable if its folder can't
+        be deleted.
         """
         async with self._turn:
             job = self.find(id)
@@ -206,9 +217,9 @@ class Evaluations:
                 await self.delete(job.id)
 
     async def report(self, id: str) -> bytes:
-        """Return the report, as a page; after an early end, the report of the stored runs.
+        """Return the report of an evaluation as HTML; after an early end, that of the stored runs.
 
-        Raises NotFound if there is none yet.
+        Raises NotFound if there is no such evaluation, it is running, or it has no report.
         """
         job = self.find(id)
         if job.state is JobState.RUNNING:  # an earlier report would lack the new runs
@@ -228,9 +239,10 @@ class Evaluations:
             ) from None
 
     async def replay(self, id: str, key: str) -> ReplayedRun:
-        """Execute a run of an evaluation again.
+        """Execute the run of an evaluation with this key again, and return all its entries.
 
-        Raises NotFound if there is no such run, Unavailable if it takes too long.
+        Raises NotFound if there is no such evaluation or run, Unavailable if the replay takes
+        longer than LONGEST_REPLAY.
         """
         job = self.find(id)
         stored = await asyncio.to_thread(self._folder.load_evaluation, id)
@@ -277,7 +289,7 @@ class Evaluations:
             async with self._turn:
                 if job.state in (JobState.CANCELLED, JobState.INTERRUPTED):
                     job = await asyncio.to_thread(self._folder.with_stored_rows, job)
-                    self._jobs.update(job)
+                    self._jobs.replace_ended_job(job)
                 try:
                     ended = StoredEvaluation(order=evaluation.order, job=job)
                     await asyncio.to_thread(self._folder.store, ended)

@@ -47,7 +47,7 @@ class _EntryCollector(Observer):
 
 
 def replay_run(request: ReplayRequest, folder: Path, report: ReportProgress) -> ReplayedRun:  # noqa: ARG001
-    """Execute a run of the evaluation in the folder again.
+    """Execute again the run with the request's key, of the evaluation in `folder`.
 
     Raises NotFound if the evaluation has no such run, or the errors of the run.
     """

@@ -37,7 +37,10 @@ class Analyst:
         self._pool = _make_pool()
 
     async def analyse_revision(self, mission: Mission, revision: int) -> AnalysisFound:
-        """Return the analysis of a mission, with the number of its revision."""
+        """Analyse a mission, and return the analysis or the problem that prevented it.
+
+        `revision` is the number of the mission's revision, which the result repeats.
+        """
         for _ in range(2):  # the second time in a new process
             pool = self._pool
             try:
@@ -54,7 +57,7 @@ class Analyst:
         return AnalysisFound(revision=revision, problem=problem)
 
     def close(self) -> None:
-        """End the process at once."""
+        """Kill the process; an analysis under way is lost."""
         self._pool.shutdown(wait=True, kill_workers=True)
 
 

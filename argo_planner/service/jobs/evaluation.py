@@ -128,10 +128,11 @@ class EvaluationSpec(Model):
 def evaluate_mission(
     spec: EvaluationSpec, folder: Path, report: ReportProgress
 ) -> EvaluationStanding:
-    """Execute all runs that are not in the folder yet, and report the progress.
+    """Execute the runs that have no row in the folder yet, and return the final results.
 
-    At the end, the folder has the rows, the report and, without obstacles, the specs of the failed
-    runs. Raises ArgoError if something can't be run at all, or the folder can't be written.
+    `report` is called with the progress during the evaluation. At the end, the folder has the rows,
+    the report and, without obstacles, the specs of the failed runs. Raises ArgoError if something
+    can't be run at all, or the folder can't be written.
     """
     from argo_env.evaluation.report.page import write_evaluation_report  # matplotlib
 
@@ -168,9 +169,9 @@ def evaluate_mission(
 
 
 def read_partial_results(folder: Path) -> tuple[EvaluationStanding, EvaluationResults] | None:
-    """Return the standing and the results of an evaluation in a folder that was ended early.
+    """Return the progress and the results of an evaluation that was ended early, from its folder.
 
-    Returns None if it has no rows. Raises ArgoError if they can't be read.
+    Returns None if no run has been stored. Raises ArgoError if the rows can't be read.
     """
     plan = read_plan(folder)
     try:
@@ -187,9 +188,9 @@ def read_partial_results(folder: Path) -> tuple[EvaluationStanding, EvaluationRe
 
 
 def write_partial_report(folder: Path, report: ReportProgress) -> None:  # noqa: ARG001
-    """Write the report of an evaluation that was ended early.
+    """Write the report of an evaluation that was ended early into its folder, from the rows there.
 
-    Raises NotFound if none of its runs has ended.
+    Raises NotFound if there are no rows, as none of its runs has ended.
     """
     from argo_env.evaluation.report.page import write_evaluation_report
 

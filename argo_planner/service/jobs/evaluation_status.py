@@ -121,7 +121,7 @@ class RunCount:
         self._every = 1  # runs between two points of the curve
 
     def add(self, row: RunRow) -> None:
-        """Count one more run."""
+        """Add a run that has ended, with the result in `row`, to the counters."""
         self._outcomes[row.outcome] += 1
         faults = self._evaluation.faults_for(row.faults, row.seed)
         self._by_faults.setdefault(faults, Counter())[row.outcome] += 1
@@ -147,11 +147,11 @@ class RunCount:
                 self._curve, self._every = self._curve[1::2], 2 * self._every
 
     def interim_standing(self, progress: EvaluationProgress) -> EvaluationStanding:
-        """Return the standing while the evaluation is running."""
+        """Return the progress and the results so far, while the evaluation is running."""
         return self._standing(progress.max_runs, progress.remaining, None)
 
     def final_standing(self, results: EvaluationResults) -> EvaluationStanding:
-        """Return the standing after the end of the evaluation, regular or early."""
+        """Return the progress and the results at the end of the evaluation, regular or early."""
         most = self._planned if results.cut_short else self._outcomes.total()
         return self._standing(most, None, results)
 

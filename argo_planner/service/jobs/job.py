@@ -51,22 +51,22 @@ class OrderJob(_Job):
     found: OrderFound | None = None
 
     def with_progress(self, progress: OrderProgress) -> "OrderJob":
-        """Return the job with one more progress report, of which it stores a limited number."""
+        """Return a copy with one more progress report; the job itself if it has MOST_PROGRESS."""
         if len(self.progress) == MOST_PROGRESS:
             return self
         return self.model_copy(update={"progress": (*self.progress, progress)})
 
     def with_result(self, found: OrderFound) -> "OrderJob":
-        """Return the job with its result, as done."""
+        """Return a copy of the job with its result, in the state `done`."""
         return self.model_copy(update={"state": JobState.DONE, "found": found})
 
     def for_members(self) -> "OrderJob":
-        """Return the job as the members of the room get it: without the reordered mission."""
+        """Return what members of the mission's room are sent: the job without the new mission."""
         found = self.found and self.found.model_copy(update={"mission": None})
         return self.model_copy(update={"found": found})
 
     def without_result(self) -> "OrderJob":
-        """Return the job without its result."""
+        """Return a copy of the job without its result."""
         return self.model_copy(update={"found": None})
 
 
@@ -81,19 +81,19 @@ class EvaluationJob(_Job):
     """progress and interim results; None: no run has ended yet"""
 
     def with_progress(self, standing: EvaluationStanding) -> "EvaluationJob":
-        """Return the job with a newer standing."""
+        """Return a copy of the job with newer progress and interim results."""
         return self.model_copy(update={"standing": standing})
 
     def with_result(self, standing: EvaluationStanding) -> "EvaluationJob":
-        """Return the job with its final standing, as done."""
+        """Return a copy of the job with its final results, in the state `done`."""
         return self.model_copy(update={"state": JobState.DONE, "standing": standing})
 
     def for_members(self) -> "EvaluationJob":
-        """Return the job as the members of the room get it: complete."""
+        """Return what members of the mission's room are sent: the whole job."""
         return self
 
     def without_result(self) -> "EvaluationJob":
-        """Return the job without its result."""
+        """Return a copy of the job without progress and results."""
         return self.model_copy(update={"standing": None})
 
 

@@ -11,10 +11,10 @@ from argo_planner.service.jobs.job import EvaluationJob, Job, JobState
 from argo_planner.service.processes.job_process import JobProcess
 
 MOST_JOBS = 200
-"""stored jobs; beyond this number ended jobs are discarded, the oldest first"""
+"""jobs in memory; beyond this number ended jobs are discarded, the oldest first"""
 
 OnEnd = Callable[[Job], Awaitable[None]]
-"""function that is called with a job after it has ended"""
+"""function that is called with a job in its last state after it has ended"""
 
 
 async def _do_nothing(_: Job) -> None:
@@ -43,7 +43,7 @@ class Jobs:
         self._evict()
 
     def all(self) -> tuple[Job, ...]:
-        """Return the stored jobs, the newest ones first."""
+        """Return all jobs that were not discarded, running and ended, the newest first."""
         return tuple(sorted(self._jobs.values(), key=lambda job: job.begun, reverse=True))
 
     def job(self, id: str) -> Job:
@@ -53,18 +53,24 @@ class Jobs:
         return self._jobs[id]
 
     def running(self, kind: type[Job]) -> list[Job]:
-        """Return the running jobs of a kind."""
+        """Return the running jobs of a kind, which is one of the classes in `Job`."""
         jobs = (self._jobs[id] for id in self._running)
         return [job for job in jobs if isinstance(job, kind)]
 
     def start(self, job: Job, work: JobProcess[Any], on_end: OnEnd = _do_nothing) -> Job:
-        """Start the work of a job; `on_end` is called when it has ended for any reason."""
+        """Start the work of a job, and return the job.
+
+        `on_end` is called after the work is done, has failed or was cancelled, not after `close`.
+        """
         task = asyncio.get_running_loop().create_task(self._watch(job.id, work))
         self._running[job.id] = _RunningJob(work, task, on_end)
         return self._store(job)
 
     async def cancel(self, id: str) -> Job:
-        """End a job; raises NotFound, or Conflict if it has already ended."""
+        """Cancel a running job, and return it in its last state.
+
+        Raises NotFound if there is no such job, Conflict if it has already ended.
+        """
         job = self.job(id)
         running = self._running.pop(id, None)
         if running is None:
@@ -75,17 +81,17 @@ class Jobs:
         await running.on_end(job)
         return self._jobs.get(id, job)
 
-    def update(self, job: Job) -> None:
-        """Replace the stored state of a job that has ended, unless it was discarded."""
+    def replace_ended_job(self, job: Job) -> None:
+        """Replace a job that has ended by `job`, which has the same id, unless it was discarded."""
         if job.id in self._jobs:
             self._store(job)
 
     def discard(self, id: str) -> None:
-        """Remove an ended job."""
+        """Remove the ended job with this id, if there is one."""
         self._jobs.pop(id, None)
 
     async def close(self) -> None:
-        """End all running jobs."""
+        """End all running jobs at once; neither their state changes nor is `on_end` called."""
         all_running, self._running = [*self._running.values()], {}
         for running in all_running:
             running.watching.cancel()

@@ -35,7 +35,8 @@ class OrderFound(Model):
     why_none: str | None = None
     """why there is no order; None: there is one"""
     warning: str | None = None
-    """time limit of the mission that this order exceeds with its exact travel times; None: none"""
+    """message that this order exceeds the mission's time limit, by its exact travel times; None: it
+    does not, or the mission has no limit"""
     mission: Mission | None = None
     """the mission in the new order; None: there is no order"""
 
@@ -47,9 +48,9 @@ def search_order(
     time_limit: float,
     report: ReportProgress,
 ) -> OrderFound:
-    """Search for the best order for at most `time_limit` seconds, and report the progress.
+    """Search for the best order of a mission for at most `time_limit` s, and report the progress.
 
-    Raises the errors of `suggest_order`.
+    `site` is a reference that `open_site` takes. Raises its errors and those of `suggest_order`.
     """
     opened = open_site(site)
 

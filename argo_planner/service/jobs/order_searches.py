@@ -36,7 +36,10 @@ class OrderSearches:
         time_limit: float,
         author: str,
     ) -> OrderJob:
-        """Start a search of at most `time_limit` s; raises Conflict if too many are running."""
+        """Start a search of at most `time_limit` s, and return its job.
+
+        Raises Conflict if MOST_SEARCHES searches are running.
+        """
         if len(self._jobs.running(OrderJob)) >= MOST_SEARCHES:
             raise Conflict(
                 f"{MOST_SEARCHES} searches are running: wait for one of them, or cancel it"
@@ -50,7 +53,7 @@ class OrderSearches:
         return job
 
     def find_result(self, id: str) -> tuple[OrderJob, Mission]:
-        """Return a search and the mission in the order that it has found.
+        """Return the job of a search, and the mission in the order that it has found.
 
         Raises NotFound if there is no such job or it is no search, Conflict if it has found no
         order.

@@ -39,10 +39,10 @@ class JobProcess(Generic[Result]):
         self._ended = False
 
     async def result(self, on_progress: ReportProgress) -> Result:
-        """Start the process and return the work's result; calls `on_progress` with its progress.
+        """Start the process, wait for the work to end, and return its result.
 
-        Raises the ArgoError that the work has raised, or Unavailable if its process can't start or
-        has died.
+        Meanwhile, `on_progress` is called with each progress that the work reports. Raises the
+        ArgoError that the work has raised, or Unavailable if its process can't start or has died.
         """
         loop = asyncio.get_running_loop()
         thread = ThreadPoolExecutor(1)

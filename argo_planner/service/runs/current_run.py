@@ -38,13 +38,16 @@ class CurrentRun:
         self.book = RequestBook("")
 
     def replace_run(self, stored: StoredRun, requests: Iterable[RequestState] = ()) -> None:
-        """Make another run the current one; it must be on disk already."""
+        """Make another run the current one, with an empty log and its earlier requests.
+
+        The run must be on disk already. `load_missing_entries` fills the log.
+        """
         self._stored, self._essential_fields = stored, _essential_fields(stored.state)
         self._entries, self.book = [], RequestBook(stored.state.id, requests)
 
     @property
     def stored(self) -> StoredRun:
-        """The run with its order; there must be one."""
+        """The current run with its order and state; only valid if a run was ever started."""
         assert self._stored is not None, "no run was started"
         return self._stored
 
@@ -54,7 +57,7 @@ class CurrentRun:
         return self._stored.state if self._stored else None
 
     def require_run(self, run: str) -> RunState:
-        """Return the state of the run; raises NotFound if the id is that of another run."""
+        """Return the state of the run `run`; raises NotFound unless it is the current run."""
         state = self.state
         if state is None or state.id != run:
             raise NotFound(f"run {run[:40]!r} is not the current run")
@@ -73,7 +76,7 @@ class CurrentRun:
         return len(self._entries)
 
     def subscribe(self, client: str, since: int | None) -> Mailbox:
-        """Add a follower and return its mailbox.
+        """Add a follower with the id `client`, and return its mailbox.
 
         The mailbox gets the state of the run, then the entries after number `since` (None: all of
         them), then all further messages.
@@ -83,20 +86,20 @@ class CurrentRun:
         return mailbox
 
     def unsubscribe(self, client: str) -> None:
-        """Remove the mailbox of a client, if the client is a follower."""
+        """Remove the follower with this id and its mailbox, if there is one."""
         self._followers.pop(client, None)
 
     def close(self, why: str) -> None:
-        """Close the mailboxes of all followers, with a reason for people."""
+        """Close the mailboxes of all followers; `why` is the reason that they are told."""
         for mailbox in self._followers.values():
             mailbox.close(MailboxClosed(why))
 
     async def load_missing_entries(self) -> None:
-        """Add and publish the entries that are in the journals, but did not arrive.
+        """Add the entries that are in the journals, but did not arrive, and send them to followers.
 
         A process that was killed may have written entries that it could not send. The number of
-        entries and the time in the state follow the journals. Raises ArgoError if a journal can't
-        be read.
+        entries and the time in the run's state are set to those of the journals, if these have
+        entries. Raises ArgoError if a journal can't be read.
         """
         run = self.stored.state.id
         entries = await self._disk.run(self._folder.load_entries, run)
@@ -112,7 +115,7 @@ class CurrentRun:
             self._stored = self.stored.model_copy(update={"state": state})
 
     async def accept_request(self, request: RequestState) -> None:
-        """Store and publish a new request; raises Unavailable if it can't be stored."""
+        """Store a new request on disk and send it to followers; raises Unavailable if it can't."""
         self.book.update(request)
         try:
             file = self._folder.request_file(self.stored.state.id)
@@ -123,9 +126,11 @@ class CurrentRun:
         self._publish_request(self.book.find(request.id))
 
     async def apply_messages(self, messages: Sequence[Model]) -> None:
-        """Store, apply and publish messages of the run's process, in their order.
+        """Update state, log and requests by messages of the run's process, and inform followers.
 
-        There may be very many of them, so all are stored together.
+        The messages are applied in their order. Before that, the last state among them is written
+        to disk if an essential field has changed, and so are the requests that are over. There may
+        be very many messages, so this is done once for all of them.
         """
         await self._store(messages)
         stated = False

@@ -62,7 +62,7 @@ class EntryReporter(Observer):
             self._add(entry)
 
     def on_change(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
-        """Send a new entry."""
+        """Count a new entry, and send it to the service with its number."""
         self._add(entry)
         self._send(EntryTold.model_construct(run=self._run, number=self.count, entry=entry))
 
@@ -94,9 +94,13 @@ class Pace:
         self._simulated, self._now = simulated, now
 
     def time_to_step(self, simulated: float, now: float, waits: bool) -> float:
-        """Return the real time until the next step is due, in s; 0 or less: it is due.
+        """Return the real time in s until the next time step is due; 0 or less: it is due.
 
-        While the run `waits` for a person, simulated time is not faster than real time.
+        Args:
+            simulated: Present simulated time in s.
+            now: Present real time in s.
+            waits: Whether the run waits for a person. Simulated time then is not faster than real
+                time.
         """
         if waits is not self._waits:
             self._waits = waits
@@ -133,10 +137,10 @@ class SupervisedRun:
         return tuple(self._skipped)
 
     def skip(self, name: str) -> None:
-        """Skip the next visit of a task.
+        """Mark the next visit of a task as skipped; it is left out when the robot is given back.
 
-        Raises Conflict if nobody has the robot or the task is already skipped, NotFound if there is
-        no such task that can be skipped.
+        Raises Conflict if no person has the robot or the task is already skipped, NotFound if the
+        mission has no task of that name or it is the START task.
         """
         if not self._simulation.taken_over:
             raise Conflict(
@@ -153,10 +157,10 @@ class SupervisedRun:
         self._skipped.append(name)
 
     def done_and_skipped(self, mission: Mission) -> tuple[ByHand, ...]:
-        """Return the tasks that the person has done and skipped, to be given back with a mission.
+        """Return the tasks that the person has done and those skipped, for giving the robot back.
 
-        The mission may have been edited. A skipped task is left out of the result if the mission
-        has a different task of the same name.
+        `mission` is the mission with which the run continues, which may have been edited. A skipped
+        task is not returned if `mission` has a different task of the same name.
         """
         old = self._simulation.spec.mission
         names = (name for name in self._skipped if _is_same(old.task(name), mission.task(name)))
@@ -164,11 +168,11 @@ class SupervisedRun:
         return (*self._simulation.done_by_hand, *skipped)
 
     def clear_skipped(self) -> None:
-        """Clear the skipped tasks, after the robot was given back."""
+        """Remove all marks of skipped tasks, after the robot was given back."""
         self._skipped.clear()
 
     def requested_task(self, request: asked.DoTask | asked.DriveTo | asked.MeasureAt) -> Task:
-        """Return the task for a request: one of the mission, or one made for the request.
+        """Return the task that a request by hand asks for: one of the mission, or a new one.
 
         Raises NotFound if the mission has no task of that name.
         """
@@ -233,7 +237,8 @@ class RunDriver:
         self._supervised = SupervisedRun(simulation, first.skipped)
         self._pose_due = self._state_sent = 0.0
         self.continuation: tuple[RunSpec, int] | None = None
-        """spec with which the run continues after this simulation, and its plan's revision"""
+        """spec with which the run continues after this simulation, and the revision of the edited
+        plan; None: no person has asked to continue with an edited plan"""
 
     @property
     def speed(self) -> float | None:
@@ -251,9 +256,9 @@ class RunDriver:
         return self._simulation.ended
 
     def step_if_due(self) -> float:
-        """Simulate the next time step and send messages, as far as they are due.
+        """Simulate one time step if it is due, and send the pose and the state if they are due.
 
-        Returns the time in s until this must be called again.
+        Returns the real time in s until this must be called again; 0 or less: at once.
         """
         waits = self._waits_for_person()
         time_left = self._pace.time_to_step(self._simulation.now, self._clock(), waits)
@@ -273,7 +278,7 @@ class RunDriver:
         return min(time_left, max(0.0, state_due - now)) if self._reporter.has_news else time_left
 
     def handle_restart_request(self, request: RunRequest, by: str) -> None:
-        """Carry out the request that came while the run was interrupted: to resume or to stop.
+        """Carry out the request, by author `by`, that an interrupted run be resumed or stopped.
 
         A request to resume is confirmed with the next entry.
         """
@@ -286,7 +291,10 @@ class RunDriver:
         self._settle_requests()
 
     def handle_request(self, request: RunRequest, by: str) -> None:
-        """Carry out a request, or refuse it."""
+        """Begin to carry out a request of the author `by`, or refuse it, and send its progress.
+
+        A refusal raises no error: the state of the request has the reason.
+        """
         try:
             has_effect = self._begin(request)
         except ArgoError as error:
@@ -298,7 +306,7 @@ class RunDriver:
         self.send_state()
 
     def confirm_continuation(self) -> None:
-        """Confirm the requests to continue with an edited plan, which this simulation does."""
+        """Confirm the pending requests to continue with an edited plan: this simulation does so."""
         confirmed = {"progress": RequestProgress.CONFIRMED}
         self._settle(
             [

@@ -84,7 +84,8 @@ class RequestFile:
     def load_requests(self) -> list[RequestState]:
         """Return the last stored state of each request, in the order in which the requests came.
 
-        Damaged lines are skipped. Raises Unavailable if the file can't be read.
+        The list is empty if there is no file. Damaged lines are skipped. Raises Unavailable if the
+        file can't be read.
         """
         try:
             content = self._path.read_bytes()
@@ -110,7 +111,10 @@ class RunFolder:
         self._path = path
 
     def create_run(self, stored: StoredRun) -> Path:
-        """Create and return the folder of a new run; raises Unavailable if that fails."""
+        """Create the folder of a new run, store the run, and return the folder.
+
+        Raises Unavailable if that fails.
+        """
         folder = self._path / stored.state.id
         try:
             folder.mkdir(parents=True)
@@ -121,7 +125,7 @@ class RunFolder:
         return folder
 
     def store(self, stored: StoredRun) -> None:
-        """Write a run's order and state; raises Unavailable if that fails."""
+        """Write a run's order and state to its folder; raises Unavailable if that fails."""
         path = self.run_path(stored.state.id) / _RUN_FILE
         try:
             write_atomically(path, stored.model_dump_json())
@@ -149,7 +153,10 @@ class RunFolder:
             raise NotFound(f"there is no run {id}, or its stored state is damaged") from None
 
     def run_path(self, id: str) -> Path:
-        """Return the folder of a run; raises NotFound if the id is invalid or names a link."""
+        """Return the folder of a run, which need not exist.
+
+        Raises NotFound if the id is invalid or names a link.
+        """
         path = self._path / id
         if not re.fullmatch(RUN_ID, id) or os.path.islink(path):
             raise NotFound(f"there is no run {id[:40]!r}")
@@ -164,11 +171,11 @@ class RunFolder:
         return load_entries(self.run_path(id))
 
     def request_file(self, id: str) -> RequestFile:
-        """Return the file with the requests to a run."""
+        """Return the file with the requests to a run, which need not exist yet."""
         return RequestFile(self.run_path(id) / _REQUEST_FILE)
 
     def read_report_file(self, id: str, file: str) -> bytes | None:
-        """Return a file of the report of a run; None if it does not exist.
+        """Return the content of a file of a run's report; None if the file does not exist.
 
         Raises NotFound if there is no such run, Unavailable if the file can't be read.
         """
@@ -182,11 +189,11 @@ class RunFolder:
             raise Unavailable(f"{path} can't be read: {error.strerror}") from error
 
     def last_journal(self, id: str) -> Path | None:
-        """Return the newest journal of a run; None if it ended before there was one."""
+        """Return the path of the newest journal of a run; None if the run has no journal."""
         return next(reversed(journal_paths(self.run_path(id))), None)
 
     def has_ended(self, id: str) -> bool:
-        """Return True if the last journal of a run ends with the run's end.
+        """Return True if the newest journal of a run has the run's end; False if there is none.
 
         Raises ArgoError if the journal can't be read.
         """
@@ -204,7 +211,7 @@ class DiskThread:
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="runs-disk")
 
     async def run(self, work: Callable[..., T], *arguments: Any) -> T:
-        """Return the result of a call, which is made after all earlier ones."""
+        """Call `work` in the thread, after all earlier calls, and return its result."""
         loop = asyncio.get_running_loop()
         return await loop.run_in_executor(self._thread, partial(work, *arguments))
 

@@ -41,40 +41,40 @@ class AfterRestart(StrEnum):
     """the run waits until a person resumes or stops it"""
 
 
-class RobotLine:
-    """The connection of a remote robot, with the texts that wait to be sent; there may be none."""
+class RobotConnection:
+    """Connection to the remote robot, if one is connected, with the messages that wait for it."""
 
     def __init__(self) -> None:
         self._mailbox: Mailbox | None = None
 
     def connect(self) -> Mailbox:
-        """Replace the robot's connection; return the mailbox with the texts for the robot."""
+        """Begin a new connection, close an earlier one, and return the mailbox of the new one."""
         self.close("the robot has connected again")
         self._mailbox = Mailbox()
         return self._mailbox
 
     def has_mailbox(self, mailbox: Mailbox) -> bool:
-        """Return True if the mailbox is that of the present connection."""
+        """Return True if this is the mailbox of the present connection."""
         return mailbox is self._mailbox
 
-    def post(self, text: str) -> None:
-        """Post a text for the robot; it is dropped if the robot is not connected."""
+    def queue_message(self, message: str) -> None:
+        """Queue a message for the robot; it is dropped if no robot is connected."""
         if self._mailbox is not None:
-            self._mailbox.post(text)
+            self._mailbox.post(message)
 
     def disconnect(self, mailbox: Mailbox) -> None:
-        """Remove the connection with this mailbox, if it is the present one."""
+        """End the present connection, if this is its mailbox."""
         if mailbox is self._mailbox:
             self._mailbox = None
 
     def close(self, why: str) -> None:
-        """Close the robot's mailbox, with a reason for people."""
+        """Close the mailbox of the present connection; `why` is the reason that is sent."""
         if self._mailbox is not None:
             self._mailbox.close(MailboxClosed(why))
 
 
 class RunHost:
-    """The runs of the service's robot, with the current run's process and the line to the robot."""
+    """The runs of the service's robot, the current run's process, and the robot's connection."""
 
     def __init__(
         self,
@@ -107,7 +107,7 @@ class RunHost:
         Requests are thus stored and passed on in the order in which they come, and the end of one
         run is not taken for the end of the next one.
         """
-        self.robot = RobotLine()
+        self.robot = RobotConnection()
         self._last_log: tuple[str, tuple[Entry, ...]] | None = None
         """id and log of the earlier run that was read last, as clients read a log in parts"""
 
@@ -122,7 +122,11 @@ class RunHost:
         return self._folder
 
     async def open(self) -> None:
-        """Load the last run; one that had not ended is resumed, or waits for a person."""
+        """Load the newest run, if there is one.
+
+        If it had not ended, it is resumed or waits for a person, as `after_restart` states; it is
+        stopped if a person had requested that.
+        """
         async with self._lock:
             runs = await self._disk.run(self._folder.load_runs)
             if not runs:
@@ -137,9 +141,10 @@ class RunHost:
                 await self._start_process()
 
     async def start(self, order: RunOrder, by: str) -> RunState:
-        """Start a run.
+        """Start a run, and return its state while its process is starting.
 
-        Raises Conflict, which names the author of the current run, if that is not over yet.
+        Raises Conflict, which names the author of the current run, if that is not over yet;
+        Unavailable if the run can't be stored.
         """
         async with self._lock:
             state = self.state
@@ -217,7 +222,7 @@ class RunHost:
         return self._current.book.find(id)
 
     def require_current(self, run: str) -> RunState:
-        """Return the state of the current run; raises NotFound if the id is that of another run."""
+        """Return the state of the run `run`; raises NotFound unless it is the current run."""
         return self._current.require_run(run)
 
     # ---- states, logs and reports
@@ -229,7 +234,7 @@ class RunHost:
         return runs if state is None else [state, *(run for run in runs if run.id != state.id)]
 
     async def read_state(self, run: str) -> RunState:
-        """Return the state of any run; raises NotFound if there is no such run."""
+        """Return the state of the current or an earlier run; raises NotFound if there is none."""
         if self._is_current(run):
             return self._current.stored.state
         return (await self._disk.run(self._folder.load_run, run)).state
@@ -247,9 +252,10 @@ class RunHost:
         return EntryList(count=len(entries), entries=entries[since : since + most])
 
     async def read_report_file(self, run: str, file: str) -> bytes:
-        """Return a file of the report of a run; wait for it while the report is being written.
+        """Return the content of a file of a run's report; wait if the report is being written.
 
-        Raises NotFound if there is none, with the reason and what there is instead.
+        Raises NotFound, with the reason and a remedy, if there is no such file or the report is
+        not written within 10 s.
         """
         for _ in range(_REPORT_ATTEMPTS):
             content = await self._disk.run(self._folder.read_report_file, run, file)
@@ -263,7 +269,7 @@ class RunHost:
         raise _missing_report_error(await self.read_state(run), file, journal, is_writing)
 
     def subscribe(self, client: str, since: int | None = None) -> Mailbox:
-        """Add a follower of the robot's runs and return its mailbox.
+        """Add a follower of the robot's runs with the id `client`, and return its mailbox.
 
         The mailbox gets the state of the current run, its entries after number `since` (None: all
         of them), then all further messages.
@@ -271,19 +277,20 @@ class RunHost:
         return self._current.subscribe(client, since)
 
     def unsubscribe(self, client: str) -> None:
-        """Remove a follower."""
+        """Remove the follower with this id, if there is one."""
         self._current.unsubscribe(client)
 
-    def receive_from_robot(self, line: Mailbox, text: str) -> None:
-        """Pass a text of the robot on to the run.
+    def receive_from_robot(self, mailbox: Mailbox, message: str) -> None:
+        """Pass a message of the remote robot on to the run's process.
 
-        It is dropped if the run has no process or the robot has connected again on another line.
+        It is dropped if the run has no process, the process has many messages to read, or the robot
+        has meanwhile connected again, so that `mailbox` is not that of its present connection.
         """
-        if self._worker is not None and self.robot.has_mailbox(line):
-            self._worker.send_text(text)
+        if self._worker is not None and self.robot.has_mailbox(mailbox):
+            self._worker.forward_robot_message(message)
 
     async def close(self) -> None:
-        """End all processes and connections; the run can be resumed from its journal."""
+        """Kill all processes and end all connections; the run can be resumed from its journal."""
         async with self._lock:
             self._worker = None
         while self._workers:
@@ -332,7 +339,7 @@ class RunHost:
                 case WorkerFailed(problem=problem):
                     worker.problem = problem
                 case RobotText(text=text) if worker is self._worker:
-                    self.robot.post(text)
+                    self.robot.queue_message(text)
         async with self._lock:
             if worker is self._worker:
                 await self._current.apply_messages(messages)

@@ -14,7 +14,7 @@ _log = logging.getLogger(__name__)
 
 
 def picture_path(folder: Path, checkpoint: int, t: float) -> Path:
-    """Return the path of the picture for the reading of a checkpoint at time `t`, in s."""
+    """Return the path of the picture for a checkpoint's reading at simulated time `t`, in s."""
     return folder / f"reading-{checkpoint}-{round(1000 * t)}.png"
 
 
@@ -29,7 +29,7 @@ class PictureWriter(Observer):
         self._last: Shot | None = None
 
     def on_begin(self, setup: RunSetup, spec: RunSpec) -> None:  # noqa: ARG002
-        """Receive the pictures of the world; an earlier receiver still gets them, too."""
+        """Register to receive the sensor's pictures; an earlier receiver still gets them, too."""
         if not isinstance(setup.world, World):
             return
         earlier_receiver = setup.world.on_shot

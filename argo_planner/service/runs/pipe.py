@@ -10,7 +10,7 @@ from argo_planner.service.runs.requests import RunRequest
 
 
 class RobotText(Model):
-    """Text from a remote robot to the run, or from the run to the robot."""
+    """Message from a remote robot to the run, or from the run to the robot, as text."""
 
     text: str
 
@@ -38,7 +38,7 @@ class WorkerPipe:
             self._receive(timeout)
 
     def take_requests(self) -> Sequence[tuple[RunRequest, str]]:
-        """Return the requests since the last call, each with its author."""
+        """Remove and return the requests received since the last call, each with its author."""
         self._receive(0.0)
         requests = tuple(self._requests)
         self._requests.clear()
@@ -47,11 +47,11 @@ class WorkerPipe:
     # The link to a remote robot (`argo_env.remote.channel`)
 
     def send(self, message: str) -> None:
-        """Send a text to the robot."""
+        """Send a message to the robot, through the service."""
         self._pipe.send(RobotText(text=message))
 
     def receive(self) -> Sequence[str]:
-        """Return the texts that have come from the robot since the last call."""
+        """Remove and return the messages that the robot has sent since the last call."""
         self._receive(0.0)
         texts, self._texts = self._texts, []
         return texts

@@ -73,21 +73,22 @@ class RunProcess:
         except queue.Full:
             raise self._overload_error() from None
 
-    def send_text(self, text: str) -> None:
-        """Queue a text from the remote robot, or drop it if half of the queue is in use.
+    def forward_robot_message(self, message: str) -> None:
+        """Queue a message of the remote robot for the process; drop it if the queue is half full.
 
-        The rest of the queue is left for people's requests. The robot repeats a dropped text, as
+        The rest of the queue is left for people's requests. The robot repeats a dropped message, as
         it gets no acknowledgement.
         """
         if self._waiting.qsize() < MOST_WAITING // 2:
-            self.send(RobotText(text=text))
+            self.send(RobotText(text=message))
 
     def start_reading(
         self, on_messages: Callable[[Sequence[Model]], object], on_exit: Callable[[], object]
     ) -> None:
-        """Start a thread that passes on the messages of the process, and then its exit.
+        """Start a thread that calls `on_messages` with messages of the process, then `on_exit`.
 
         Messages that arrive during a call of `on_messages` are passed on together in the next one.
+        `on_exit` is called after the process has ended.
         """
 
         def pass_on() -> None:
@@ -107,7 +108,10 @@ class RunProcess:
         self._reader.start()
 
     def kill(self) -> None:
-        """Kill the process and wait for the reading thread, whose callbacks must be able to run."""
+        """Kill the process, and wait until the reading thread has called `on_exit` and ended.
+
+        The caller must not block the thread in which the callbacks do their work.
+        """
         self._process.kill()
         self._reader.join()
 

@@ -264,9 +264,10 @@ class RequestBook:
         return tuple(request for request in self._requests.values() if not request.over)
 
     def pending_and_latest(self, updates: Iterable[RequestState] = ()) -> tuple[RequestState, ...]:
-        """Return the pending requests and the latest settled ones, with the updates applied.
+        """Return all pending requests and at most MOST_SETTLED settled ones, the latest of these.
 
-        The book itself is not changed.
+        They are in the order in which they came. `updates` are new states that replace those in the
+        book in the result; the book itself is not changed.
         """
         requests = (self._requests | {request.id: request for request in updates}).values()
         over = [request.id for request in requests if request.over]

@@ -41,7 +41,7 @@ _JOURNAL = re.compile(r"run-(\d{4})\.journal")
 
 
 def journal_paths(folder: Path) -> list[Path]:
-    """Return the journals of a run in their order, the first one and one for each edited plan."""
+    """Return the paths of a run's journals in order: the first one, then one per edited plan."""
     return sorted(folder / name for name in os.listdir(folder) if _JOURNAL.fullmatch(name))
 
 

@@ -83,16 +83,19 @@ def _list_change(before: Sequence[Item], after: Sequence[Item]) -> ListChange[It
     new: dict[str, Item] = {item_name(item): item for item in after}
     put = tuple(i for n, i in new.items() if old.get(n) is not i and old.get(n) != i)
     gone = tuple(n for n in old if n not in new)
-    placed = placements([*old], [*new])
+    placed = new_and_moved_names([*old], [*new])
     if not (put or gone or placed):
         return None
     return ListChange.model_construct(put=put, gone=gone, placed=placed)
 
 
-def placements(before: Sequence[str], after: Sequence[str]) -> tuple[tuple[str, str | None], ...]:
-    """Return the names that are new or moved in the second order, as few as possible.
+def new_and_moved_names(
+    before: Sequence[str], after: Sequence[str]
+) -> tuple[tuple[str, str | None], ...]:
+    """Return the names that are new or moved in the order `after`, as few as possible.
 
-    Each one comes with the name before it, or None if it is the first.
+    They are in that order. Each one comes with the name before it in `after`, or None if it is the
+    first.
     """
     if before == after:
         return ()
@@ -127,9 +130,9 @@ def _longest_increasing_subsequence(numbers: Sequence[int]) -> list[int]:
 
 
 def apply_change(mission: Mission, change: MissionChange) -> Mission:
-    """Return the mission after the change.
+    """Return the mission with the change applied.
 
-    Raises KeyError if the change was made for another mission.
+    Raises KeyError if the change does not fit the mission, as it was made for another one.
     """
     update: dict[str, Any] = dict(change.header.given_fields()) if change.header else {}
     for kind in LISTS:
@@ -155,7 +158,8 @@ def _apply_list_change(items: Sequence[Item], change: ListChange[Item]) -> tuple
 def insert_placed(unmoved: Sequence[str], placed: Sequence[tuple[str, str | None]]) -> list[str]:
     """Return the unmoved names with the placed ones inserted, one after the other, in linear time.
 
-    Each placed name is inserted directly after its predecessor; None inserts it as the first.
+    `placed` has names with their predecessors. Each name is inserted directly after its
+    predecessor; None inserts it as the first. A name whose predecessor is missing is left out.
     """
     following: dict[str | None, str] = {}
     for name, predecessor in placed:

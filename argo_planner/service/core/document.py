@@ -77,7 +77,7 @@ class PlanDocument:
     versions: tuple[PlanVersion, ...] = ()
 
     def apply(self, record: PlanRecord) -> "PlanDocument":
-        """Return the document after a change, of which `record` is the line in the plan's file.
+        """Return a copy of the document with a change applied, which a line of its file records.
 
         Raises ValueError if the change is a revision that does not follow the present one, or does
         not fit the mission.
@@ -94,13 +94,16 @@ class PlanDocument:
                 return replace(self, versions=versions)
 
     def with_plan(self, plan: MissionPlan) -> tuple["PlanDocument", RevisionMade]:
-        """Return the document with a plan that has one more revision, and the revision's record."""
+        """Return a copy of the document with `plan` as its plan, and the record of this change.
+
+        `plan` has exactly one revision more than the document's plan.
+        """
         revision = plan.history[-1]
         changed = replace(self, plan=plan, changed=revision.at)
         return changed, RevisionMade.model_construct(revision=revision)
 
     def make_rename_record(self, name: str, author: str, at: datetime) -> PlanRenamed:
-        """Return the record of a new name.
+        """Return the record of a new name of the plan, without applying it.
 
         Raises Invalid if the text can't be a name.
         """
@@ -108,7 +111,7 @@ class PlanDocument:
         return PlanRenamed(name=name, author=author, at=at)
 
     def make_version_record(self, name: str, author: str, at: datetime) -> VersionKept:
-        """Return the record that stores the present mission as a version.
+        """Return the record of a new version, which is the present mission, without applying it.
 
         Raises:
             Invalid: The text can't be a name.

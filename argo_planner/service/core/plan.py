@@ -63,7 +63,7 @@ class MissionPlan:
         return self.history[len(self.history) - count :]
 
     def require_newest(self, made_on: int | None) -> None:
-        """Raise StaleRevision if the plan is not at this revision; None allows any revision."""
+        """Raise StaleRevision if `made_on` is not the plan's newest revision; None: any will do."""
         if made_on is not None and made_on != self.revision:
             raise StaleRevision(made_on, self.revision, self.since(made_on))
 
@@ -139,7 +139,8 @@ class MissionPlan:
     def replay(self, revision: Revision) -> "MissionPlan":
         """Return the plan after a revision that was read from a file.
 
-        Raises ValueError if the revision does not follow the plan's present one.
+        Raises ValueError if the revision does not follow the plan's present one, or its change does
+        not fit the mission.
         """
         if revision.number != self.revision + 1:
             raise ValueError(f"revision {revision.number} does not follow {self.revision}")
@@ -150,7 +151,7 @@ class MissionPlan:
         return self._with_revision(revision, mission)
 
     def plan_before(self, revision: int) -> "MissionPlan":
-        """Return the plan before a revision of its history, with an empty history."""
+        """Return the plan as it was before a revision of its history, with an empty history."""
         mission = self._mission_before(revision)
         return MissionPlan(mission, revision - 1)
 

@@ -28,7 +28,10 @@ def _is_visible(character: str) -> bool:
 
 
 def require_name(name: str, what: str) -> None:
-    """Raise Invalid if a text can't be shown to people as a name; all other texts are allowed."""
+    """Raise Invalid if a name is invisible, has control characters, or is too long.
+
+    All other texts are allowed. `what` is the thing that is named, for the message.
+    """
     if not any(map(_is_visible, name)):
         raise Invalid(f"{what} needs a name with visible characters: give it one")
     if len(name) > LONGEST_NAME:

@@ -5,7 +5,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from argo_compiler.il import Group, Mission, Reaction, Task
-from argo_planner.service.core.change import HEADER, LISTS, insert_placed, item_name, placements
+from argo_planner.service.core.change import (
+    HEADER,
+    LISTS,
+    insert_placed,
+    item_name,
+    new_and_moved_names,
+)
 
 Named = Task | Group | Reaction
 Subject = tuple[str, str]
@@ -23,11 +29,11 @@ class RevertResult:
 
 
 def revert(now: Mission, before: Mission, after: Mission) -> RevertResult:
-    """Revert in the mission `now` the change that led from `before` to `after`.
+    """Return the mission `now` without the change that earlier led from `before` to `after`.
 
-    A field of the header, of a task, of a group or of a reaction gets its value from `before` if
-    it still has the value from `after`. An item that was moved is moved back if it was not moved
-    again.
+    Each changed field of the header, of a task, of a group or of a reaction gets its value from
+    `before`, and each moved item is moved back. If one of them was changed or moved again after the
+    change, nothing is reverted: the result has the mission `now`, and names these parts.
     """
     update: dict[str, Any] = {}
     since: list[Subject] = []
@@ -57,7 +63,7 @@ class _ListMerge:
         if not self.differs:
             return
         self._now, self._before, self._after = _by_name(now), _by_name(before), _by_name(after)
-        self._moved = {name for name, _ in placements([*self._before], [*self._after])}
+        self._moved = {name for name, _ in new_and_moved_names([*self._before], [*self._after])}
         self._moved |= self._before.keys() - self._after.keys()
 
     def changed_since(self) -> list[str]:

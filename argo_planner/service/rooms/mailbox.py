@@ -24,7 +24,7 @@ class Mailbox:
     """
 
     def __init__(self, past: Iterable[str] = ()) -> None:
-        """Create a mailbox with the messages of the `past`, which do not count towards the limits.
+        """Create a mailbox that begins with messages `past`, which don't count towards the limits.
 
         A client that has just connected is not slow, and these texts are in memory anyway.
         """
@@ -36,7 +36,10 @@ class Mailbox:
         self._closed: MailboxClosed | None = None
 
     def post(self, message: str) -> None:
-        """Add a message that has to arrive."""
+        """Add a message that is never dropped; does nothing after the mailbox was closed.
+
+        If too many messages wait, all are removed and the mailbox is closed, as the client is slow.
+        """
         if self._closed is not None:
             return
         self._messages.append(message)
@@ -49,7 +52,7 @@ class Mailbox:
         self._changed.set()
 
     def post_newest(self, kind: str, message: str) -> None:
-        """Add a message that replaces the waiting message of its kind, if there is one."""
+        """Add a message that replaces the waiting message of the same `kind`, if there is one."""
         if self._closed is None:
             self._newest[kind] = message
             self._changed.set()
@@ -60,9 +63,9 @@ class Mailbox:
         self._changed.set()
 
     async def next_message(self) -> str:
-        """Remove and return the next message, those that have to arrive first.
+        """Remove and return the next message; messages of `post` precede those of `post_newest`.
 
-        Waits for one if there is none. Raises MailboxClosed at the end.
+        Waits for one if there is none. Raises MailboxClosed if the mailbox is closed and empty.
         """
         while True:
             if self._messages:

@@ -77,7 +77,7 @@ class PlanRoom:
 
     @property
     def document(self) -> PlanDocument:
-        """The mission plan, with all changes that were sent to the members."""
+        """The mission plan, with all changes that are on disk."""
         return self._document
 
     @property
@@ -91,7 +91,7 @@ class PlanRoom:
         return self._analysis
 
     def plan_state(self, author: str) -> PlanState:
-        """Return the present state of the plan, for an author."""
+        """Return the present state of the plan, with what this author can undo and redo."""
         lost = self._file.recovery
         return PlanState.from_document(
             self.document, self._findings, author, self._analysis, lost.message if lost else None
@@ -140,7 +140,10 @@ class PlanRoom:
 
     @_shielded
     async def rename(self, name: str, author: str) -> None:
-        """Rename the plan; raises Invalid or Unavailable."""
+        """Rename the plan, and tell the members.
+
+        Raises Invalid if the text can't be a name, Unavailable if the file can't be written.
+        """
         async with self._turn:
             self._require_open()
             record = self.document.make_rename_record(name, author, self._clock())
@@ -149,9 +152,13 @@ class PlanRoom:
 
     @_shielded
     async def store_version(self, name: str, author: str, made_on: int | None) -> VersionSummary:
-        """Store the present mission as a version.
+        """Store the present mission as a version with this name, and tell the members.
 
-        Raises StaleRevision, Invalid, Conflict or Unavailable.
+        Raises:
+            StaleRevision: The plan is at another revision than `made_on`; None allows any.
+            Invalid: The text can't be a name.
+            Conflict: The name is taken, or there are too many versions.
+            Unavailable: The file can't be written.
         """
         async with self._turn:
             self._require_open()
@@ -163,7 +170,10 @@ class PlanRoom:
 
     @_shielded
     async def delete_version(self, number: int) -> None:
-        """Delete a version; raises NotFound or Unavailable."""
+        """Delete the version with this number, and tell the members.
+
+        Raises NotFound if there is none, Unavailable if the file can't be written.
+        """
         async with self._turn:
             self._require_open()
             record = VersionDropped(number=self.document.version(number).number)
@@ -210,7 +220,7 @@ class PlanRoom:
         return mailbox
 
     def set_selection(self, client: str, names: tuple[str, ...]) -> None:
-        """Set the selection of a member to these tasks and groups."""
+        """Set the names of the tasks and groups that a member has selected; tell the others."""
         member, mailbox = self._members[client]
         if member.selection != names:
             self._members[client] = (member.model_copy(update={"selection": names}), mailbox)
@@ -223,11 +233,11 @@ class PlanRoom:
             mailbox.post_newest(job.id, text)
 
     def publish_world(self, revision: int) -> None:
-        """Tell all members that the obstacles on the site have changed."""
+        """Tell all members that the obstacles on the site have changed to this revision."""
         self._broadcast(WorldTold(revision=revision))
 
     def leave(self, client: str) -> None:
-        """Remove a member."""
+        """Remove a member, if the client is one, and tell the others."""
         if self._members.pop(client, None) is not None:
             self._broadcast(MembersTold(members=self._member_list()))
 
@@ -246,7 +256,7 @@ class PlanRoom:
             self.close_idle()
 
     def close_idle(self) -> None:
-        """Disconnect all members and close the file, while no change is under way."""
+        """Disconnect all members and close the file at once; no change may be under way."""
         self._closed = True
         if self._analysing is not None:
             self._analysing.cancel()

@@ -35,18 +35,18 @@ class PlanRooms:
         self._listing = asyncio.Lock()  # separate from `_turn`: edits do not wait for lists
 
     async def list_plans(self) -> list[PlanSummary]:
-        """Return all plans, the last changed ones first."""
+        """Return summaries of all plans, the last changed ones first."""
         async with self._listing:
             open_plans = {id: summarize_plan(room.document) for id, room in self._rooms.items()}
             return await asyncio.to_thread(self._folder.list_plans, open_plans)
 
     async def list_deleted(self) -> list[PlanSummary]:
-        """Return the deleted plans, which are in the bin, the last changed ones first."""
+        """Return summaries of the deleted plans, which are in the bin, the last changed first."""
         async with self._listing:
             return await asyncio.to_thread(self._folder.list_deleted)
 
     async def create(self, name: str, mission: Mission) -> PlanRoom:
-        """Create a plan and open it; raises the errors of `PlanFolder.create`."""
+        """Create a plan and return its open room; raises the errors of `PlanFolder.create`."""
         async with self._turn:
             file = await asyncio.to_thread(self._folder.create, name, mission, self._clock())
             return self._add(PlanRoom(file, self._catalog, self._analyst, self._clock))
@@ -66,12 +66,15 @@ class PlanRooms:
         return self._rooms.get(id)
 
     def publish_world(self, revision: int) -> None:
-        """Tell the members of all rooms that the obstacles on the site have changed."""
+        """Tell the members of all rooms that the obstacles have changed to this revision."""
         for room in self._rooms.values():
             room.publish_world(revision)
 
     async def delete(self, id: str) -> None:
-        """Move a plan to the bin and inform its members; raises NotFound or Conflict."""
+        """Move a plan to the bin, tell its members, and close its room.
+
+        Raises the errors of `PlanFolder.delete`; the room then stays open.
+        """
         async with self._turn:
             deleting = partial(self._folder.delete, id)
             if (room := self._rooms.get(id)) is None:
@@ -81,7 +84,7 @@ class PlanRooms:
                 self._rooms.pop(id, None)
 
     async def restore(self, id: str) -> PlanRoom:
-        """Move a plan out of the bin and open it; raises NotFound if the bin does not have it."""
+        """Move a plan out of the bin and open its room; raises NotFound if it is not in the bin."""
         async with self._turn:
             await asyncio.to_thread(self._folder.restore, id)
         return await self.open(id)

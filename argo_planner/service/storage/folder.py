@@ -71,20 +71,24 @@ class PlanFolder(Closing):
         os.close(self._lock)
 
     def list_plans(self, open_plans: Mapping[str, PlanSummary] | None = None) -> list[PlanSummary]:
-        """Return all plans, the last changed ones first; does not read the files of open plans."""
+        """Return summaries of all plans, the last changed ones first.
+
+        `open_plans` has the summaries of open plans by their ids; their files are not read.
+        """
         return self._summaries(self.path, open_plans or {})
 
     def list_deleted(self) -> list[PlanSummary]:
-        """Return the deleted plans, which are in the bin, the last changed ones first.
+        """Return summaries of the deleted plans, which are in the bin, the last changed ones first.
 
-        The time at which a plan was deleted does not count.
+        The time at which a plan was deleted does not count as a change.
         """
         return self._summaries(self.path / _BIN, {})
 
     def create(self, name: str, mission: Mission, at: datetime) -> PlanFile:
-        """Create a plan.
+        """Create a plan with a new id, and return its open file.
 
-        Raises Invalid if the text can't be its name, Conflict if the folder is full.
+        Raises Invalid if the text can't be its name, Conflict if the folder is full, Unavailable if
+        the file can't be written.
         """
         require_name(name, "the mission")
         if sum(1 for _ in _files(self.path)) >= MOST_PLANS:
@@ -94,7 +98,7 @@ class PlanFolder(Closing):
         return create_plan_file(self._path(id), document)
 
     def open(self, id: str) -> PlanFile:
-        """Open the plan with that id; raises NotFound or the errors of `open_plan_file`."""
+        """Open the file of a plan; raises NotFound, or the other errors of `open_plan_file`."""
         path = self._path(id)
         _require_file(path, id)
         return open_plan_file(path)
@@ -102,7 +106,8 @@ class PlanFolder(Closing):
     def delete(self, id: str) -> None:
         """Move a plan to the bin.
 
-        Raises NotFound, or Conflict if the bin is full.
+        Raises NotFound if there is no such plan, Conflict if the bin is full, Unavailable if the
+        file can't be moved.
         """
         if sum(1 for _ in _files(self.path / _BIN)) >= MOST_PLANS:
             raise Conflict(f"there are {MOST_PLANS} missions in the bin: empty it first")

@@ -27,8 +27,9 @@ class PlanSummary(Model):
 def read_outline(path: Path) -> PlanSummary:
     """Return the summary of a plan's file, from its lines up to the first damaged one.
 
-    If the file can't be opened as a plan, the summary's `problem` states why. Raises NotFound if
-    there is no such file.
+    If the first line is damaged, the file that this one has replaced is read instead. If nothing
+    can be read as a plan, the summary's `problem` states why. Raises NotFound if there is no such
+    file.
     """
     try:
         summary = _summarize(path.stem, read_plan_bytes(path))

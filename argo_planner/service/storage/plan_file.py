@@ -82,7 +82,7 @@ class PlanExtent:
 
     @property
     def has_grown(self) -> bool:
-        """True if the file is to be rewritten."""
+        """True if the file has so many lines or bytes that it is to be rewritten."""
         grown = self.size - self.first
         return self.lines > MOST_RECORDS or grown > max(MAX_GROWTH, self.first)
 
@@ -102,7 +102,7 @@ class PlanFile(Closing):
         self._extent = extent
 
     def append(self, document: PlanDocument, record: PlanRecord) -> None:
-        """Write a record; `document` is the plan's state after it. On return it is on disk.
+        """Append a record to the file and sync it; `document` is the plan's state after the record.
 
         Raises Unavailable if the record can't be written, PlanTooLarge if the file would be too
         large to be opened again. After an error the file has the same content as before.
@@ -143,7 +143,7 @@ class PlanFile(Closing):
 
 
 def create_plan_file(path: Path, document: PlanDocument) -> PlanFile:
-    """Create a file with the plan; raises Unavailable if it can't be written."""
+    """Write a plan to a new file and return it open; raises Unavailable if that fails."""
     file, extent = _write_plan(path, document, 0)
     return PlanFile(path, file, document, extent)
 
@@ -329,7 +329,7 @@ def _last_revisions(plan: MissionPlan, most: int) -> list[RevisionMade]:
 
 
 def previous_file(path: Path) -> Path:
-    """Return the path of the file that a plan's file has replaced."""
+    """Return the path of the file that a plan's file has replaced; it need not exist."""
     return path.with_name(f"{path.name}.before")
 
 
@@ -345,7 +345,8 @@ def _open(path: Path, flags: int = _FLAGS) -> int:
 def read_plan_bytes(path: Path) -> bytes:
     """Return the bytes of a plan's file.
 
-    Raises NotFound, Unavailable, or Invalid if it is too large.
+    Raises NotFound if there is no such file, Unavailable if it can't be read, Invalid if it is too
+    large.
     """
     file = _open(path, os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW)
     try:

@@ -75,7 +75,7 @@ class Visitor:
     """whether the name comes from the token"""
 
     def require(self, role: AccessRole) -> None:
-        """Raise AccessDenied if the visitor's role does not include a role."""
+        """Raise AccessDenied if the visitor's role does not include `role`."""
         if not self.role.includes(role):
             raise AccessDenied(
                 f"this needs the role `{role}`, but yours is `{self.role}`: ask for another token"
@@ -89,11 +89,11 @@ class TokenBook:
         self._tokens = tuple(tokens)
 
     def find_by_secret(self, secret: str) -> AccessToken | None:
-        """Return the token with a secret, or None; the time taken does not depend on the answer."""
+        """Return the token with this secret, or None; the time taken is the same in both cases."""
         return self._find(secret, [token.secret for token in self._tokens])
 
     def find_by_cookie(self, cookie: str) -> AccessToken | None:
-        """Return the token with a value of a cookie, or None."""
+        """Return the token whose `cookie` is this value, or None if there is none."""
         return self._find(cookie, [token.cookie for token in self._tokens])
 
     def _find(self, given: str, values: list[str]) -> AccessToken | None:
@@ -108,7 +108,7 @@ class TokenBook:
 def identify_visitor(
     token: AccessToken, headers: Mapping[str, str], query: Mapping[str, str]
 ) -> Visitor:
-    """Return the sender of a request with a token.
+    """Return name and role of the sender of a request that has a valid token.
 
     The name is that of the token, else that of the header or of the parameter `author`, else
     `somebody`. Raises Invalid if the request states a text that can't be a name.
@@ -157,9 +157,10 @@ def read_tokens(path: Path) -> tuple[AccessToken, ...]:
 
 
 def validate_secret(secret: str, where: str) -> str:
-    """Return the secret; raise Invalid, with the place `where`, if it is too short or unsendable.
+    """Return the secret unchanged; raise Invalid if it is too short or has other characters.
 
-    Only characters that need no escapes in an address and in a header are allowed.
+    Only characters that need no escapes in an address and in a header are allowed. `where` is the
+    place of the secret, for the message.
     """
     if len(secret) < MIN_TOKEN_LENGTH:
         raise Invalid(f"{where}: a token needs at least {MIN_TOKEN_LENGTH} characters")

@@ -38,7 +38,7 @@ from argo_planner.service.web.requests import (
 )
 
 OpenService = Callable[[], AbstractAsyncContextManager[PlanningService]]
-"""function whose context opens the service, and closes it at the end"""
+"""function that returns a context manager, which opens the service and closes it at the end"""
 
 router = APIRouter(
     prefix="/api",
@@ -90,7 +90,7 @@ def robot_message() -> None:
 
 
 def make_app(open_service: OpenService) -> FastAPI:
-    """Return the application without its guard; the OpenAPI document is made from it."""
+    """Return the application with all routes, but without the guard that checks tokens."""
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:

@@ -115,6 +115,9 @@ async def execute_command(
     made_on: int | None,
     asked: ReplaceFrom | None = None,
 ) -> Response:
-    """Execute a command; return the response. Raises the errors of `PlanRoom.execute`."""
+    """Execute a command in a room, and return the HTTP response with its result.
+
+    The arguments and the errors are those of `PlanRoom.execute`.
+    """
     done = await room.execute(command, author, made_on, asked)
     return json_response(done, revision=done.newest)

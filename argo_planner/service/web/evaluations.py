@@ -20,14 +20,14 @@ from argo_planner.service.web.requests import (
     Viewer,
     created_response,
     json_response,
-    links,
     make_router,
+    openapi_links,
 )
 
 router = make_router("jobs")
 
 RunKey = Annotated[str, Path(pattern=r"^[0-9a-f]{24}$", description="key of the run")]
-_JOB = links(
+_JOB = openapi_links(
     "read_job", "cancel_job", "go_on_with_evaluation", "read_evaluation_report",
     "forget_evaluation", id="$response.body#/id",
 )  # fmt: skip
@@ -82,7 +82,7 @@ async def delete_evaluation(service: Service, _: Planner, id: JobId) -> Response
 
 @router.get("/jobs/{id}/runs/{key}", operation_id="replay_run", response_model=ReplayedRun)
 async def replay_evaluated_run(service: Service, _: Viewer, id: JobId, key: RunKey) -> Response:
-    """Repeat a run of an evaluation, and return all its entries."""
+    """Execute a run of an evaluation again, and return its final state and all its entries."""
     return json_response(await service.evaluations.replay(id, key))
 
 

@@ -22,8 +22,8 @@ from argo_planner.service.web.requests import (
     Viewer,
     created_response,
     json_response,
-    links,
     make_router,
+    openapi_links,
 )
 from argo_planner.service.world.previews import PreviewedMission, preview_mission
 
@@ -33,7 +33,7 @@ MAX_SEARCH_TIME = 600.0
 router = make_router("jobs")
 
 JobId = Annotated[str, Path(pattern=f"^{JOB_ID}$", description="id of the job")]
-_JOB = links("read_job", "cancel_job", "accept_order", id="$response.body#/id")
+_JOB = openapi_links("read_job", "cancel_job", "accept_order", id="$response.body#/id")
 
 
 class OrderAsked(Model):

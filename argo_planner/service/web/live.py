@@ -86,7 +86,11 @@ async def accept_socket(
 async def exchange_messages(
     socket: WebSocket, mailbox: Mailbox, receive_text: Callable[[str], None]
 ) -> None:
-    """Send the mailbox's messages and receive the client's, until either side closes."""
+    """Send the mailbox's messages to the client until either side closes the connection.
+
+    `receive_text` is called with each message of the client. A ValidationError that it raises
+    closes the connection as invalid.
+    """
     state = socket.app.state
     state.sockets = getattr(state, "sockets", 0) + 1
     tasks = [

@@ -40,14 +40,14 @@ from argo_planner.service.web.requests import (
     created_response,
     file_responses,
     json_response,
-    link,
-    links,
     make_router,
+    openapi_link,
+    openapi_links,
 )
 from argo_planner.use_cases.exporting import export_mission, to_script
 from argo_planner.use_cases.importing import ImportedMission, Upload, import_mission
 
-MISSION_LINKS = links(
+MISSION_LINKS = openapi_links(
     "read_mission",
     "rename_mission",
     "duplicate_mission",
@@ -72,7 +72,7 @@ router = make_router("missions")
 
 
 class PlanList(Model):
-    """Missions, the newest ones first."""
+    """Missions, the last changed ones first."""
 
     missions: tuple[PlanSummary, ...]
 
@@ -100,7 +100,7 @@ class ImportNotes(Model):
 
 @router.get("/missions", operation_id="list_missions", response_model=PlanList)
 async def list_missions(service: Service, _: Viewer) -> Response:
-    """Return a summary of each mission of the folder."""
+    """Return a summary of each mission, except for those in the bin."""
     return json_response(PlanList(missions=tuple(await service.rooms.list_plans())))
 
 
@@ -193,7 +193,7 @@ async def duplicate_mission(
     responses={
         204: {
             "description": "No Content",
-            "links": {"restore": link("restore_mission", id="$request.path.id")},
+            "links": {"restore": openapi_link("restore_mission", id="$request.path.id")},
         }
     },
 )
@@ -212,7 +212,7 @@ async def list_bin(service: Service, _: Viewer) -> Response:
 
 @router.post("/bin/{id}/restore", operation_id="restore_mission", response_model=PlanSummary)
 async def restore_mission(service: Service, _: Planner, id: PlanId) -> Response:
-    """Restore a mission from the bin."""
+    """Move a mission out of the bin."""
     room = await service.rooms.restore(id)
     return json_response(summarize_plan(room.document), location=f"/api/missions/{id}")
 
@@ -285,7 +285,7 @@ async def read_import_notes(service: Service, _: Viewer, id: PlanId) -> Response
 
 
 def unchecked_mission(document: PlanDocument) -> ImportedMission:
-    """Return the mission of a plan without a check; it may have errors."""
+    """Return the mission of a plan, without diagnostics; it is not checked and may have errors."""
     return ImportedMission(document.plan.mission, document.name, (), ())
 
 
@@ -302,7 +302,10 @@ async def open_valid_plan(service: Service, id: str, made_on: int | None = None)
 
 
 def require_valid_mission(document: PlanDocument, site: OpenedSite) -> ImportedMission:
-    """Return the mission of a plan; raise DiagnosticError if it has errors."""
+    """Return the mission of a plan, without diagnostics.
+
+    Raises DiagnosticError if the mission has errors.
+    """
     if has_errors(diagnostics := check(document.plan.mission, site.catalog)):
         raise DiagnosticError(document.name, diagnostics)
     return unchecked_mission(document)

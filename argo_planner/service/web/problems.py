@@ -118,7 +118,7 @@ def plain_problem(status: HTTPStatus | int, code: str, detail: str) -> Problem:
 
 
 def install_problem_handlers(app: FastAPI) -> None:
-    """Make an app answer all errors with a `Problem`."""
+    """Make an app answer all errors, also those that are defects, with a `Problem`."""
 
     async def handle_argo_error(_: Request, error: Exception) -> Response:
         assert isinstance(error, ArgoError)
@@ -180,7 +180,7 @@ def _invalid(error: ValidationException) -> Problem:
 
 
 def problem_responses(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """Return the responses with problems of some statuses, for the OpenAPI document."""
+    """Return the descriptions of the error responses with these statuses, for OpenAPI."""
     return {
         status: {"model": Problem, "description": HTTPStatus(status).phrase} for status in statuses
     }

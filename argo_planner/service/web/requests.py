@@ -105,7 +105,7 @@ def make_router(*tags: str, prefix: str = "/api") -> APIRouter:
 
 
 def file_responses(description: str, *media: str) -> dict[str, Any]:
-    """Return the arguments of a route that responds with a file of one of some media types."""
+    """Return keyword arguments for a route that responds with a file of a type in `media`."""
     content = {one: {"schema": {"type": "string", "format": "binary"}} for one in media}
     responses = {200: {"description": description, "content": content}}
     return {"response_class": Response, "responses": responses}
@@ -140,7 +140,11 @@ MadeOn = Annotated[int | None, Depends(_parse_if_match)]
 def json_response(
     model: Model, status: int = 200, revision: int | None = None, location: str | None = None
 ) -> Response:
-    """Return a model as a response, with its revision as ETag; the model is not validated again."""
+    """Return a response with a model as JSON, and the given headers.
+
+    `revision` is sent as ETag, `location` as Location; None: the header is left out. The model is
+    not validated again.
+    """
     headers: dict[str, str] = {}
     if revision is not None:
         headers["etag"] = f'"{revision}"'
@@ -152,7 +156,10 @@ def json_response(
 def created_response(
     model: Mapping[str, Any] | type[Model], links: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """Return a response that something was created, for the OpenAPI document, with its links."""
+    """Return the OpenAPI description of a response after something was created or started.
+
+    The response has `model` as body and the header Location; `links` lead to further operations.
+    """
     return {"model": model, "description": "Created", "links": links, "headers": _LOCATION}
 
 
@@ -161,11 +168,14 @@ _LOCATION = {
 }
 
 
-def link(operation: str, **parameters: str) -> dict[str, Any]:
-    """Return an OpenAPI link: another operation, and its parameters as parts of this response."""
+def openapi_link(operation: str, **parameters: str) -> dict[str, Any]:
+    """Return an OpenAPI link to an operation.
+
+    The values of its parameters are expressions such as `$response.body#/id`.
+    """
     return {"operationId": operation, "parameters": parameters}
 
 
-def links(*operations: str, **parameters: str) -> dict[str, dict[str, Any]]:
-    """Return OpenAPI links to operations with the same parameters, by operation."""
-    return {name: link(name, **parameters) for name in operations}
+def openapi_links(*operations: str, **parameters: str) -> dict[str, dict[str, Any]]:
+    """Return OpenAPI links to several operations with the same parameters, by operation id."""
+    return {name: openapi_link(name, **parameters) for name in operations}

@@ -39,8 +39,8 @@ from argo_planner.service.web.requests import (
     created_response,
     file_responses,
     json_response,
-    links,
     make_router,
+    openapi_links,
 )
 
 router = make_router("runs")
@@ -48,8 +48,8 @@ router = make_router("runs")
 RunId = Annotated[
     str, Path(pattern=r"^[0-9]{8}-[0-9]{6}-[0-9a-f]{4}$", description="id of the run")
 ]
-_RUN = links("read_run", "ask_run", "list_entries", "read_report", run="$response.body#/id")
-_REQUEST = links("read_request", run="$request.path.run", request="$response.body#/id")
+_RUN = openapi_links("read_run", "ask_run", "list_entries", "read_report", run="$response.body#/id")
+_REQUEST = openapi_links("read_request", run="$request.path.run", request="$response.body#/id")
 MAX_ENTRIES = 1_000
 """maximum number of entries in one response"""
 
@@ -247,13 +247,13 @@ async def connect_robot(socket: WebSocket) -> None:
     service: PlanningService = socket.app.state.service
     if not await accept_socket(socket, AccessRole.OPERATE):
         return
-    link = service.runs.robot.connect()
+    mailbox = service.runs.robot.connect()
     try:
         await exchange_messages(
-            socket, link, lambda text: service.runs.receive_from_robot(link, text)
+            socket, mailbox, lambda text: service.runs.receive_from_robot(mailbox, text)
         )
     finally:
-        service.runs.robot.disconnect(link)
+        service.runs.robot.disconnect(mailbox)
 
 
 def _require_known(run: RunAsked, site: Site) -> None:

@@ -103,7 +103,7 @@ def make_service_opener(
 
 
 def listen(host: str, port: int) -> socket.socket:
-    """Open a socket that listens at an address; port 0 takes a free one. Raises Unavailable."""
+    """Return a socket that listens at an address; port 0 takes a free port. Raises Unavailable."""
     try:
         family = socket.getaddrinfo(host or None, port, type=socket.SOCK_STREAM)[0][0]
         return socket.create_server((host, port), family=family, backlog=1024)
@@ -115,7 +115,7 @@ def listen(host: str, port: int) -> socket.socket:
 
 
 def serve(spec: ServiceSpec, listening: socket.socket) -> None:
-    """Run the server at a socket until a signal ends it."""
+    """Run the service at a listening socket; return after a signal has ended it."""
     raise_file_limit()
     app = make_app(make_service_opener(spec.plans, spec.site, spec.after_restart, spec.foxglove))
     guard = Guard(app, spec.tokens, spec.guard)

@@ -13,5 +13,5 @@ _UPLOADS = ("/api/imports",)
 
 
 def max_body_bytes(path: str) -> int:
-    """Return the limit of the body of a request for `path`."""
+    """Return the largest size in bytes of the body of a request to the address `path`."""
     return MAX_UPLOAD_BYTES if path in _UPLOADS else MAX_BODY_BYTES

@@ -20,13 +20,13 @@ from argo_planner.service.web.requests import (
     Viewer,
     created_response,
     json_response,
-    links,
     make_router,
+    openapi_links,
 )
 
 router = make_router("versions")
 
-_VERSION = links(
+_VERSION = openapi_links(
     "read_version",
     "restore_version",
     "drop_version",
@@ -70,7 +70,7 @@ async def store_mission_version(
     given: JsonBody[NameGiven],
     made_on: MadeOn,
 ) -> Response:
-    """Store the present mission under a name."""
+    """Store the present mission as a version with a name; 409 if another version has it."""
     room = await service.rooms.open(id)
     version = await room.store_version(given.name, visitor.author, made_on)
     return json_response(version, 201, location=f"/api/missions/{id}/versions/{version.number}")
@@ -107,7 +107,7 @@ async def restore_version(
     command: JsonBody[RestoredVersion],
     made_on: MadeOn,
 ) -> Response:
-    """Replace the mission by a version, as a command that can be undone."""
+    """Replace the present mission by a version, as a command that can be undone."""
     room = await service.rooms.open(id)
     request = ReplaceFrom(id=command.id, kept_as=f"version {number}")
     # This precedes the search for the version, which may have been deleted since.

@@ -108,7 +108,7 @@ async def read_standing(
     floor: Floor,
     heading: Annotated[int, Path(ge=0, le=1_000, description="number of the heading")],
 ) -> Response:
-    """Return the map of a floor for a heading: where the robot can stand, and what it can reach.
+    """Return a map of where on a floor the robot can stand with a heading, and what it can reach.
 
     `docs/service.md` describes the format.
     """
@@ -124,7 +124,7 @@ async def read_standing(
 
 @router.get("/world/obstacles", operation_id="list_obstacles", response_model=ObstacleList)
 async def list_obstacles(service: Service, _: Viewer) -> Response:
-    """Return the obstacles of the site; their ETag is the number of their changes."""
+    """Return the obstacles of the site; the ETag is their revision."""
     present = service.obstacles.present
     return json_response(present, revision=present.revision)
 
@@ -138,7 +138,7 @@ async def list_obstacles(service: Service, _: Viewer) -> Response:
 async def put_obstacles(
     service: Service, _: Planner, given: JsonBody[ObstaclesGiven], made_on: MadeOn
 ) -> Response:
-    """Replace all obstacles of the site; previews and runs take them into account."""
+    """Replace all obstacles of the site; later previews and runs take them into account."""
     obstacles = given.obstacles
     await service.run_on_site(with_obstacles, service.site, obstacles)
     changed = await service.run_on_site(service.obstacles.replace, obstacles, made_on)

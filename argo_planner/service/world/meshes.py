@@ -204,7 +204,8 @@ def _matrix(q: Quaternion) -> NDArray[np.float64]:
 def prism(sides: int, capped: bool = True) -> UnitShape:
     """Return a regular prism along z, inscribed in a cylinder of diameter 1 and length 1.
 
-    With three or four sides it is stretched to fill the unit cube; four sides make a box.
+    With three or four sides it is stretched to fill the unit cube; four sides make a box. Without
+    caps it has no faces at its ends.
     """
     turn = 2 * math.pi / sides
     angles = turn * (np.arange(sides) + 0.5) - (math.pi / 2 if sides == 3 else 0.0)
@@ -226,7 +227,7 @@ def prism(sides: int, capped: bool = True) -> UnitShape:
 
 @lru_cache
 def sphere(sides: int = 12) -> UnitShape:
-    """Return a sphere of diameter 1, as rings of `sides` corners each."""
+    """Return a polyhedron for a sphere of diameter 1, with rings of `sides` corners each."""
     rings = sides // 2
     corners = [(0.0, 0.0, -0.5)]
     for r in range(1, rings):

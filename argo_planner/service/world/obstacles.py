@@ -120,10 +120,10 @@ def _with_obstacles(site: OpenedSite, obstacles: tuple[Obstacle, ...]) -> Opened
 
 
 def obstacle_blockages(obstacle: Obstacle, navigator: Navigator) -> list[Blockage]:
-    """Return the parts of the surface over which the robot would touch an obstacle.
+    """Return the parts of the surface that an obstacle closes to the robot.
 
-    They are rectangles that cover the obstacle, on each level on which it leaves the robot no
-    headroom. The list is empty if it blocks nothing.
+    They are rectangles that cover the obstacle's outline, at the height of each level on which the
+    robot would touch it. The list is empty if it blocks nothing.
     """
     rects = _covering_rects(obstacle)
     levels = _blocked_levels(obstacle, rects, navigator)

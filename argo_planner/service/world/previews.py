@@ -98,7 +98,10 @@ class PreviewedMission(Model):
 def preview_way(
     site: OpenedSite, start: Pose, goal: Task | Pose, obstacles: Sequence[Obstacle] = ()
 ) -> PreviewedWay:
-    """Return the path from `start` to a pose, or to the pose of a task with its action.
+    """Return the path from `start` to a pose or a task, with its time, climb and energy.
+
+    For a task, time and energy include its action. If there is no path, the result's `problem`
+    states why.
 
     Raises:
         Invalid: A pose is too far away for any site, or the task is one to which no path can lead.
@@ -115,7 +118,7 @@ def preview_way(
 def preview_mission(
     site: OpenedSite, mission: Mission, obstacles: Sequence[Obstacle] = ()
 ) -> PreviewedMission:
-    """Return the paths of a mission that has no errors.
+    """Return the paths between the tasks of a mission that has no errors, with times and energy.
 
     Raises:
         Unreachable: The robot can't stand where the mission starts.

@@ -48,7 +48,7 @@ class Ground(IntEnum):
 
 @dataclass(frozen=True)
 class StandingMap:
-    """Verdicts on the cells of a floor for one heading.
+    """Map that states for each cell of a floor whether the robot can stand there with one heading.
 
     The arrays have the shape (layers, rows, columns). Where cells lie above each other, as below a
     flight of stairs, the lower one is in the first layer.
@@ -72,7 +72,11 @@ class StandingMap:
     """height of each cell above `z`, in mm; 0 where there is no ground"""
 
     def ground_at(self, x: float, y: float, z: float) -> Ground:
-        """Return the verdict on the cell at a position in m; of several the nearest in height."""
+        """Return whether the robot can stand over the cell at a position in m, or why it can't.
+
+        Of several cells above each other, the nearest in height counts. The result is NONE if there
+        is no cell.
+        """
         column = int(np.floor((x - self.origin[0]) / self.cell))
         row = int(np.floor((y - self.origin[1]) / self.cell))
         _, rows, columns = self.codes.shape
@@ -109,7 +113,7 @@ class StandingMap:
 
 
 def read_standing_map(content: bytes) -> StandingMap:
-    """Return the map that `to_bytes` wrote; raises Invalid for other content."""
+    """Return the map that `StandingMap.to_bytes` made; raises Invalid for other content."""
     try:
         line, _, compressed = content.partition(b"\n")
         header: dict[str, Any] = json.loads(line)
@@ -133,9 +137,11 @@ def read_standing_map(content: bytes) -> StandingMap:
 def standing_map(
     site: OpenedSite, floor: int, heading: int, obstacles: Sequence[Obstacle] = ()
 ) -> StandingMap:
-    """Return the map of a floor for one of the headings.
+    """Return a map of where on a floor the robot can stand with a heading, and what it can reach.
 
-    Raises NotFound if there is no such floor, Invalid if there is no such heading.
+    `heading` is a number of equal steps counter-clockwise from the x axis. A floor without any
+    surface gives a map without cells. Raises NotFound if there is no such floor, Invalid if there
+    is no such heading.
     """
     z = site.site.floor(floor).z
     if not 0 <= heading < HEADINGS:

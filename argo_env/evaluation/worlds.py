@@ -114,7 +114,10 @@ class Variation(_Ranges):
                 raise Invalid(str(error)) from error
 
     def apply(self, spec: RunSpec, seed: int) -> RunSpec:
-        """Return the spec of the run in the world of a seed, with all values drawn for it."""
+        """Return the spec of the run in the world of a seed, with all values drawn for it.
+
+        Checkpoint values that the given spec has already are kept.
+        """
         update: dict[str, Any] = {"seed": seed}
         conditions = self._conditions(seed)
         if conditions:

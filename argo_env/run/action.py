@@ -162,7 +162,7 @@ class SimulatedAction:
         return limit
 
     def skip_steps(self, count: int, now: float) -> None:
-        """Skip `count` steps, up to `now` (s), in which the robot only drives on or measures."""
+        """Let `count` steps pass at once, up to `now` (s): the robot only drives or measures in them."""
         self._now = now
         if self._phase == self._measure:
             for _ in range(count):

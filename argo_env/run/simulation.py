@@ -336,7 +336,8 @@ class Simulation(Closing):
         """Append a task to the mission of an `OpenMachine`, which takes its tasks one by one.
 
         A journal does not hold such tasks, so a run with them can't be resumed. Raises Conflict if
-        the run has ended, the machine is no `OpenMachine`, or an action runs.
+        the run has ended, the machine is no `OpenMachine`, or an action runs; DiagnosticError if
+        the mission has errors with the task.
         """
         self._require_not_ended()
         machine = self.machine

@@ -107,8 +107,8 @@ def stratified_rate(strata: Sequence[Stratum], level: float = LEVEL) -> Estimate
 
     The interval combines the exact intervals of the strata: the weighted distances of their ends
     from the rates add up in squares (G. Y. Zou, W. Huang and X. Zhang, Computational Statistics and
-    Data Analysis 53 (2009), 1080-1085). It is approximate; the tests measure its coverage. Raises
-    Invalid if the weights don't add up to 1.
+    Data Analysis 53 (2009), 1080-1085). It is approximate; the tests measure its coverage. A
+    stratum without runs counts with a rate of 0.5. Raises Invalid if the weights don't add up to 1.
     """
     if not strata or abs(math.fsum(s.weight for s in strata) - 1.0) > 1e-6:
         raise Invalid("the weights of the strata must add up to 1")

@@ -130,9 +130,10 @@ def evaluate_mission(
 ) -> EvaluationStanding:
     """Execute the runs that have no row in the folder yet, and return the final results.
 
-    `report` is called with the progress during the evaluation. At the end, the folder has the rows,
-    the report and, without obstacles, the specs of the failed runs. Raises ArgoError if something
-    can't be run at all, or the folder can't be written.
+    It stops earlier if the requirements are decided or the rate is known well enough. `report` is
+    called with the progress. At the end, the folder has the rows, the report and, without
+    obstacles, the specs of the failed runs. Raises ArgoError if something can't be run at all, or
+    the folder can't be written.
     """
     from argo_env.evaluation.report.page import write_evaluation_report  # matplotlib
 

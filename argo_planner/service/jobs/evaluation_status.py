@@ -74,7 +74,7 @@ class RequirementTold(Model):
     verdict: Decision
     low: float
     high: float
-    """bounds of the share, 0 to 1, valid at any stopping time"""
+    """bounds of the rate that the requirement limits, 0 to 1, valid at any stopping time"""
     worlds: int
     """number of worlds that count"""
 

@@ -23,7 +23,7 @@ class JobProcess(Generic[Result]):
     """Function call in a separate process, which is started when the result is awaited."""
 
     def __init__(self, work: Callable[..., Result], *arguments: Any, parent: bool = False) -> None:
-        """Prepare the call `work(*arguments, report)`, in which everything can be pickled.
+        """Prepare the call `work(*arguments, report)`; all of it and its result must be picklable.
 
         Args:
             work: The function; its last argument is a `ReportProgress`.

@@ -36,9 +36,10 @@ class Mailbox:
         self._closed: MailboxClosed | None = None
 
     def post(self, message: str) -> None:
-        """Add a message that is never dropped; does nothing after the mailbox was closed.
+        """Add a message, which no later message replaces; does nothing if the mailbox is closed.
 
-        If too many messages wait, all are removed and the mailbox is closed, as the client is slow.
+        If too many messages then wait, all of them are removed, and the mailbox is closed as too
+        slow.
         """
         if self._closed is not None:
             return

@@ -181,7 +181,7 @@ async def rename_mission(
 async def duplicate_mission(
     service: Service, _: Planner, id: PlanId, given: JsonBody[NameGiven]
 ) -> Response:
-    """Create a mission with the same content."""
+    """Create a mission with the present content of another one, without its revisions."""
     room = await service.rooms.open(id)
     return await _create(service, given.name, room.document.plan.mission)
 
@@ -262,7 +262,7 @@ async def export_a_mission(
 async def list_revisions(
     service: Service, _: Viewer, id: PlanId, since: Annotated[int, Query(ge=1, le=10**12)]
 ) -> Response:
-    """Return the revisions after a given one; 404 if they are no longer known."""
+    """Return the revisions after the number `since`; 404 if not all of them are known."""
     plan = (await service.rooms.open(id)).document.plan
     revisions = plan.since(since)
     if revisions is None:

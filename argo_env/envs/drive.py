@@ -383,7 +383,7 @@ class DriveEnv(Copyable, Rendering, gym.Env[Observation, NDArray[np.float32]]):
         }
 
     def _to_robot_frame(self, x: float, y: float, z: float) -> tuple[float, float, float]:
-        """Return a position in the robot's level frame."""
+        """Return a position of the site in the robot's level frame: ahead, to the left, up (m)."""
         pose = self._pose
         dx, dy = x - pose.x, y - pose.y
         cos, sin = math.cos(pose.yaw), math.sin(pose.yaw)

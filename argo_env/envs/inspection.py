@@ -414,7 +414,10 @@ class InspectEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
         ]
 
     def _count_slots(self, name: str, requested: int | None, existing: int, site: str) -> int:
-        """Return the number of slots: as many as the site needs unless more are requested."""
+        """Return the number of slots: as many as the site needs, or the requested number.
+
+        Raises ArgoError if the requested number is too small for the site, or too large.
+        """
         if requested is None:
             return existing
         reason = (
@@ -431,7 +434,10 @@ class InspectEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
         return draw_faults(count, self._drive, self._site.site, rng)
 
     def _execute(self, slot: int) -> tuple[ActionResult, bool]:
-        """Execute the action, and return True as well if the robot is in its end dock then."""
+        """Execute the action with this number, and return its result.
+
+        The second value is True if the robot is in its end dock then.
+        """
         run, site = self._current_run, self._site.site
         if slot < self._slots:
             result = run.measure_checkpoint(site.checkpoints[slot].id)

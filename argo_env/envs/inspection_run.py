@@ -211,7 +211,7 @@ class Inspection(Closing):
         )
 
     def _name(self, what: str) -> str:
-        """Return a name that no task has yet."""
+        """Return a name for a new task that begins with `what` and that no task has yet."""
         self._tasks[what] = count = self._tasks.get(what, 0) + 1
         return what if count == 1 else f"{what} ({count})"
 

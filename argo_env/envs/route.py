@@ -166,12 +166,12 @@ class RouteEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
             self._key, self._episode = int(self.np_random.integers(2**63)), 0
         else:
             self._episode += 1
-        numbers = self._episodes.numbers
+        numbers = self._episodes.instance_numbers
         self._number = numbers[episode_hash(self._key, self._episode) % len(numbers)]
         self.instance = self._known = self._episodes.instance(self._number)
         self._place, self._route = self.instance.start, []
         self._time_left = self.instance.budget_array
-        self._missing = self.instance.missing.copy()
+        self._missing = self.instance.missing_predecessors.copy()
         self._prizes = self.instance.prizes.astype(np.float32)
         hidden = self.instance.hidden
         self._failing = [] if hidden is None else hidden.failing.tolist()

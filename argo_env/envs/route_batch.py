@@ -263,9 +263,10 @@ class RouteVectorEnv(Copyable, VectorEnv[Observation, NDArray[np.int64], NDArray
     def _apply_failures(
         self, nodes: NDArray[np.int64], prizes: NDArray[np.float64], effect: NDArray[np.int16]
     ) -> NDArray[np.bool_]:
-        """Return a mask of the visits that fail, shape (num_envs,), and add up what others win.
+        """Return a mask of the visits that fail, shape (num_envs,), and change what they leave.
 
-        The prizes and the effects of visits that fail are set to 0 in `prizes` and `effect`.
+        In `prizes` and `effect`, the values of visits that fail are set to 0. The other visits get
+        their prizes, which their nodes no longer have then.
         """
         rows = self._all_rows
         failed = self._failing[rows, nodes] > 0
@@ -276,13 +277,13 @@ class RouteVectorEnv(Copyable, VectorEnv[Observation, NDArray[np.int64], NDArray
         return failed
 
     def _start_routes(self, rows: NDArray[np.int64]) -> None:
-        """Start new instances in these rows."""
+        """Start the next episode's instance in these environments."""
         pool = self._episodes.pool
         drawn = episode_hash(self._keys[rows], self._episode[rows])
         chosen = pool.select_rows(rows, drawn)
         self._chosen[rows] = chosen
         self._known[rows] = chosen * pool.stages
-        self._missing[rows] = pool.missing[chosen]
+        self._missing[rows] = pool.missing_predecessors[chosen]
         self._prizes[rows] = pool.prizes[chosen]
         self._place[rows] = self._missing.shape[1]
         self._time[rows] = 0.0

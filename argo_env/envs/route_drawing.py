@@ -218,7 +218,10 @@ def _sheet(
     high: int,
     requested: tuple[int, ...],
 ) -> FloorSheet:
-    """Return the floors from `low` to `high`; if some are requested, the others are pale."""
+    """Return the sheet with the floors from `low` to `high`; unless requested, they are pale.
+
+    If none is requested, none is pale.
+    """
     numbers = range(low, high + 1)
     if isinstance(source, SiteRoutes):
         return site_sheet(source.scenario, low, high, requested or tuple(numbers))

@@ -79,8 +79,9 @@ class InstancePool:
     """one row for each stage of each instance"""
     before: NDArray[np.int8]
     missing_decrease: NDArray[np.int16]
-    """numbers that the visit of a node subtracts from `missing`, shape (m * (n + 1), n + 1)"""
-    missing: NDArray[np.int16]
+    """numbers that the visit of a node subtracts from `missing_predecessors`,
+    shape (m * (n + 1), n + 1)"""
+    missing_predecessors: NDArray[np.int16]
     prizes: NDArray[np.float64]
     budget: NDArray[np.float32]
     noisy: bool
@@ -156,8 +157,8 @@ class Episodes:
         return _site_routes(self._checkpoints, scenario, self._budget, self._noise)
 
     @property
-    def numbers(self) -> range | tuple[int, ...]:
-        """Numbers of the instances from which episodes draw: TRAINING, TEST, or the given ones."""
+    def instance_numbers(self) -> range | tuple[int, ...]:
+        """Numbers of the instances from which episodes draw: TRAINING, TEST or the option's."""
         if isinstance(self.options.instance, int):
             return (self.options.instance,)
         return self.options.instance or (TEST if self.options.test else TRAINING)
@@ -169,9 +170,9 @@ class Episodes:
             source = self.source
             # A source from elsewhere may give different instances each time.
             if type(source) is RandomRoutes:
-                self._pool = _shared_pool(source, self.options, self.numbers)
+                self._pool = _shared_pool(source, self.options, self.instance_numbers)
             else:
-                self._pool = _make_pool(source, self.options, self.numbers)
+                self._pool = _make_pool(source, self.options, self.instance_numbers)
         return self._pool
 
     def _draw(self, number: int) -> RouteInstance:
@@ -203,7 +204,7 @@ def read_route_options(
 
 
 def _check_instance(options: RouteOptions, count: int | None) -> None:
-    """Raise ArgoError if there are no such instances, or if other options choose instances too."""
+    """Raise ArgoError if `options.instance` is wrong, or if other options choose instances too."""
     given = options.instance
     numbers = given if isinstance(given, tuple) else (given,)
     if isinstance(given, tuple) and len(given) != count:
@@ -280,7 +281,7 @@ def _make_pool(
         home=np.stack([k.home for k in known]),
         before=np.stack([m.before for m in instances]).astype(np.int8),
         missing_decrease=np.concatenate([m.missing_decrease for m in instances]),
-        missing=np.stack([m.before.sum(axis=0, dtype=np.int16) for m in instances]),
+        missing_predecessors=np.stack([m.before.sum(axis=0, dtype=np.int16) for m in instances]),
         prizes=np.stack([m.prizes for m in instances]),
         budget=np.array([m.budget for m in instances], dtype=np.float32),
         noisy=any(m.hidden is not None for m in instances),

@@ -20,7 +20,8 @@ and the environment, its batch and `score_route` agree bit for bit."""
 _TIME_LIMIT = 2.0**18  # s
 MAX_CHECKPOINTS = 500
 VISITED = MAX_CHECKPOINTS + 1
-"""number that marks a visited checkpoint in `missing`: more than there are checkpoints"""
+"""number that marks a visited checkpoint in an episode's copy of `missing_predecessors`: more than
+there are checkpoints"""
 
 
 @dataclass(frozen=True)
@@ -76,16 +77,17 @@ class RouteInstance:
         return np.asarray(np.minimum(self.arrival / np.float32(self.budget), np.float32(1.0)))
 
     @cached_property
-    def missing(self) -> NDArray[np.int16]:
+    def missing_predecessors(self) -> NDArray[np.int16]:
         """Number of checkpoints that must be visited before each node, shape (n + 1,)."""
         return np.asarray(self.before.sum(axis=0, dtype=np.int16))
 
     @cached_property
     def missing_decrease(self) -> NDArray[np.int16]:
-        """Numbers that the visit of a node (row) subtracts from `missing`, shape (n + 1, n + 1).
+        """Numbers that the visit of a node (row) subtracts from `missing_predecessors`.
 
-        That is 1 for each node that must come after it, and -VISITED for itself, so that it does
-        not become legal again. A node is legal while its number is 0.
+        The shape is (n + 1, n + 1). A number is 1 for each node that must come after the visited
+        one, and -VISITED for itself, so that it does not become legal again: a node is legal only
+        while its number in `missing_predecessors` is 0.
         """
         effect = self.before.astype(np.int16)
         np.fill_diagonal(effect, -VISITED)

@@ -66,10 +66,10 @@ def aisle_times(
 
 @lru_cache(maxsize=256)
 def _floor_crossings(floors: int, ends: int, blocked: frozenset[Stair]) -> NDArray[np.float64]:
-    """Return the lengths (m) that paths go from end to end of floors.
+    """Return the lengths (m) of the shortest paths from an end of one floor to an end of another.
 
-    Counted is what a path goes between leaving the first floor at one end and arriving on the last
-    floor at another end. The shape is (ends, ends, floors, floors); inf if there is no path.
+    The stairs themselves are not counted. The shape is (ends, ends, floors, floors): from end, to
+    end, from floor, to floor, floors counted from 0; inf if there is no path.
     """
     lengths = np.full((ends, ends, floors, floors), np.inf)
     for first in range(floors):

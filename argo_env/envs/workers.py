@@ -140,7 +140,7 @@ class _WorkerEnvs(SyncVectorEnv[Any, Any]):
         return [None] * self.num_envs
 
     def ended_flags(self) -> list[bool]:
-        """Return for each environment True if the next step resets it."""
+        """Return a flag for each environment: True if its episode is over, so a step resets it."""
         return [bool(member) for member in self._autoreset_envs]
 
     def set_ended_flags(self, ended: list[bool]) -> list[None]:

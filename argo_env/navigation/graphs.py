@@ -25,10 +25,10 @@ no path; both of shape (trees, states)"""
 def make_graph(
     costs: NDArray[np.float64], heads: NDArray[np.integer], starts: NDArray[np.integer]
 ) -> Graph:
-    """Return the graph with the given moves, sorted by the state that they start from.
+    """Return the graph with the given moves, which are sorted by the state that they start from.
 
-    Moves from state s are those from number `starts[s]` to before `starts[s + 1]`; `heads` are the
-    states that they lead to, and `costs` (s) what they take.
+    The moves from state s are those with the indices from `starts[s]` to `starts[s + 1] - 1`. Each
+    leads to its state in `heads`, and costs its item of `costs` (s).
     """
     from scipy.sparse import csr_array
 
@@ -42,7 +42,10 @@ def make_graph_of_moves(
     targets: NDArray[np.int64],
     states: int,
 ) -> Graph:
-    """Return the graph of moves in any order; costs of equal moves are added."""
+    """Return the graph of moves in any order between so many `states`; costs are in s.
+
+    If a move occurs twice, its costs are added.
+    """
     from scipy.sparse import coo_array
 
     return coo_array((costs, (sources, targets)), shape=(states, states)).tocsr()

@@ -134,7 +134,7 @@ def build_lattice(surface: Surface, robot: RobotSpec) -> Lattice:
 def _cost_factor(
     roomy: NDArray[np.bool_], source: NDArray[np.int64], target: NDArray[np.int64]
 ) -> NDArray[np.float64]:
-    """Return the cost of each second of the moves."""
+    """Return for each move the cost of a second: 1, or CRAMPED_FACTOR with little clearance."""
     return np.where(roomy[source] & roomy[target], 1.0, CRAMPED_FACTOR)
 
 
@@ -198,7 +198,10 @@ def _drives(
     cell: NDArray[np.int64],
     heading: NDArray[np.int64],
 ) -> list[Edges]:
-    """Return the moves to the next cell, forwards along the heading and backwards against it."""
+    """Return the drives from each state to the next cell, one group forwards and one backwards.
+
+    The heading stays. `Edges` are the states moves start from, those they lead to, and seconds.
+    """
     edges = []
     length = robot.footprint.front + robot.footprint.rear
     for gear in (1, -1):
@@ -230,7 +233,10 @@ def _turn_seconds(robot: RobotSpec) -> float:
 
 
 def _turns(surface: Surface, robot: RobotSpec, state_of: NDArray[np.int64]) -> list[Edges]:
-    """Return turns in place by one heading, both ways, where the swept area is free and flat."""
+    """Return the turns in place by one heading, both ways, where the swept area is free and flat.
+
+    The results are as those of `_drives`.
+    """
     edges = []
     seconds = _turn_seconds(robot)
     for heading in range(HEADINGS):

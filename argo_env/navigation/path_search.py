@@ -41,8 +41,8 @@ def find_path_within(
 
     Args:
         area: Region to search in.
-        source: State of the region from which the path starts.
-        ends: States of the region, one of which the path reaches.
+        source: State from which the path starts, in the region's own numbers.
+        ends: States, one of which the path reaches, in the same numbers.
         extra: Additional cost (s) of each of `ends`.
         max_cost: Cost (s), `extra` included, up to which a path is of interest.
 
@@ -152,7 +152,7 @@ def entry_costs_and_times(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the costs and times (s) from each entry of a region to each of its states `ends`.
 
-    Both have the shape (entries, ends).
+    The states are in the region's own numbers. Both arrays have the shape (entries, ends).
     """
     return area.trees_from_entries[0][:, ends], tree_times(
         lattice, area, area.trees_from_entries, ends
@@ -316,7 +316,10 @@ class PathSearch:
         return result
 
     def _portal_path(self, source: int, goals: Goals) -> _PortalPath | None:
-        """Return the cheapest path from `source` to one of the goals that leaves its region."""
+        """Return the cheapest path from `source` to a goal that leaves the region of `source`.
+
+        Returns None if there is none.
+        """
         part, portals = self.partition, self._portals
         area, start = part.regions[part.region[source]], int(part.local[source])
         exits = portals.exit_rows(area)

@@ -125,7 +125,7 @@ class Landmarks:
 
 
 def _outermost(positions: NDArray[np.float64]) -> list[int]:
-    """Return the outermost state in each of some directions, in the middle of those that tie."""
+    """Return the outermost state in each of _OUTER_LANDMARKS directions; of a tie, the middle."""
     states = []
     for k in range(_OUTER_LANDMARKS):
         angle = 2 * math.pi * k / _OUTER_LANDMARKS
@@ -163,12 +163,12 @@ class Region:
 
     @cached_property
     def trees_from_entries(self) -> Trees:
-        """Cheapest paths from each entry; next to a state is the state before it."""
+        """Cheapest paths from each entry, the root: the next state is the one before on a path."""
         return self._trees("entries", self.forward, self.entries)
 
     @cached_property
     def trees_to_exits(self) -> Trees:
-        """Cheapest paths to each exit; next to a state is the state after it."""
+        """Cheapest paths to each exit, the root: the next state is the one after on a path."""
         return self._trees("exits", self.backward, self.exits)
 
     def _trees(self, kind: str, graph: Graph, sources: NDArray[np.int64]) -> Trees:

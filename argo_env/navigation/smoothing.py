@@ -225,7 +225,7 @@ def _shorten(
 
 
 def _elapsed_times(pieces: list[list[Motion]], robot: RobotSpec) -> NDArray[np.float64]:
-    """Return the time (s) at the start and after each piece of a path, shape (n + 1,).
+    """Return the time (s) since the start, 0 at first and then after each piece of a path.
 
     Consecutive motions of the same kind count as one motion, for which the robot sets off once.
     """

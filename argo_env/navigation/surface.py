@@ -148,7 +148,10 @@ def _link(
     grid: Grid,
     max_step: float,
 ) -> NDArray[np.int64]:
-    """Return for each cell the neighbour in `direction` whose height is nearest, or -1."""
+    """Return for each cell the neighbour in `direction` whose height is nearest to its own.
+
+    It is -1 if there is none at most `max_step` (m) higher or lower.
+    """
     ni, nj = i + direction[0], j + direction[1]
     inside = (ni >= 0) & (ni < grid.nx) & (nj >= 0) & (nj < grid.ny)
     wanted = np.where(inside, ni * grid.ny + nj, -1)

@@ -103,7 +103,7 @@ def mission_travel(
 
 
 def _end_poses(goals: Sequence[Task], start: Pose, travel: SiteTravel) -> list[Pose]:
-    """Return the most frequent pose of the robot at the end of each task."""
+    """Return the most frequent pose of the robot at the end of each task, from several origins."""
     from_start = [start]
     for task in goals:
         leg = _require_leg(travel, start, task)
@@ -134,7 +134,10 @@ def _require_leg(travel: SiteTravel, start: Pose, task: Task) -> Leg:
 def _plan_all(
     origins: Sequence[Pose], goals: Sequence[Task], travel: SiteTravel
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return times (s) and energies (Wh) of planned paths, one row per origin; inf: no path."""
+    """Return times (s) and energies (Wh) from origins (rows) to goals, with the actions there.
+
+    They are those of planned paths; inf where there is no path.
+    """
     time = np.full((len(origins), len(goals)), np.inf)
     energy = time.copy()
     for row, origin in enumerate(stage_items(_PLANNING, origins)):
@@ -145,7 +148,10 @@ def _plan_all(
 def _plan_from(
     origin: Pose, goals: Sequence[Task], travel: SiteTravel
 ) -> tuple[list[float], list[float]]:
-    """Return times (s) and energies (Wh) of planned paths from one origin; inf: no path."""
+    """Return times (s) and energies (Wh) from one origin to each goal, with the actions there.
+
+    They are those of planned paths; inf where there is no path.
+    """
     legs = [travel.leg(origin, task, task.velocity) for task in goals]
     time = [leg.duration if isinstance(leg, Leg) else np.inf for leg in legs]
     return time, [leg.energy if isinstance(leg, Leg) else np.inf for leg in legs]
@@ -158,9 +164,10 @@ def _estimate_on_lattice(
     navigator: Navigator,
     travel: SiteTravel,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return times (s) and energies (Wh) of paths on the lattice, one row per origin; inf: no path.
+    """Return times (s) and energies (Wh) from origins (rows) to goals, with the actions there.
 
-    Energies are those of driving up stairs, which takes the most.
+    They are those of paths on the lattice; inf where there is no path. Energies are those of
+    driving up stairs, which takes the most.
     """
     distinct = list(dict.fromkeys([*origins, *end_poses]))
     index = {pose: k for k, pose in enumerate(distinct)}

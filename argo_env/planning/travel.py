@@ -132,7 +132,8 @@ class SiteTravel:
     def start_pose(self, mission: Mission) -> Pose:
         """Return the pose at which the robot starts: that of START, or of the starting area's dock.
 
-        Raises Unreachable if the robot can't stand there.
+        It is moved to the nearest position at which the robot can stand. Raises Unreachable if none
+        is near.
         """
         pose = start_pose(mission, self._on.site.docks)
         path = cached_path(
@@ -206,7 +207,7 @@ class SiteTravel:
         return Leg(drive + work, energy + work_energy, path.end, work, work_energy)
 
     def _power(self, motion: Motion) -> float:
-        """Return the power that a motion takes, in W."""
+        """Return the power in W that the robot draws during a motion."""
         power = self._robot.power
         return {
             MotionKind.TURN: power.turning,

@@ -87,13 +87,16 @@ def build_pump(pump: PumpSpec, z: float) -> Element:
 
 
 def build_column(number: int, center: tuple[float, float], bottom: float, top: float) -> Element:
-    """Build a steel column of 0.2 m by 0.2 m about `center`, from height `bottom` to `top` (m)."""
+    """Build a steel column of 0.2 m by 0.2 m about `center`, from height `bottom` to `top` (m).
+
+    `number` is for its name.
+    """
     box = Box((center[0], center[1], (bottom + top) / 2), (0.2, 0.2, top - bottom))
     return Element(f"column {number}", Role.STRUCTURE, (box,), "structure")
 
 
 def build_dock(area: AreaSpec, ground_z: float) -> Element:
-    """Build the docking station of a starting area: a cabinet before the docked robot, and a sign.
+    """Build a starting area's docking station: a cabinet in front of the docked robot, and a sign.
 
     It stands on the ground, at the height `ground_z` (m).
     """

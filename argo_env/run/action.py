@@ -162,7 +162,7 @@ class SimulatedAction:
         return limit
 
     def skip_steps(self, count: int, now: float) -> None:
-        """Let `count` steps pass at once, up to `now` (s): the robot only drives or measures in them."""
+        """Let `count` steps pass at once, up to `now` (s): the robot only drives or measures."""
         self._now = now
         if self._phase == self._measure:
             for _ in range(count):

@@ -12,7 +12,7 @@ from argo_compiler.base.garbage_collector import enable_garbage_collector
 from argo_compiler.base.version import __version__
 from argo_planner.lazy_group import LazyCommand, LazyGroup
 from argo_planner.terminal.output import guard_output
-from argo_planner.terminal.signals import SignalWatch, ignore_signals, raise_interrupted
+from argo_planner.terminal.signals import SignalWatch, ignore_signals, raise_on_signals
 from argo_planner.terminal.verbosity import set_verbosity
 
 _COMMANDS = {
@@ -159,7 +159,7 @@ def _carry_out() -> int:
     raised = SignalWatch()
     try:
         try:
-            raise_interrupted(raised)
+            raise_on_signals(raised)
             app(prog_name="argo")
         finally:
             ignore_signals()

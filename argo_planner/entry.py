@@ -10,9 +10,9 @@ def main() -> None:
     Signals come first, as the imports take most of a second.
     """
     try:
-        from argo_planner.terminal.signals import end_at_once
+        from argo_planner.terminal.signals import exit_on_signals
 
-        end_at_once()
+        exit_on_signals()
     except KeyboardInterrupt:
         raise SystemExit(130) from None
     gc.disable()  # imported modules stay in memory; a command calls `enable_garbage_collector`

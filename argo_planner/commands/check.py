@@ -11,12 +11,12 @@ from argo_compiler.diagnostics.codes.code import Severity
 from argo_env.planning.opening import open_site
 from argo_planner.terminal.files import STANDARD_OUTPUT, check_outputs, read_upload, write_content
 from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea, Strict
-from argo_planner.terminal.words import name_options
+from argo_planner.terminal.words import add_options_to_hints
 from argo_planner.use_cases.checking import (
     Format,
     check_source,
     error_diagnostics,
-    write_diagnostics,
+    format_diagnostics,
 )
 
 
@@ -37,8 +37,8 @@ def check_command(
 ) -> None:
     """Check a mission without running it; exits with status 2 if there are errors."""
     check_outputs([source, site], [output], force=force)
-    diagnostics = name_options(_diagnostics(source, site, start_area, end_area))
-    written = write_diagnostics(diagnostics, str(source), format)
+    diagnostics = add_options_to_hints(_diagnostics(source, site, start_area, end_area))
+    written = format_diagnostics(diagnostics, str(source), format)
     if output and output != STANDARD_OUTPUT:
         write_content(output, written + "\n")
         print(f"{source}: {severity_counts_text(diagnostics)}")

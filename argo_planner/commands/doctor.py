@@ -6,7 +6,7 @@ import typer
 
 from argo_compiler.base.errors import Unavailable
 from argo_env.files import cache
-from argo_planner.use_cases.doctor import examine
+from argo_planner.use_cases.doctor import examine_installation
 
 
 def doctor_command(
@@ -18,7 +18,7 @@ def doctor_command(
     """Show Argo's version, its cache on disk, and which optional parts are installed."""
     if empty_cache:
         _empty_cache()
-    found = examine()
+    found = examine_installation()
     print(f"argo {found.version}, Python {found.python}, {found.system}")
     stored = found.cache
     print(

@@ -9,7 +9,7 @@ from argo_compiler.diagnostics.codes.code import Severity
 from argo_env.planning.opening import open_site
 from argo_planner.terminal.files import STANDARD_OUTPUT, check_outputs, read_upload, write_content
 from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea, Strict
-from argo_planner.use_cases.explaining import ExplanationFormat, explain_mission, explanation_text
+from argo_planner.use_cases.explaining import ExplanationFormat, explain_mission, format_explanation
 from argo_planner.use_cases.importing import import_mission
 
 
@@ -32,6 +32,6 @@ def explain_command(
     opened = open_site(site)
     imported = import_mission(read_upload(source), opened, start_area, end_area)
     explanation = explain_mission(imported, opened)
-    write_content(output or STANDARD_OUTPUT, explanation_text(explanation, format))
+    write_content(output or STANDARD_OUTPUT, format_explanation(explanation, format))
     if strict and any(d.severity is Severity.WARNING for d in imported.warnings):
         raise typer.Exit(1)

@@ -18,7 +18,12 @@ from argo_planner.terminal.files import (
 )
 from argo_planner.terminal.importing import import_and_warn
 from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea
-from argo_planner.use_cases.exporting import FORMATS, export_mission, is_folder, require_format
+from argo_planner.use_cases.exporting import (
+    FORMATS,
+    export_mission,
+    is_folder_format,
+    require_format,
+)
 
 
 def export_command(
@@ -46,7 +51,7 @@ def export_command(
         require_format(to)
     except NotFound as error:
         raise NotFound(f"--to {error}") from None
-    if is_folder(to):
+    if is_folder_format(to):
         if output == STANDARD_OUTPUT:
             raise Invalid(f"--to {to} writes a folder, not standard output: name a folder with -o")
         check_outputs([source, site], folders=[(output, ())])

@@ -22,7 +22,7 @@ from argo_planner.terminal.files import check_outputs, read_upload, require_miss
 from argo_planner.terminal.importing import import_and_warn
 from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea
 from argo_planner.terminal.order_tables import reordering_lines, show_order, show_risk
-from argo_planner.terminal.words import error_text, name_keep_order_option
+from argo_planner.terminal.words import add_keep_order_option, error_text
 from argo_planner.use_cases.importing import SourceKind, require_no_areas, source_kind
 from argo_planner.use_cases.no_order import require_order
 from argo_planner.use_cases.routing import (
@@ -30,9 +30,9 @@ from argo_planner.use_cases.routing import (
     TIME_LIMIT,
     SuggestedOrder,
     parse_requirements,
-    require_limit,
+    require_time_limit,
     suggest_order,
-    suggest_robust,
+    suggest_robust_order,
     verify_order,
 )
 
@@ -110,13 +110,13 @@ def route_command(
         _check_pictures(pictures, opened, force)
     imported = import_and_warn(upload, opened, start_area, end_area)
     if robust:
-        require_limit(imported.mission, wanted)
+        require_time_limit(imported.mission, wanted)
     found = suggest_order(imported, opened, wanted, time_limit=time_limit, seed=seed)
     console = Console(highlight=False)
     spread = SPREADS[risk or Spread.CAUTIOUS]
     _require_order(source, found, console, verify)
     if robust:
-        found = suggest_robust(found, spread, time_limit, seed)
+        found = suggest_robust_order(found, spread, time_limit, seed)
         _require_order(source, found, console, verify)
     # Before any output, since not every order can be written.
     reordered = found.mission if output else None
@@ -168,7 +168,7 @@ def _require_order(source: Path, found: SuggestedOrder, console: Console, verify
     try:
         require_order(found, str(source))
     except Conflict as error:
-        console.print(name_keep_order_option(error_text(error)), soft_wrap=True, markup=False)
+        console.print(add_keep_order_option(error_text(error)), soft_wrap=True, markup=False)
         if verify:
             _verify(found, console)
         raise typer.Exit(2) from None
@@ -177,7 +177,17 @@ def _require_order(source: Path, found: SuggestedOrder, console: Console, verify
 def add_options(
     requirements: Requirements, budget: str | None, keep_order: bool, before: list[str]
 ) -> Requirements:
-    """Return the requirements with those of the options; raise ArgoError if one has errors."""
+    """Return a copy of the requirements with those of the command line's options added.
+
+    Args:
+        requirements: requirements of the file
+        budget: value of `--budget`, which replaces the file's; None: not given
+        keep_order: whether `--keep-order` is given
+        before: values of `--before`, such as `8, 4`
+
+    Raises:
+        Invalid: An option has a wrong value.
+    """
     found: dict[str, object] = {"keep_order": keep_order or requirements.keep_order}
     if budget is not None:
         found["budget"] = _validate_option("budget", budget, budget).budget

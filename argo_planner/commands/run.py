@@ -44,7 +44,7 @@ from argo_planner.terminal.signals import defer_first_signal
 from argo_planner.use_cases.reporting import REPORT_FILES
 from argo_planner.use_cases.running import (
     NO_MISSION,
-    is_spec,
+    is_run_spec,
     load_spec,
     with_mission,
 )
@@ -193,7 +193,7 @@ def run_command(
     )
     started = time.monotonic()
     upload = read_upload(source)
-    if is_spec(upload):
+    if is_run_spec(upload):
         _require_no_spec_options(context, source)
         checked = check_run(load_spec(upload))
         opened = checked.site
@@ -235,7 +235,7 @@ def run_command(
         took = _times_text(record, loaded - started, time.monotonic() - loaded)
         if recorded:
             took += f"\n{escape(recorded)}"
-        conclusion.conclude(record, opened.site, opened.robot, took)
+        conclusion.write_and_show_results(record, opened.site, opened.robot, took)
 
 
 def _times_text(record: RunRecord, loading: float, running: float) -> str:

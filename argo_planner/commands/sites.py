@@ -13,7 +13,7 @@ from argo_planner.terminal.files import check_outputs, print_written, write_cont
 from argo_planner.terminal.options import Force
 from argo_planner.use_cases.sites import (
     describe_site,
-    draw_report,
+    draw_site_report,
     list_sites,
     make_site_report,
     require_free_name,
@@ -56,7 +56,7 @@ def sites_command(
         _write_description(opened, output)
     report = make_site_report(opened)
     if picture:
-        write_content(picture, draw_report(opened, report))
+        write_content(picture, draw_site_report(opened, report))
         print_written(picture, "picture of the site's floors")
     for note in report.notes:
         print(f"{site}: note: {note}")

@@ -18,7 +18,7 @@ _BEGINNINGS = {
 
 
 def show_certificate(found: SuggestedOrder, certificate: Certificate, console: Console) -> None:
-    """Print a line for each claim that tells something about this mission."""
+    """Print for each claim about the order whether it is verified; skip bounds that say nothing."""
     for line in _lines(found, certificate):
         console.print(escape(line), soft_wrap=True)
 

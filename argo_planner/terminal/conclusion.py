@@ -28,7 +28,7 @@ from argo_planner.use_cases.reporting import report_files
 
 @dataclass(frozen=True)
 class Conclusion:
-    """Results to write and show after a run has ended or was interrupted."""
+    """Outputs that a command writes and shows after a run has ended or was interrupted."""
 
     report: Path | None
     render: Path | None
@@ -36,11 +36,13 @@ class Conclusion:
     interruption: SignalWatch
     """signals of the process; the first one lets the run stop in good order"""
 
-    def conclude(self, record: RunRecord, site: Site, robot: RobotSpec, took: str) -> None:
-        """Write report and film, then show the results.
+    def write_and_show_results(
+        self, record: RunRecord, site: Site, robot: RobotSpec, timing: str
+    ) -> None:
+        """Write report and film, if asked for, then show the results.
 
-        In this order, a reader who closes the output early loses nothing. `took` is the line that
-        says how long the run took.
+        In this order, a reader who closes the output early loses nothing. `timing` is the
+        text that says how long the run took.
 
         Raises:
             Exit: Status 1: the run was no success. Status 2: a result could not be written. The
@@ -66,7 +68,7 @@ class Conclusion:
         console = Console()
         show_record(record, console)
         if not is_quiet():
-            console.print(took, soft_wrap=True)
+            console.print(timing, soft_wrap=True)
         for line in lines:
             console.print(escape(line), soft_wrap=True)
         for failure in errors:
@@ -86,7 +88,7 @@ class Conclusion:
 
     @contextmanager
     def hint_on_interruption(self) -> Iterator[None]:
-        """Print how to continue the run if a second signal ends it within this context."""
+        """Print how to continue the run, and exit, if Interrupted is raised within this context."""
         try:
             yield
         except Interrupted as interrupted:
@@ -99,14 +101,14 @@ class Conclusion:
         return f"Report: {folder / PAGE}"
 
     def _write_film(self, file: Path, record: RunRecord, site: Site, robot: RobotSpec) -> str:
-        self.interruption.require_none()
+        self.interruption.raise_if_received()
         from argo_env.pictures import write_film
 
         with progress_bar() as progress:
             bar = progress.add_task("filming", total=1.0)
 
             def report_progress(share: float) -> None:
-                self.interruption.require_none()
+                self.interruption.raise_if_received()
                 progress.update(bar, completed=share)
 
             try:
@@ -119,7 +121,7 @@ class Conclusion:
                 )
             except ArgoError:
                 # Ctrl-C reaches the encoder too, which then fails.
-                self.interruption.require_none()
+                self.interruption.raise_if_received()
                 raise
         return f"Film: {file}"
 

@@ -38,7 +38,7 @@ class EvaluationDisplay(Closing):
         self._shown = -EVERY
 
     def show(self, progress: EvaluationProgress) -> None:
-        """Show the progress, unless it was shown a short time ago."""
+        """Show the progress, unless it was shown less than 0.2 s (10 s without a terminal) ago."""
         terminal = sys.stderr.isatty()
         now = self._clock()
         if is_quiet() or now - self._shown < (_REDRAW_INTERVAL if terminal else EVERY):

@@ -37,7 +37,7 @@ def show_results(
         results: results of the evaluation
         failing: files with the specs of failed runs, by the keys of their rows
         console: where to print
-        scoring: how missions score
+        scoring: rules by which the runs get points
     """
     console.print(_plans(results))
     for plan in results.plan.plans:
@@ -81,7 +81,7 @@ def show_results(
 
 
 def show_means(means: Sequence[ControlledMean], drive: str | None, console: Console) -> None:
-    """Print means that were estimated with the help of runs with a cheap drive."""
+    """Print means that were estimated with the help of runs with the cheap drive, if any was."""
     if drive is not None and not means:
         console.print(f"Too few worlds could be run to use the drive {drive} for the estimates.")
     for mean in means:

@@ -13,7 +13,7 @@ READING_FORM = f"{READING}:ID=VALUE"
 
 
 def parse_events(options: list[str]) -> list[tuple[float, Event]]:
-    """Return the events of options `TIME=KIND`, with their times in s, in order of time.
+    """Parse options `TIME=KIND`; return times (simulated s since the start) and events, sorted.
 
     Raises:
         ArgoError: An option has another form, or there is no such kind.

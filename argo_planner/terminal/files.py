@@ -52,7 +52,7 @@ def check_outputs(
     Args:
         inputs: files that are read; a text is the name or the file of a site
         files: files to be written
-        folders: folders to be written, each with the names of the files in it
+        folders: folders to be written, each with the names of the files that are written into it
         force: whether existing files may be replaced
     """
     single = [file for file in files if file is not None and not is_stream(file)]

@@ -5,8 +5,8 @@ import sys
 from argo_compiler.diagnostics import DiagnosticError, to_text
 from argo_env.planning.opening import OpenedSite
 from argo_planner.terminal.verbosity import is_quiet
-from argo_planner.terminal.words import name_options
-from argo_planner.use_cases.explaining import explain_mission, explanation_text
+from argo_planner.terminal.words import add_options_to_hints
+from argo_planner.use_cases.explaining import explain_mission, format_explanation
 from argo_planner.use_cases.importing import ImportedMission, Upload, import_mission
 
 
@@ -16,13 +16,13 @@ def import_and_warn(
     """Import a mission and print its warnings; raise what `import_mission` raises."""
     imported = import_mission(upload, site, start_area, end_area)
     if imported.warnings and not is_quiet():
-        print(to_text(name_options(imported.warnings), upload.name), file=sys.stderr)
+        print(to_text(add_options_to_hints(imported.warnings), upload.name), file=sys.stderr)
     return imported
 
 
 def show_explanation(imported: ImportedMission, site: OpenedSite) -> None:
     """Print a mission in plain sentences, or diagnostics for what no script can express."""
     try:
-        print(explanation_text(explain_mission(imported, site)), end="")
+        print(format_explanation(explain_mission(imported, site)), end="")
     except DiagnosticError as error:
         print(to_text(error.diagnostics, imported.source_name), file=sys.stderr)

@@ -57,5 +57,5 @@ def given_options(context: typer.Context) -> list[str]:
 
 
 def option_name(name: str) -> str:
-    """Return the option that belongs to a parameter."""
+    """Return the option of a parameter, such as `--start-area` of `start_area`."""
     return "--" + name.replace("_", "-")

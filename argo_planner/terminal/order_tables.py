@@ -16,7 +16,7 @@ from argo_compiler.route.robust_spread import TravelSpread
 from argo_compiler.route.tour_pauses import TourPause, pauses
 from argo_env.formatting import clock
 from argo_env.planning.opening import OpenedSite
-from argo_planner.terminal.words import name_keep_order_option
+from argo_planner.terminal.words import add_keep_order_option
 from argo_planner.use_cases.routing import SuggestedOrder, duration_problem, estimate_completions
 
 _MAX_VIOLATIONS = 3  # violations of the written order that are listed
@@ -47,7 +47,7 @@ def show_order(found: SuggestedOrder, console: Console) -> None:
 def reordering_lines(
     found: SuggestedOrder, mission: Mission, site: OpenedSite, output: Path
 ) -> Iterator[str]:
-    """Yield the lines about a mission that was written in its new order."""
+    """Yield lines that name the file of the reordered mission and notes on its duration."""
     yield f"Mission: {output}"
     limit = mission.max_duration
     if limit is not None and limit != found.planned.mission.max_duration:
@@ -118,7 +118,7 @@ def _lines(found: SuggestedOrder) -> Iterator[str]:
         yield f"Note: the time of {name} is over before {members}: it includes the drive there"
     kept = list(dict.fromkeys(p.words for p in problem.precedences))
     for words in kept[:_MAX_PRECEDENCES]:
-        yield f"Kept: {name_keep_order_option(words)}"
+        yield f"Kept: {add_keep_order_option(words)}"
     if len(kept) > _MAX_PRECEDENCES:
         yield f"Kept: {len(kept) - _MAX_PRECEDENCES} more"
     for reason in planned.reasons:

@@ -28,7 +28,7 @@ class Output(io.FileIO):
 
 
 def guard_output() -> Output:
-    """Replace standard output and standard error by guarded ones, and return the former."""
+    """Replace standard output and error by streams that never fail; return the one for output."""
     output, sys.stdout = _guarded(sys.stdout)
     _, sys.stderr = _guarded(sys.stderr)
     return output

@@ -35,7 +35,7 @@ class RunDisplay(Observer, Closing):
         self._site = setup.navigator.site
 
     def on_step(self, now: float, action: RobotAction | None) -> None:
-        """Show the time in s and the current task."""
+        """Show the simulated time in s and the current task in the bar."""
         task = action.task.name if action else "waiting"
         self._progress.update(self._bar, completed=now, description=task)
 
@@ -44,21 +44,21 @@ class RunDisplay(Observer, Closing):
         reported = entry.reported_anomalies(self._site) if self._site else ()
         for value in entry.given_values(self._site) if self._site else ():
             self._print(f"{value.t!r} s: {value.in_words}")
-        for news in (*reported, *entry.sensed):
-            self.announce(news)
+        for item in (*reported, *entry.sensed):
+            self.print_reading_or_anomaly(item)
 
-    def announce(self, news: Reading | Anomaly) -> None:
-        """Print a reading or a finding as a line that stays."""
-        if isinstance(news, Reading):
+    def print_reading_or_anomaly(self, item: Reading | Anomaly) -> None:
+        """Print a reading or an anomaly as a line above the bar; with `--quiet` print nothing."""
+        if isinstance(item, Reading):
             text = (
-                f"{news.t!r} s: {news.task}: {news.name} (#{news.checkpoint}) shows "
-                f"{news.value!r} {news.unit}"
+                f"{item.t!r} s: {item.task}: {item.name} (#{item.checkpoint}) shows "
+                f"{item.value!r} {item.unit}"
             )
         else:
-            origin = "reported" if news.is_reported else "detected"
-            parts = filter(None, (origin, news.kind.replace("_", " "), news.detail))
-            text = f"{news.t!r} s: {': '.join(parts)}"
-            if place := news.whereabouts:
+            origin = "reported" if item.is_reported else "detected"
+            parts = filter(None, (origin, item.kind.replace("_", " "), item.detail))
+            text = f"{item.t!r} s: {': '.join(parts)}"
+            if place := item.whereabouts:
                 text += f", {place}"
         self._print(text)
 
@@ -67,7 +67,7 @@ class RunDisplay(Observer, Closing):
             self._progress.console.print(escape(text), soft_wrap=True, highlight=False)
 
     def warn(self, text: str) -> None:
-        """Print a warning that stays, such as the loss of the recording."""
+        """Print a warning as a line above the bar, even with `--quiet`."""
         self._progress.console.print(
             f"[bold yellow]Warning[/]: {escape(text)}", soft_wrap=True, highlight=False
         )
@@ -92,11 +92,11 @@ def run_with_display(
     Args:
         total: longest duration of the mission in s; None: it has no limit
         recording: file to record into; None: the run is not recorded
-        source: file that the mission was read from
+        source: file that the mission was read from; None: it is not known
         carry_out: function that carries out the run with observers
 
     Returns:
-        The record of the run, and a line about the recording, empty without one.
+        The record of the run, and a line about the recording; the line is empty if there is none.
     """
     with ExitStack() as stack:
         display = stack.enter_context(RunDisplay(total))

@@ -29,11 +29,14 @@ class RunStorage:
     def continuation_command(
         self, report: Path | None = None, render: Path | None = None
     ) -> str | None:
-        """Return the command that continues the run or makes its results again; None: none can.
+        """Return the `argo` command that continues the run, or shows its recording again.
 
         Args:
             report: folder of a report that the command is to write
             render: file of a film that the command is to write
+
+        Returns:
+            The command line; None if neither the journal nor the recording exists.
         """
         if self._has_journal:
             words = ["argo", "resume", str(self.journal)]

@@ -19,7 +19,7 @@ _Handler = Callable[[int, FrameType | None], object]
 
 
 class Interrupted(BaseException):
-    """A signal that asks the process to end; no Exception, so that no handler takes it for one."""
+    """A signal that asks the process to end; no Exception, so `except Exception` ignores it."""
 
     def __init__(self, number: int) -> None:
         super().__init__(f"signal {number}")
@@ -36,14 +36,14 @@ class SignalWatch:
     def __call__(self) -> bool:
         return self.received is not None
 
-    def require_none(self) -> None:
+    def raise_if_received(self) -> None:
         """Raise Interrupted if a signal was received."""
         if self.received is not None:
             raise self.received
 
 
-def end_at_once() -> None:
-    """Let signals end the process at once with a message, as long as it has done nothing."""
+def exit_on_signals() -> None:
+    """Let a signal end the process at once with a message; for a process that has done nothing."""
     _set_handler(_end)
 
 
@@ -53,20 +53,20 @@ def ignore_signals() -> None:
         signal.signal(number, signal.SIG_IGN)
 
 
-def raise_interrupted(raised: SignalWatch) -> None:
-    """Let signals raise Interrupted from now on, anywhere in the program, and store it in `raised`.
+def raise_on_signals(watch: SignalWatch) -> None:
+    """Let signals raise Interrupted from now on, anywhere in the program, and store it in `watch`.
 
     The first signal may arrive before this function has returned. A library may turn Interrupted
-    into another exception, so code that catches exceptions has to check `raised`.
+    into another exception, so code that catches exceptions has to check `watch`.
     """
 
     def interrupt(number: int, _: FrameType | None) -> None:
-        raised.received = Interrupted(number)
-        raise raised.received
+        watch.received = Interrupted(number)
+        raise watch.received
 
     def raise_later(unraisable: "sys.UnraisableHookArgs") -> None:
         """Raise a lost Interrupted again soon; Python can't raise it in a destructor."""
-        if raised.received is None:
+        if watch.received is None:
             sys.__unraisablehook__(unraisable)
         elif isinstance(unraisable.exc_value, Interrupted):
             number = unraisable.exc_value.status - 128

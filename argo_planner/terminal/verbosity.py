@@ -25,10 +25,11 @@ _HANDLER.setFormatter(logging.Formatter("%(levelname)s %(name)s: %(message)s"))
 
 
 def set_verbosity(verbose: int = 0, quiet: bool = False) -> None:
-    """Set what is shown from now on.
+    """Set how much is shown from now on.
 
     Args:
-        verbose: 1: also each stage of the work; 2: also its details
+        verbose: 0: results, warnings and errors; 1: also each stage of the work; 2 or more: also
+            its details
         quiet: only results and errors; overrides `verbose`
     """
     level = logging.ERROR if quiet else logging.WARNING
@@ -83,4 +84,4 @@ Quiet = Annotated[
 
 
 def common_options(verbose: Verbose = 0, quiet: Quiet = False) -> None:
-    """Declare the options that all commands have."""
+    """Do nothing; the parameters declare the options that all commands have."""

@@ -40,14 +40,15 @@ def error_text(error: ArgoError, prefix: str = "") -> str:
     from argo_compiler.diagnostics import DiagnosticError, to_text
 
     if isinstance(error, DiagnosticError):
-        return to_text(name_options(error.diagnostics), error.source_name)
+        return to_text(add_options_to_hints(error.diagnostics), error.source_name)
     return f"{prefix}{error}{_remedies_text(error.remedies, error.about)}"
 
 
 def order_error_text(error: ArgoError, source: str) -> str:
-    """Return the message of an error about an order, with the `argo route` commands that help.
+    """Return the message of an error, followed by `argo route` commands with its remedies.
 
-    It is for commands that do not have these options themselves.
+    It is for commands that search for an order without having these options themselves. `source`
+    is the file of the mission.
     """
     commands = [
         f"argo route {shlex.quote(source)} {_REMEDY_TEXTS[remedy]}" for remedy in error.remedies
@@ -55,15 +56,15 @@ def order_error_text(error: ArgoError, source: str) -> str:
     return f"{error} ({', '.join(commands)})" if commands else str(error)
 
 
-def name_keep_order_option(text: str) -> str:
-    """Return a text about an order in which the written order is followed by its option."""
+def add_keep_order_option(text: str) -> str:
+    """Return the text with `(--keep-order)` after each mention of the written order."""
     from argo_compiler.reorder.precedences import AS_WRITTEN
 
     return text.replace(AS_WRITTEN, f"{AS_WRITTEN} (--keep-order)")
 
 
-def name_options(diagnostics: Iterable["Diagnostic"]) -> tuple["Diagnostic", ...]:
-    """Return the diagnostics with hints that name the options that help."""
+def add_options_to_hints(diagnostics: Iterable["Diagnostic"]) -> tuple["Diagnostic", ...]:
+    """Return copies of the diagnostics whose hints name the options that are the remedy."""
     return tuple(d.model_copy(update={"hint": _hint(d)}) if d.remedies else d for d in diagnostics)
 
 

@@ -49,7 +49,9 @@ def check_source(
     travel: Travel | None = None,
     site: OpenedSite | None = None,
 ) -> tuple[Diagnostic, ...]:
-    """Return the diagnostics of all stages that the mission passes, by position in the source.
+    """Return the diagnostics of a mission, by position in the source.
+
+    A stage that finds errors is the last one: reading, then checks, then analysis.
 
     Args:
         upload: script or mission
@@ -94,7 +96,7 @@ def _too_many_poses(poses: int) -> Diagnostic:
 
 
 def error_diagnostics(error: ArgoError) -> tuple[Diagnostic, ...]:
-    """Return the diagnostics of an error that was raised when a mission was read."""
+    """Convert an error, raised when a mission was read, to diagnostics."""
     if isinstance(error, DiagnosticError):
         return error.diagnostics
     # The file is named with each diagnostic, so the message does not have to name it.
@@ -109,7 +111,9 @@ def error_diagnostics(error: ArgoError) -> tuple[Diagnostic, ...]:
     )
 
 
-def write_diagnostics(diagnostics: tuple[Diagnostic, ...], source_name: str, format: Format) -> str:
+def format_diagnostics(
+    diagnostics: tuple[Diagnostic, ...], source_name: str, format: Format
+) -> str:
     """Return the diagnostics as text for people, or as JSON or SARIF."""
     match format:
         case Format.JSON:

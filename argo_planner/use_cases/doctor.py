@@ -73,8 +73,8 @@ class Examination(Model):
     """reason why PyBullet does not work; None: it works"""
 
 
-def examine() -> Examination:
-    """Examine the installation without changing anything."""
+def examine_installation() -> Examination:
+    """Return the version, the cache, the extras, and whether PyBullet works; change nothing."""
     contents = cache.contents()
     return Examination(
         version=__version__,

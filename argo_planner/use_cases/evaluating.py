@@ -59,7 +59,7 @@ def plan_evaluation(
     Args:
         file: the evaluation
         folder: folder that the paths in the file are relative to
-        read: function that reads a mission
+        read: function that reads the file of a mission
 
     Raises:
         ArgoError: A file is missing or has errors, or a run is not possible.
@@ -92,7 +92,10 @@ def plan_evaluation(
 
 
 def input_contents(file: EvaluationFile, folder: Path) -> Iterator[bytes]:
-    """Yield all that an evaluation depends on; equal contents mean equal evaluations.
+    """Yield the contents of all that an evaluation depends on, from which a digest is computed.
+
+    Equal contents mean equal evaluations: the version of Argo, the evaluation file, and the files
+    that it names.
 
     A policy that is a function is not in a file; random bytes stand for it, so that evaluations
     with it are never equal.
@@ -114,7 +117,18 @@ def input_contents(file: EvaluationFile, folder: Path) -> Iterator[bytes]:
 def make_workers(
     plan: EvaluationPlan, backend: str, workers: int | None, address: str | None
 ) -> WorkerBackend:
-    """Return workers for an evaluation, at most one per run; raise ArgoError if there are none."""
+    """Return a back end whose workers can carry out the evaluation.
+
+    Args:
+        plan: the evaluation
+        backend: name of the back end
+        workers: number of workers, reduced to the number of runs if that is smaller; None: as many
+            as processors, reduced likewise, or all of the cluster at `address`
+        address: address of a running cluster; None: the workers run on this machine
+
+    Raises:
+        ArgoError: There is no such back end, or it can't be started.
+    """
     runs = len(plan.seeds) * (1 if plan.strata else len(plan.cases))
     if workers is None and address is None:
         workers = usable_processors()
@@ -173,7 +187,7 @@ def make_case(
 
 
 def apply_policy(imported: ImportedMission, site: OpenedSite, policy: str) -> Mission:
-    """Return the mission in the order of a policy.
+    """Return the mission with its tasks in the order that a policy chooses.
 
     Args:
         imported: the mission

@@ -16,7 +16,7 @@ class ExplanationFormat(StrEnum):
 
 
 def explain_mission(imported: ImportedMission, site: OpenedSite) -> MissionReading:
-    """Return what Argo understood of a mission, sentence by sentence.
+    """Return sentences that say how Argo understood a mission.
 
     Raises:
         DiagnosticError: A script can't express parts of the mission; the diagnostics name them.
@@ -27,10 +27,10 @@ def explain_mission(imported: ImportedMission, site: OpenedSite) -> MissionReadi
         raise DiagnosticError(imported.source_name, error.diagnostics) from None
 
 
-def explanation_text(
-    reading: MissionReading, format: ExplanationFormat = ExplanationFormat.TEXT
+def format_explanation(
+    explanation: MissionReading, format: ExplanationFormat = ExplanationFormat.TEXT
 ) -> str:
     """Return an explanation as text for people, which is also a script, or as JSON."""
     if format is ExplanationFormat.JSON:
-        return reading.model_dump_json(indent=2) + "\n"
-    return reading.text
+        return explanation.model_dump_json(indent=2) + "\n"
+    return explanation.text

@@ -43,7 +43,7 @@ def require_format(name: str) -> None:
         raise NotFound(f"{name}: there is no such format; choose from {', '.join(FORMATS)}")
 
 
-def is_folder(format: str) -> bool:
+def is_folder_format(format: str) -> bool:
     """Return True if the format is a folder of files; raise NotFound if there is no such format."""
     require_format(format)
     return format in EXPORTERS and not EXPORTERS[format].suffixes

@@ -68,7 +68,7 @@ class LoadedMission:
     """the file; None: a bag or another tool's file, whose lines mean nothing to people"""
 
     def placed(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-        """Return diagnostics of the mission with positions and lines in its file."""
+        """Return copies of the diagnostics with positions in the file; without one, with none."""
         if self.file is None:
             return tuple(f.model_copy(update={"span": None}) for f in diagnostics)
         if isinstance(self.file, Script):

@@ -12,13 +12,13 @@ from argo_planner.use_cases.routing import SuggestedOrder
 
 
 def require_order(found: SuggestedOrder, source_name: str) -> None:
-    """Raise Conflict, with the reason, if there is no order."""
+    """Raise Conflict, with the reason, if there is no order or only one without tasks."""
     if why := explain_no_order(found):
         raise Conflict(f"{source_name}: {why}", remedies=why.remedies)
 
 
 def explain_no_order(found: SuggestedOrder) -> Conflict | None:
-    """Return an error that explains why there is no order or only an empty one, or None."""
+    """Return an error that explains why there is no order, or only one without tasks, else None."""
     if found.suggestion.route is None:
         why = _no_route_error(found)
     elif not found.suggestion.order and found.planned.problem.size:

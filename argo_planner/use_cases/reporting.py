@@ -16,7 +16,7 @@ REPORT_FILES = (RECORD, "site.png", PAGE)
 
 
 def report_files(record: RunRecord, site: Site, robot: RobotSpec) -> dict[str, bytes]:
-    """Return the files of a run's report, by name, with a picture of the site.
+    """Return the content of each file of a run's report, by file name.
 
     `site` is the site as the robot knew it; changes by faults are in the record.
     """

@@ -35,7 +35,7 @@ from argo_env.seeding import generator
 from argo_planner.use_cases.importing import ImportedMission
 
 TIME_LIMIT = 5.0
-"""default of the longest time of a search in s"""
+"""default limit of the wall-clock time of a search, in s"""
 
 MAX_BYTES = 10_000_000
 """largest size of a file of requirements, in bytes"""
@@ -66,12 +66,18 @@ class SuggestedOrder:
 
     @property
     def mission(self) -> Mission:
-        """The mission in its new order; raises ArgoError if there is none."""
+        """The mission in the suggested order.
+
+        Raises ArgoError if there is no order, or no mission can express it, as it charges.
+        """
         return apply_route(self.planned, self.route)
 
     @property
     def reordering(self) -> Reordering:
-        """Description for the record of a run; raises ArgoError if there is no order."""
+        """Both orders and their durations, for the record of a run.
+
+        Raises Conflict if there is no suggested order.
+        """
         visits, route, problem = self.planned.visits, self.route, self.planned.problem
         tasks = [visits.chain.name(stop.entry) for stop in visits.task_units]
         return Reordering(
@@ -84,6 +90,7 @@ class SuggestedOrder:
         )
 
     def to_seconds(self, units: int) -> float:
+        """Convert a duration from the time units of the route problem to s."""
         return round(units * self.planned.problem.unit, 6)
 
 
@@ -121,7 +128,7 @@ def suggest_order(
         imported: the mission
         site: its site
         requirements: further requirements; None: there are none
-        time_limit: longest time of the search in s
+        time_limit: longest wall-clock time of the search in s
         seed: seed of the search
         on_progress: function that is called with the progress and its unit of time in s
 
@@ -162,8 +169,8 @@ def _progress_text(progress: SearchProgress, unit: float) -> str:
     return f"{best} so far, none takes less than {bound}"
 
 
-def require_limit(mission: Mission, requirements: Requirements) -> None:
-    """Raise Invalid if nothing limits the mission's time."""
+def require_time_limit(mission: Mission, requirements: Requirements) -> None:
+    """Raise Invalid if neither the mission nor the requirements have any time limit."""
     limits = [mission.max_duration, requirements.budget, *(w.latest for w in requirements.windows)]
     limits += [t.window.latest for t in mission.tasks if t.window and t.window.hard]
     if all(limit is None for limit in limits):
@@ -175,15 +182,19 @@ def require_limit(mission: Mission, requirements: Requirements) -> None:
 
 
 @stage("comparing orders with random travel times")
-def suggest_robust(
+def suggest_robust_order(
     found: SuggestedOrder, spread: TravelSpread, time_limit: float, seed: int
 ) -> SuggestedOrder:
-    """Return the order that most probably keeps all time limits, in place of the shortest one.
+    """Return a copy of `found` with an order that probably keeps all time limits.
+
+    Among the orders that the search tries, it is the one with the highest probability of being in
+    time. If tasks may be left out, it is the one with the highest prize among those that are in
+    time with a probability of at least 95 %; if there is none, the most probable one.
 
     Args:
-        found: result of the search for the shortest order.
+        found: result of the search for the order that is best with nominal travel times.
         spread: distribution of the travel times.
-        time_limit: longest time of the search in s.
+        time_limit: longest wall-clock time of the search in s.
         seed: seed of the search and of the random travel times.
 
     Raises:
@@ -211,7 +222,7 @@ def suggest_robust(
 
 
 def duration_problem(mission: Mission, site: OpenedSite) -> str | None:
-    """Return a message if a mission in its new order takes longer than it may, otherwise None.
+    """Return a message if a reordered mission exceeds its maximum duration, otherwise None.
 
     The search assumes one pose for each checkpoint; this computes the exact travel times, with
     poses that depend on where the robot comes from.
@@ -224,7 +235,7 @@ def duration_problem(mission: Mission, site: OpenedSite) -> str | None:
 
 @stage("verifying the order")
 def verify_order(found: SuggestedOrder) -> Certificate:
-    """Check the claims about the order with code that is independent of the search."""
+    """Return which claims of the search are confirmed by code that is independent of it."""
     return certify(found.planned.problem, found.suggestion, _VERIFICATION_TIME)
 
 
@@ -234,8 +245,11 @@ def estimate_completions(
 ) -> tuple[Completion, Completion]:
     """Estimate how probable it is that the written and the suggested order keep all time limits.
 
+    Returns:
+        The estimate for the written order, then the one for the suggested order.
+
     Raises:
-        Conflict: There is no order.
+        Conflict: There is no suggested order.
     """
     problem = found.planned.problem
     written, suggested = (

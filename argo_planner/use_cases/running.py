@@ -25,13 +25,13 @@ EVENTS: dict[str, Event] = {
     "give_back": GiveBack(),
     "cancel": Cancel(),
 }
-"""events of a run that a person can report, by name"""
+"""events that a person can send to a run, by name; those with a reading are not among them"""
 READING = "reading"
 """kind of event with a reading, such as `reading:8=4.2`"""
 
 
 def parse_event(name: str) -> Event:
-    """Return the event of that name.
+    """Return the event of a name in `EVENTS`, or of the text `reading:ID=VALUE`.
 
     Raises:
         NotFound: There is no such event.
@@ -58,7 +58,7 @@ def _parse_reading(text: str) -> ReadingGiven:
     return ReadingGiven(id.strip(), read)
 
 
-def is_spec(upload: Upload) -> bool:
+def is_run_spec(upload: Upload) -> bool:
     """Return True if an upload is the spec of a run: JSON with a mission, a drive and a seed."""
     content = upload.content
     if not isinstance(content, bytes) or b'"mission"' not in content:
@@ -86,7 +86,16 @@ def load_spec(upload: Upload) -> RunSpec:
 def with_mission(
     spec: RunSpec, imported: ImportedMission, reordering: Reordering | None = None
 ) -> RunSpec:
-    """Return the spec with a mission; raise DiagnosticError if the mission has errors."""
+    """Return a copy of the spec with the mission and its diagnostics.
+
+    Args:
+        spec: the spec of a run, whose mission is replaced
+        imported: the mission
+        reordering: description of the change of its order; None: it has its written order
+
+    Raises:
+        DiagnosticError: The mission has errors.
+    """
     lower(imported.mission, source_name=imported.source_name)
     known = {
         "mission": imported.mission,

@@ -28,8 +28,8 @@ class SiteReport:
     notes: tuple[str, ...]
     """features that are unlike real sites, but do no harm"""
     flaws: tuple[Flaw, ...]
-    """parts of the site that the robot can't reach, with remedies"""
-    standing: SafeStates | None = None
+    """parts that the robot can't reach or read, with remedies; empty: the site is in order"""
+    safe_states: SafeStates | None = None
     """poses at which the robot can stand; None: there are no flaws"""
 
     @property
@@ -50,21 +50,21 @@ def list_sites() -> tuple[SiteSummary, ...]:
 
 
 def make_site_report(site: OpenedSite) -> SiteReport:
-    """Find parts of a site that the robot can't reach."""
+    """Return the flaws of a site, and notes on features that are unlike real sites."""
     found = find_flaws(site.navigator)
     return SiteReport(tuple(violations(site.site.spec)), found.flaws, found.states)
 
 
-def draw_report(site: OpenedSite, report: SiteReport) -> bytes:
-    """Return a PNG of the site that marks its flaws."""
+def draw_site_report(site: OpenedSite, report: SiteReport) -> bytes:
+    """Return a PNG picture of the site's floors in which the flaws of the report are marked."""
     # The import is slow, and few commands need the picture.
     from argo_env.pictures.site_plan import draw_site_plan
 
-    return draw_site_plan(site.site, report.flaws, report.standing)
+    return draw_site_plan(site.site, report.flaws, report.safe_states)
 
 
 def describe_site(site: OpenedSite, name: str) -> str:
-    """Return the YAML that describes the site, under a new name.
+    """Return the site's description as YAML, with `name` in place of the site's own name.
 
     The copy is meant to be changed, and the old name stands for the site itself.
 

@@ -9,7 +9,7 @@ from argo_compiler import __version__
 from argo_compiler.base.extras import install_line
 from argo_env.files import cache
 from argo_env.planning.opening import forget_sites, open_site
-from argo_planner.use_cases.doctor import examine
+from argo_planner.use_cases.doctor import examine_installation
 from tests.argo_planner.conftest import argo
 
 PROJECT = Path(__file__).parents[2] / "pyproject.toml"
@@ -50,7 +50,7 @@ def test_a_folder_that_can_not_be_used_is_named_with_the_reason(tmp_path, monkey
     (tmp_path / "file").write_text("", encoding="utf-8")
     monkeypatch.setenv(cache.VARIABLE, str(tmp_path / "file"))
     assert "nothing can be stored there, so each command computes its site again: " in doctor()
-    assert examine().cache.write_problem == "Not a directory"
+    assert examine_installation().cache.write_problem == "Not a directory"
     refused = argo("doctor", "--empty-cache")
     assert "the cache can't be emptied: Not a directory; set" in str(refused.exception)
     assert "emptied, " not in refused.output
@@ -65,4 +65,4 @@ def test_an_empty_variable_names_no_folder(monkeypatch):
 
 def test_all_extras_for_users_are_looked_at():
     extras = tomllib.loads(PROJECT.read_text("utf-8"))["project"]["optional-dependencies"]
-    assert {extra.name for extra in examine().extras} == set(extras) - {"bench", "dev"}
+    assert {extra.name for extra in examine_installation().extras} == set(extras) - {"bench", "dev"}

@@ -4,7 +4,7 @@ import pytest
 
 from argo_compiler.base.errors import Conflict, Invalid, Remedy, RemedyChoice
 from argo_compiler.diagnostics import Diagnostic, Severity
-from argo_planner.terminal.words import error_text, name_keep_order_option, name_options
+from argo_planner.terminal.words import add_keep_order_option, add_options_to_hints, error_text
 
 
 @pytest.mark.parametrize("remedy", Remedy)
@@ -41,12 +41,12 @@ def test_hints_name_the_options(hint, remedy, choice, said):
         remedies=(remedy,),
         choice=choice and RemedyChoice(remedy, *choice),
     )
-    (shown,) = name_options([found])
+    (shown,) = add_options_to_hints([found])
     assert shown.hint == said
 
 
 def test_an_order_that_is_kept_names_the_option():
     assert (
-        name_keep_order_option("kept: the order as written")
+        add_keep_order_option("kept: the order as written")
         == "kept: the order as written (--keep-order)"
     )

@@ -34,7 +34,7 @@ from argo_env.run.spec import RunSpec
 from argo_planner.cli import ArgoCommands, main
 from argo_planner.terminal import stage_display
 from argo_planner.terminal.files import read_upload
-from argo_planner.terminal.signals import end_at_once
+from argo_planner.terminal.signals import exit_on_signals
 from argo_planner.use_cases import evaluating
 from argo_planner.use_cases.importing import import_mission
 from tests.forking import draw_small_overviews, load_late_modules
@@ -57,7 +57,7 @@ def serve() -> None:
     for name in ("evaluation.html.j2", "comparison.html.j2"):
         evaluation_report._template(name)
     gc.freeze()  # the collector of forked processes need not visit the loaded objects
-    end_at_once()  # as `argo` itself begins
+    exit_on_signals()  # as `argo` itself begins
     opened = []
     for line in sys.stdin:
         request, status = json.loads(line), 0

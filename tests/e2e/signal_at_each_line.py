@@ -57,7 +57,7 @@ def _run_command(line: int, number: int, reached: int) -> None:
     sys.argv = ["argo", "--version"]
     status: Any = 1
     try:
-        signals.end_at_once()  # as `argo` itself begins
+        signals.exit_on_signals()  # as `argo` itself begins
         sys.settrace(trace)
         cli.main()
     except SystemExit as end:

@@ -17,13 +17,13 @@ from argo_env.run.record import RunRecord
 from argo_env.run.run_setup import check_spec
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
-from argo_planner.use_cases.checking import Format, check_source, write_diagnostics
+from argo_planner.use_cases.checking import Format, check_source, format_diagnostics
 from argo_planner.use_cases.compiling import compile_mission
 from argo_planner.use_cases.exporting import FORMATS, export_mission, to_script
 from argo_planner.use_cases.importing import Upload, import_mission
 from argo_planner.use_cases.no_order import require_order
 from argo_planner.use_cases.reporting import report_files
-from argo_planner.use_cases.routing import parse_requirements, require_limit, suggest_order
+from argo_planner.use_cases.routing import parse_requirements, require_time_limit, suggest_order
 from argo_planner.use_cases.running import (
     NO_MISSION,
     parse_event,
@@ -51,7 +51,7 @@ def test_checking(site):
     broken = Upload("a.json", b'{"tasks": [{"name": "A", "action": "MEASURE"}]}')
     found = check_source(broken, site.catalog)
     assert "il.measure-without-object" in {d.code for d in found}
-    assert json.loads(write_diagnostics(found, "a.json", Format.JSON))["errors"] == 1
+    assert json.loads(format_diagnostics(found, "a.json", Format.JSON))["errors"] == 1
     (unreadable,) = check_source(Upload("a.txt", b""), site.catalog)
     assert unreadable.code == "script.unreadable"
     with pytest.raises(Invalid):
@@ -98,7 +98,7 @@ def test_no_order_is_a_conflict_that_names_no_option(imported, site):
     with pytest.raises(DiagnosticError, match=r"wanted:1:1.*route\.wrong-field"):
         parse_requirements(b"budgets: 3 s\n", "wanted")
     with pytest.raises(Invalid, match="nothing limits") as unlimited:
-        require_limit(PLAN, parse_requirements(b"mandatory: [1]\n", "wanted"))
+        require_time_limit(PLAN, parse_requirements(b"mandatory: [1]\n", "wanted"))
     assert unlimited.value.remedies == (Remedy.GIVE_BUDGET,)
 
 

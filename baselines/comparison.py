@@ -22,9 +22,9 @@ class PolicyStatistics:
     gap: ConfidenceInterval
     """share of the best known routes' prize that the policy did not win"""
     behind: ConfidenceInterval
-    """difference to the prize of the policy with the highest mean prize"""
+    """prize by which it is behind the policy with the highest mean prize; positive: it wins less"""
     time: ConfidenceInterval
-    """time in s until the robot is docked"""
+    """simulated time in s until the robot is docked"""
     feasible: ConfidenceInterval
     """share of feasible routes"""
     seconds: ConfidenceInterval

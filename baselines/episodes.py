@@ -23,7 +23,7 @@ class EpisodeOutcome:
     """number of the instance"""
     prize: float
     time: float
-    """time in s when the robot was docked"""
+    """simulated time in s from the start until the robot was docked"""
     feasible: bool
     """whether the robot was docked in time, and no action was illegal"""
     decisions: int
@@ -48,7 +48,7 @@ def play(
         test_set: the test set.
         instances: number of its first instances to play.
         seed: seed of the policy's random decisions in each episode.
-        clock: clock that measures the policy's decisions; by default the processor time.
+        clock: clock that times the policy's decisions; by default that of the processor time.
 
     Raises:
         ArgoError: if an action of the policy is not a node.

@@ -69,7 +69,7 @@ def reference_warnings(comparison: PolicyComparison) -> list[str]:
 
 
 def table_rows(comparison: PolicyComparison) -> list[tuple[str, ...]]:
-    """Return the cells of the printed table, a row for each policy, the highest prize first."""
+    """Return the cells of the table, a row for each policy, the highest mean prize first."""
     return [
         (
             "*" if row in comparison.pareto_front else "",
@@ -92,7 +92,7 @@ def _format_interval(interval: ConfidenceInterval, scale: float, digits: int) ->
 
 
 def make_table(comparison: PolicyComparison) -> Table:
-    """Return the table that is printed."""
+    """Return the table of a comparison for the terminal, with title and caption."""
     caption = (
         "*: no other wins as much in less time; in brackets: 95 % intervals, bootstrap over "
         "instances, paired"
@@ -106,7 +106,7 @@ def make_table(comparison: PolicyComparison) -> Table:
 
 
 def to_markdown(comparison: PolicyComparison) -> str:
-    """Return title, table and warnings in Markdown."""
+    """Return title, table and warnings of a comparison as Markdown text."""
     rows = [COLUMNS, ("---",) * len(COLUMNS), *table_rows(comparison)]
     text = "".join(f"| {' | '.join(row)} |\n" for row in rows)
     warnings = "".join(f"\n{warning}\n" for warning in reference_warnings(comparison))
@@ -114,7 +114,7 @@ def to_markdown(comparison: PolicyComparison) -> str:
 
 
 def write_results(comparisons: Sequence[PolicyComparison], folder: Path) -> None:
-    """Write the results into a folder.
+    """Write three files with the comparisons into a folder, which is made if needed.
 
     `results.json` has all data, `results.csv` a line for each route, `results.md` the tables.
     """

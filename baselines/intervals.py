@@ -35,11 +35,11 @@ class Bootstrap:
         self._weights = np.apply_along_axis(np.bincount, 1, draws, minlength=instances)
 
     def mean(self, values: NDArray[np.float64]) -> ConfidenceInterval:
-        """Estimate the mean of values, one for each instance."""
+        """Return the mean of `values`, one for each instance, with its confidence interval."""
         return self.ratio(values, np.ones(len(values)))
 
     def ratio(self, values: NDArray[np.float64], to: NDArray[np.float64]) -> ConfidenceInterval:
-        """Estimate the ratio of the sum of `values` to the sum of `to`; 0 where the latter is 0."""
+        """Return the ratio of the sum of `values` to the sum of `to`; 0 where the latter is 0."""
         estimate = self._divide(values.sum(keepdims=True), to.sum(keepdims=True))
         drawn = self._divide(self._weights @ values, self._weights @ to)
         low, high = np.quantile(drawn, [(1 - _LEVEL) / 2, (1 + _LEVEL) / 2])

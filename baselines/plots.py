@@ -178,13 +178,13 @@ def _box_plot(name: str, gaps: dict[str, list[float]], picture: Path) -> Path:
 
 
 def plot_convergence(name: str, problem: RouteProblem, time_limit: float, picture: Path) -> Path:
-    """Plot the highest prize so far and the upper bound on the prize over the time of the search.
+    """Search for a route; plot its prize and the bound on the prize over the time of the search.
 
     Args:
         name: name of the instance, for the title.
         problem: the route problem.
         time_limit: time limit of the search in s.
-        picture: file to write.
+        picture: file to write, which is also returned.
 
     Raises:
         ArgoError: if the optimiser returns no history of its search.
@@ -219,7 +219,7 @@ def plot_convergence(name: str, problem: RouteProblem, time_limit: float, pictur
 
 
 def draw_tour(test_set: InstanceSet, policy: Policy, number: int, picture: Path) -> Path:
-    """Draw the route of a policy on the floor plans, on the instance with this number."""
+    """Draw a policy's route on the instance `number` over the floor plans; return the picture."""
     source = test_set.family.source
     if isinstance(source, AlternatingSources):
         source = source.source_for(number)

@@ -73,7 +73,7 @@ class Effort:
 
 @lru_cache(maxsize=16)
 def load_references(name: str) -> tuple[BestKnown, ...]:
-    """Return the references of a test set, in the order of its instances.
+    """Return the best known route of each instance of a test set, in the order of the instances.
 
     Raises ArgoError if there are none, or they belong to another version of the test set.
     """
@@ -92,23 +92,23 @@ def load_references(name: str) -> tuple[BestKnown, ...]:
     return known
 
 
-def improve_reference(
+def improve_best_known(
     test_set: InstanceSet,
     number: int,
     known: BestKnown | None,
     effort: Effort,
     routes: Iterable[Route] = (),
 ) -> BestKnown:
-    """Return the reference of an instance after another search.
+    """Search for a better route of one instance; return the best one known afterwards.
 
     An instance whose best known route is proven optimal is not searched.
 
     Args:
         test_set: test set of the instance.
         number: number of the instance.
-        known: present reference; None if there is none.
+        known: best known route so far; None if there is none.
         effort: effort of the search.
-        routes: further routes that are tried.
+        routes: further routes that are compared with it.
 
     Raises:
         ArgoError: if a route wins more than the bound, which is a defect of the optimiser.
@@ -139,7 +139,7 @@ def update_references(
     routes: Mapping[int, Sequence[Route]] | None = None,
     processes: int = 1,
 ) -> None:
-    """Search for better routes of a test set and write its references to a file.
+    """Search for better routes of a test set, and write the best known ones to a file.
 
     References in the file that belong to another test set with the same name are discarded.
 
@@ -159,7 +159,7 @@ def update_references(
     with ProcessPoolExecutor(processes) as pool:
         tasks = [
             pool.submit(
-                improve_reference, test_set, number, old, effort, (routes or {}).get(number, ())
+                improve_best_known, test_set, number, old, effort, (routes or {}).get(number, ())
             )
             for number, old in zip(test_set.numbers, before, strict=True)
         ]
@@ -176,7 +176,7 @@ def update_references(
 
 
 def read_routes(results: Sequence[Path], name: str) -> dict[int, list[Route]]:
-    """Return the routes on a test set in result files, by the number of the instance.
+    """Return the routes of all policies in result files on a test set, by instance number.
 
     Args:
         results: files `results.json` of `python -m baselines.evaluate`.

@@ -29,7 +29,8 @@ def insert_and_improve(problem: RouteProblem, start: Sequence[int] = ()) -> tupl
 
     Args:
         problem: a problem whose visits are all optional, without time windows, rounds and
-            batteries. Its precedence constraints must have `needed`. The order satisfies them.
+            batteries. Its precedence constraints must be `needed`: a visit is only allowed if its
+            predecessors come before it. The returned order satisfies them.
         start: order within the maximum duration with which the search starts. Visits without
             their predecessors before them are dropped from it, so a drop must not make an order
             longer.

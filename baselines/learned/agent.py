@@ -135,14 +135,14 @@ class SampledPolicy:
 
 
 def open_nodes(observation: Observation) -> NDArray[np.int64]:
-    """Return the dock and the nodes with a prize or that are legal; no others matter any more."""
+    """Return the numbers of the dock and of all nodes that are legal or still have a prize."""
     is_open = (observation["prize"] > 0) | (observation["mask"] == 1)
     is_open[DOCK] = True
     return np.flatnonzero(is_open)
 
 
 def select_nodes(observation: Observation, nodes: NDArray[np.int64]) -> dict[str, NDArray[Any]]:
-    """Return an observation with these nodes only, as a batch of one."""
+    """Return a copy of the observation with these nodes only, as a batch of one state."""
     selected = {name: observation[name][nodes] for name in ("travel", "home", "prize", "mask")}
     selected["left"] = observation["left"]
     selected["matrix"] = observation["matrix"][np.ix_(nodes, nodes)]

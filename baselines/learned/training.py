@@ -83,13 +83,13 @@ class TrainingState:
 
 
 def untrained_state(settings: Settings) -> TrainingState:
-    """Return the state with an untrained network."""
+    """Return the state before the first part, with random weights drawn with the settings' seed."""
     torch.manual_seed(settings.seed)
     return TrainingState(settings, RouteNetwork())
 
 
 def save_checkpoint(state: TrainingState, folder: Path) -> None:
-    """Write the checkpoint, and the weights as they are shipped, in half precision."""
+    """Write the checkpoint and, to another file, the weights in half precision as shipped."""
     checkpoint = {
         "settings": asdict(state.settings),
         "network": state.network.state_dict(),
@@ -126,7 +126,7 @@ def load_checkpoint(folder: Path) -> TrainingState:
 
 
 def train(state: TrainingState, folder: Path, write_line: Callable[[str], None] = print) -> None:
-    """Train from the state to the end, and save a checkpoint after each part.
+    """Carry out all parts that the state has not completed, and save a checkpoint after each.
 
     Args:
         state: state of the training, which is changed.

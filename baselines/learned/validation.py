@@ -42,9 +42,10 @@ class Validation:
 def greedy_prizes(
     network: RouteNetwork, batch: RouteVectorEnv, numbers: Sequence[int]
 ) -> NDArray[np.float64]:
-    """Return the prizes of routes on which each node is the legal one with the highest score.
+    """Drive a batch of routes, always to the legal node with the highest score; return prizes.
 
-    `numbers` are the instances, one for each route of the batch.
+    `numbers` are the instances, one for each route of the batch. The result has the shape
+    (routes,).
     """
     observation, _ = batch.reset(options={"instance": tuple(numbers)})
     total = np.zeros(batch.num_envs)

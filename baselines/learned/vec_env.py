@@ -57,7 +57,11 @@ class RouteVecEnv(VecEnv):
     def env_method(
         self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any
     ) -> list[Any]:
-        """Return the action masks, shape (n + 1,) for each route; there is no other method."""
+        """Return the action mask of each route, shape (n + 1,).
+
+        Raises:
+            NotImplementedError: The method is not `action_masks`, the only one.
+        """
         if method_name != "action_masks":
             raise NotImplementedError(method_name)
         return list(self.batch.action_masks())

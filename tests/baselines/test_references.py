@@ -13,7 +13,7 @@ from baselines.episodes import play
 from baselines.families import TEST_SETS, InstanceFamily, InstanceSet
 from baselines.policy import make_policy
 from baselines.problem import hindsight_problem
-from baselines.references import BestKnown, Effort, improve_reference, update_references
+from baselines.references import BestKnown, Effort, improve_best_known, update_references
 
 NUMBER = 1_000_003
 QUICK = Effort(2.0, searches=1)
@@ -56,7 +56,7 @@ def test_known_routes_win_the_stored_prize(name):
 
 @pytest.mark.parametrize("test_set", [SMALL, NOISY], ids=["small", "noisy"])
 def test_a_new_reference_is_a_route_with_its_proof(test_set):
-    best = improve_reference(test_set, NUMBER, None, QUICK)
+    best = improve_best_known(test_set, NUMBER, None, QUICK)
     assert best.proven
     value = evaluate(problem_for(test_set), Tour(tuple(node - 1 for node in best.route)))
     assert value.feasible
@@ -64,48 +64,48 @@ def test_a_new_reference_is_a_route_with_its_proof(test_set):
 
 
 def test_the_best_of_all_routes_is_stored(monkeypatch):
-    best = improve_reference(SMALL, NUMBER, None, QUICK)
+    best = improve_best_known(SMALL, NUMBER, None, QUICK)
     bound = round(100 * best.prize)
     # The search finds no route, so the best one is the known one, a given one or a policy's.
     fake_optimiser(monkeypatch, (), 0, bound)
     monkeypatch.setattr(references, "insert_and_improve", lambda _: ())
-    assert improve_reference(SMALL, NUMBER, replace(best, bound=9.9), QUICK) == best
-    assert improve_reference(SMALL, NUMBER, None, QUICK, [best.route, (1,)]) == best
-    without_route = improve_reference(SMALL, NUMBER, None, QUICK)
+    assert improve_best_known(SMALL, NUMBER, replace(best, bound=9.9), QUICK) == best
+    assert improve_best_known(SMALL, NUMBER, None, QUICK, [best.route, (1,)]) == best
+    without_route = improve_best_known(SMALL, NUMBER, None, QUICK)
     assert without_route.prize == 0.0
     assert not without_route.proven
     (outcome,) = play(make_policy("nearest-neighbour"), SMALL, 1)
     effort = Effort(1.0, 1, ("nearest-neighbour",))
-    with_policy = improve_reference(SMALL, NUMBER, without_route, effort)
+    with_policy = improve_best_known(SMALL, NUMBER, without_route, effort)
     assert with_policy.prize == pytest.approx(outcome.prize)
     assert with_policy.route == outcome.route[:-1]
 
 
 def test_infeasible_routes_are_ignored(monkeypatch):
-    best = improve_reference(SMALL, NUMBER, None, QUICK)
+    best = improve_best_known(SMALL, NUMBER, None, QUICK)
     fake_optimiser(monkeypatch, (), 0, round(100 * best.prize))
     every = tuple(range(1, 9))
     assert not evaluate(problem_for(SMALL), Tour(tuple(n - 1 for n in every))).feasible
-    assert improve_reference(SMALL, NUMBER, best, QUICK, [every, (1, 1)]) == best
+    assert improve_best_known(SMALL, NUMBER, best, QUICK, [every, (1, 1)]) == best
 
 
 def test_of_equal_prizes_the_shorter_route_is_stored():
-    best = improve_reference(SMALL, NUMBER, None, QUICK)
+    best = improve_best_known(SMALL, NUMBER, None, QUICK)
     longer = replace(best, time=best.time + 1.0)
-    assert improve_reference(SMALL, NUMBER, longer, QUICK, [best.route]) == best
+    assert improve_best_known(SMALL, NUMBER, longer, QUICK, [best.route]) == best
 
 
 def test_an_instance_with_a_proof_is_not_searched_again(monkeypatch):
-    best = improve_reference(SMALL, NUMBER, None, QUICK)
+    best = improve_best_known(SMALL, NUMBER, None, QUICK)
     monkeypatch.setattr(references, "suggest_route", None)
-    assert improve_reference(SMALL, NUMBER, best, QUICK) == best
+    assert improve_best_known(SMALL, NUMBER, best, QUICK) == best
 
 
 def test_a_bound_that_a_route_exceeds_is_an_error(monkeypatch):
-    best = improve_reference(SMALL, NUMBER, None, QUICK)
+    best = improve_best_known(SMALL, NUMBER, None, QUICK)
     fake_optimiser(monkeypatch, (), 0, 10)
     with pytest.raises(ArgoError, match=r"more than the upper bound 0\.1: the optimiser is"):
-        improve_reference(SMALL, NUMBER, replace(best, bound=9.9), QUICK)
+        improve_best_known(SMALL, NUMBER, replace(best, bound=9.9), QUICK)
 
 
 def test_a_file_of_references_never_gets_worse(tmp_path):

@@ -34,9 +34,10 @@ Work = Callable[[], object]
 
 
 def prepare_random_drive(*, turning: bool = False) -> Work:
-    """Return the work of 50 steps of Drive-v0 with random actions, as at the start of training.
+    """Return a function that makes 50 steps of Drive-v0 with random actions.
 
-    With `turning` the robot only turns to and fro, where there is room for it.
+    This is as at the start of training. With `turning` the robot only turns to and fro, where there
+    is room for it.
     """
     import numpy as np
 
@@ -54,7 +55,7 @@ def prepare_random_drive(*, turning: bool = False) -> Work:
 
 
 def prepare_contact_drive() -> Work:
-    """Return the work of 50 steps of Drive-v0 straight ahead, against a wall already reached."""
+    """Return a function that makes 50 steps of Drive-v0 against a wall that the robot touches."""
     import numpy as np
 
     env = _drive_env(1)
@@ -77,7 +78,7 @@ def prepare_mission_run(
     *,
     again: bool = False,
 ) -> Work:
-    """Return the work of one run of a shipped mission with a drive.
+    """Return a function that runs a shipped mission once with a drive.
 
     The first run in a process also imports the simulator and plans the paths; with `again` such a
     run is made beforehand, without being timed.
@@ -97,7 +98,7 @@ def prepare_mission_run(
 
 
 def prepare_episodes(seeds: Sequence[int], *, again: bool = False) -> Work:
-    """Return the work of one episode of Inspect-v0, at most 40 random legal actions.
+    """Return a function that runs an episode of Inspect-v0 of at most 40 random legal actions.
 
     Each call takes the next of the seeds. As at the start of training, most paths are planned for
     the first time. With `again` an episode of each seed is run beforehand, so that the paths are
@@ -128,7 +129,7 @@ def prepare_episodes(seeds: Sequence[int], *, again: bool = False) -> Work:
 
 
 def prepare_import() -> Work:
-    """Return the import of a script of 2,000 tasks, most of whose lines differ.
+    """Return a function that imports a script of 2,000 tasks, most of whose lines differ.
 
     The script is always made by the code of this checkout.
     """
@@ -143,7 +144,7 @@ def prepare_import() -> Work:
 
 
 def prepare_report() -> Work:
-    """Return the writing of a report of mission #1 with its picture, the second one on a site."""
+    """Return a function that writes a report of mission #1; one was written on the site before."""
     from argo_env.planning import open_site
     from argo_planner.use_cases.reporting import report_files
 
@@ -158,7 +159,7 @@ def prepare_report() -> Work:
 
 
 def prepare_film() -> Work:
-    """Return the rendering of a film of mission #1 at 20 times its speed."""
+    """Return a function that renders a film of mission #1 at 20 times its speed."""
     from argo_env.pictures import write_film
     from argo_env.planning import open_site
 
@@ -222,7 +223,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def compare_case(name: str, before: Path, caches: Path, repeats: int) -> str:
-    """Return the line of the table for a case."""
+    """Time a case in both checkouts in turn, and return its line of the table."""
     times = [
         [
             time_in_process(name, root, caches / cache)
@@ -242,7 +243,7 @@ def compare_case(name: str, before: Path, caches: Path, repeats: int) -> str:
 
 
 def time_in_process(name: str, root: Path, cache: Path) -> tuple[float, float]:
-    """Return the wall and processor time (s) of a case with the code of a checkout."""
+    """Time a case in a new process with the code of a checkout; return wall and CPU time (s)."""
     environment = os.environ | {"PYTHONPATH": str(root), "ARGO_CACHE_DIR": str(cache)}
     command = (sys.executable, __file__, "--time", name, str(root))
     done = subprocess.run(

@@ -145,7 +145,7 @@ def time_motions(
 
 
 def time_path(drive: DriveWithMotion, path: Path) -> list[TimedDrive]:
-    """Drive along a path, and return its motions with the time of each, to a time step.
+    """Drive along a path; return its motions, each timed to a whole number of time steps.
 
     The last motion lasts until the robot is at rest.
 
@@ -222,7 +222,10 @@ def error_table(runs: list[Run]) -> Iterator[str]:
 
 
 def describe_fit(drives: list[TimedDrive], robot: RobotSpec, source: str) -> list[str]:
-    """Return the lines that state how a calibration was made and which errors remain."""
+    """Return the lines that state how the robot's calibration was made and which errors remain.
+
+    `source` says on which missions the drives were timed.
+    """
     errors = prediction_errors(drives, robot)
     seconds = np.array([d.seconds for d in drives])
     lines = [
@@ -290,7 +293,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def write_calibration(calibration: Calibration, header: list[str]) -> None:
-    """Write the calibration beside the robot's description, and print it."""
+    """Write the calibration, after its header lines, beside the robot's description; print it."""
     text = "".join(f"# {line}\n" for line in header) + "\n"
     text += yaml.safe_dump(calibration.model_dump(), sort_keys=False, default_flow_style=None)
     path = calibration_file("tracker")

@@ -75,7 +75,7 @@ class Timing:
 
 
 def time_runs(name: str, drive: str, runs: int, workers: int) -> Timing:
-    """Make the runs with a number of workers of a back end, and alternately in this process."""
+    """Time runs with the workers of the back end `name`, and the same runs in this process."""
     plan = make_plan(drive, range(runs))
     elapsed, running, alone = 0.0, 0.0, 0.0
     memory: list[float] = []

@@ -59,7 +59,7 @@ def fit_calibration(drives: Iterable[TimedDrive], robot: RobotSpec) -> Calibrati
 
 
 def nominal_seconds(motion: Motion, robot: RobotSpec, velocity: float | None = None) -> float:
-    """Return the seconds of a motion at the commanded speed from its start to its end."""
+    """Return the seconds that a motion would take at the commanded speed throughout."""
     if motion.turn:
         return abs(motion.turn) / robot.target_speed(motion.kind)
     return motion.length / motion.speed(robot, velocity)

@@ -58,7 +58,7 @@ Run = Callable[[Sequence[float]], list[str]]
 
 
 def build_argo() -> Run:
-    """Build the machine in Argo, by lowering tasks and groups."""
+    """Build the mission's machine in Argo, by lowering; return the function that runs it."""
 
     def task(name: str, *transitions: Transition) -> Task:
         return Task(name=name, action=Action.MEASURE, object_id=name, transitions=transitions)
@@ -126,7 +126,7 @@ class Rounds:
 
 
 def build_flat_transitions() -> Run:
-    """Build the mission's machine in the library transitions, without nested states.
+    """Build the machine in the library transitions, without nesting; return its run function.
 
     Each transition into a group resets the counter of the group's rounds.
     """
@@ -152,7 +152,7 @@ def build_flat_transitions() -> Run:
 
 
 def build_hierarchical_transitions() -> Run:
-    """Build the mission's machine in the library transitions, as a HierarchicalMachine."""
+    """Build the machine as a HierarchicalMachine of transitions; return its run function."""
     from transitions.extensions import HierarchicalMachine
 
     model: Any = Rounds()
@@ -196,7 +196,7 @@ def _transitions_run(model: Any) -> Run:
 
 
 def build_python_statemachine() -> Run:
-    """Build the mission's machine in python-statemachine with compound states."""
+    """Build the machine in python-statemachine, with compounds; return its run function."""
     from statemachine import State, StateChart
 
     class Night(StateChart[Any]):
@@ -270,7 +270,7 @@ statechart:
 
 
 def build_sismic() -> Run:
-    """Build the mission's machine in sismic, from a statechart in YAML."""
+    """Build the machine in sismic, from a statechart in YAML; return its run function."""
     from sismic.interpreter import Interpreter
     from sismic.io import import_from_yaml
 
@@ -288,7 +288,10 @@ def build_sismic() -> Run:
 
 
 def build_py_trees() -> Run:
-    """Build the mission in py_trees as sequences and repeats, with one tick for each event."""
+    """Build the mission in py_trees as sequences and repeats; return its run function.
+
+    It ticks the tree once for each event.
+    """
     import py_trees as pt
 
     values_seen: dict[str, Any] = {"value": None, "last": 0.0}
@@ -348,7 +351,11 @@ for name in MISSING:
 def measure_rates(
     count: int, repeats: int, machines: Mapping[str, tuple[Callable[[], Run], bool]] = MACHINES
 ) -> dict[str, float]:
-    """Return the events per second of each machine, the medians of the repeats."""
+    """Return the events per second of each machine, the medians of the repeats.
+
+    Raises:
+        SystemExit: A machine executes other tasks than Argo's.
+    """
     generator = random.Random(0)
     values = [generator.uniform(0.0, 10.0) for _ in range(count)]
     expected = build_argo()(values)
@@ -367,7 +374,7 @@ def measure_rates(
 
 
 def print_rates(count: int, repeats: int) -> None:
-    """Print the table."""
+    """Print the table of events per second, the fastest machine first."""
     rates = measure_rates(count, repeats)
     peers = [rates[name] for name, (_, nested) in MACHINES.items() if nested and name != "Argo"]
     fastest = max(peers, default=math.nan)

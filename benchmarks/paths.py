@@ -26,7 +26,7 @@ Query = tuple[Pose, Pose | int]
 
 
 def cpu_seconds(work: Callable[[], object]) -> float:
-    """Return the CPU seconds of the work."""
+    """Call `work`, and return the CPU time of this process (s) that it took."""
     started = time.process_time()
     work()
     return time.process_time() - started
@@ -38,7 +38,7 @@ def memory_text() -> str:
 
 
 def answer_query(navigator: Navigator, query: Query) -> object:
-    """Answer a query: the path to a pose, or to where a checkpoint is in view."""
+    """Return the path of a query, to a pose or to a pose that has the checkpoint in view."""
     start, goal = query
     if isinstance(goal, Pose):
         return navigator.plan(start, goal)
@@ -46,7 +46,7 @@ def answer_query(navigator: Navigator, query: Query) -> object:
 
 
 def measure_queries(navigator: Navigator, name: str, queries: Iterable[Query]) -> None:
-    """Print how long the queries take the first and the second time."""
+    """Print a line with the times of the queries, each made twice; `name` is its title."""
     first, again = [], []
     for query in queries:
         first.append(cpu_seconds(partial(answer_query, navigator, query)))
@@ -90,22 +90,24 @@ def measure_paths(name: str, count: int) -> Navigator:
     on_the_ground = poses_of_states(navigator, random.choice(floors[0], size=2 * count))
     print("Single paths, median/95th percentile/worst, first and again:")
     measure_queries(navigator, "from docks and checkpoints to checkpoints", legs)
-    measure_queries(navigator, "random poses, floors drawn evenly", pairs(spread))
-    measure_queries(navigator, "random states (most lie on open ground)", pairs(anywhere))
-    measure_queries(navigator, "random poses, both on the ground floor", pairs(on_the_ground))
+    measure_queries(navigator, "random poses, floors drawn evenly", make_queries(spread))
+    measure_queries(navigator, "random states (most lie on open ground)", make_queries(anywhere))
+    measure_queries(
+        navigator, "random poses, both on the ground floor", make_queries(on_the_ground)
+    )
     compare_travel_times(navigator, random, min(12, count))
     for _ in range(2):
         elapsed = cpu_seconds(lambda: navigator.turning_poses(1))
         print(f"  positions to turn at on the ground floor: {1e3 * elapsed:.1f} ms")
     dock, goal = site.docks[1], ids[min(7, len(ids) - 1)]
-    brick = put_brick_on(navigator.plan_to_view(dock, goal))
+    brick = brick_on_path(navigator.plan_to_view(dock, goal))
     elapsed = cpu_seconds(lambda: navigator.with_blockages([brick]).plan_to_view(dock, goal))
     print(f"  avoiding a blockage, and the first path round it: {1e3 * elapsed:.0f} ms")
     return navigator
 
 
-def pairs(poses: list[Pose]) -> list[Query]:
-    """Pair each pose at an even index, as a start, with the following one, as its goal."""
+def make_queries(poses: list[Pose]) -> list[Query]:
+    """Return queries from each pose at an even index to the pose after it."""
     return list(zip(poses[::2], poses[1::2], strict=True))
 
 
@@ -134,8 +136,8 @@ def _range_text(values: np.ndarray) -> str:
     return f"{values.min():.3f} to {values.max():.3f}"
 
 
-def put_brick_on(path: Path) -> Blockage:
-    """Return a rectangle of 0.8 m by 0.4 m in the middle of the longest drive of a path."""
+def brick_on_path(path: Path) -> Blockage:
+    """Return a blockage of 0.8 m by 0.4 m in the middle of the longest motion of a path."""
     middle = max(path.motions, key=lambda motion: motion.length).pose_at(0.5)
     x, y = middle.x, middle.y
     return Blockage((x - 0.4, y - 0.2, x + 0.4, y + 0.2), middle.z, "a brick")

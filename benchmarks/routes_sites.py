@@ -54,8 +54,10 @@ def make_site_matrix(name: str) -> SiteMatrix:
     return SiteMatrix(name, times, len(site.checkpoints))
 
 
-def random_mission(rng: np.random.Generator, site: SiteMatrix, largest: int = 20) -> RouteProblem:
-    """Draw a mission of 2 to `largest` checkpoints of the site with any mix of constraints."""
+def random_mission_problem(
+    rng: np.random.Generator, site: SiteMatrix, largest: int = 20
+) -> RouteProblem:
+    """Draw a route problem of 2 to `largest` checkpoints of a site, with any mix of constraints."""
     n = int(rng.integers(2, min(largest, site.checkpoints) + 1))
     chosen = rng.permutation(site.checkpoints)[:n]
     docks = np.arange(site.checkpoints, len(site.times))
@@ -129,7 +131,7 @@ def _random_rounds(rng: np.random.Generator, n: int, hop: int) -> tuple[Round, .
 
 
 def constraint_letters(problem: RouteProblem) -> str:
-    """Return the constraints of a problem, one letter each, `-` for those it does not have."""
+    """Return a letter for each kind of constraint, five in all; `-` if the problem has no such."""
     return "".join(
         letter if present else "-"
         for letter, present in [
@@ -142,10 +144,10 @@ def constraint_letters(problem: RouteProblem) -> str:
     )
 
 
-def random_checkpoints(
+def random_checkpoint_problem(
     rng: np.random.Generator, n: int, *, max_duration: int | None = None
 ) -> RouteProblem:
-    """Draw checkpoints anywhere on six floors with aisles, and stairs at one end.
+    """Draw a route problem of `n` checkpoints on six floors with aisles, and stairs at one end.
 
     Stairs take longer up than down. With a maximum duration, in units of UNIT, each checkpoint is
     optional and has a prize.
@@ -211,7 +213,9 @@ def measure_missions(names: Sequence[str], count: int, seed: int, time_limit: fl
     rows = []
     for number in range(count):
         rng = np.random.default_rng([seed, number])
-        rows.append(time_search(random_mission(rng, sites[number % len(sites)]), time_limit))
+        rows.append(
+            time_search(random_mission_problem(rng, sites[number % len(sites)]), time_limit)
+        )
     print(f"missions of 2 to 20 checkpoints, any mix of constraints: {summary_text(rows)}")
     for name in ("optional", "precedence", "windows", "rounds", "battery"):
         if chosen := [row for row in rows if name[0] in row.constraints]:
@@ -223,10 +227,11 @@ def measure_missions(names: Sequence[str], count: int, seed: int, time_limit: fl
 def measure_large_problems(seed: int, count: int) -> None:
     """Print how fast 80 checkpoints, and 40 optional ones within 20 minutes, are proven."""
     rng = np.random.default_rng(seed)
-    rows = [time_search(random_checkpoints(rng, 80), 60.0) for _ in range(count)]
+    rows = [time_search(random_checkpoint_problem(rng, 80), 60.0) for _ in range(count)]
     print(f"80 checkpoints in any order: {summary_text(rows)}")
     rows = [
-        time_search(random_checkpoints(rng, 40, max_duration=12_000), 120.0) for _ in range(count)
+        time_search(random_checkpoint_problem(rng, 40, max_duration=12_000), 120.0)
+        for _ in range(count)
     ]
     print(f"40 checkpoints, 20 minutes: {summary_text(rows)}")
 
@@ -235,7 +240,7 @@ def compare_with_pyvrp(seed: int, time_limit: float) -> None:
     """Print the durations of Argo's and PyVRP's routes for 1,000 checkpoints in any order."""
     from benchmarks import peer_pyvrp
 
-    problem = random_checkpoints(np.random.default_rng(seed), 1000)
+    problem = random_checkpoint_problem(np.random.default_rng(seed), 1000)
     quick = suggest_route(problem, 2.0, seed)
     first = quick.history[0]
     ours = suggest_route(problem, time_limit, seed)

@@ -40,7 +40,10 @@ class Row:
     """contradiction of the evaluation or of a known value, a defect of the solvers; None: none"""
 
     def relative_loss(self, value: float | None) -> float | None:
-        """Return by what share a value is worse than the best one of all, Argo's included."""
+        """Return the relative loss of a value to the best of all: known, Argo's and the peers'.
+
+        None: there is no value. A loss within the rounding of the known value counts as 0.
+        """
         known = None if self.known is None else self.known.value
         candidates = (self.value, known, *(peer.value for peer in self.peers))
         values = [candidate for candidate in candidates if candidate is not None]

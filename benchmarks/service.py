@@ -76,10 +76,10 @@ def make_mission(size: int) -> dict[str, object]:
 
 
 def receive_revisions(address: str, id: str, revisions: int, count: int, times: Connection) -> None:
-    """Subscribe `count` times to a mission until each has received so many revisions.
+    """Subscribe `count` times to a mission until each subscriber has received `revisions` of them.
 
-    Runs in a process of its own. Sends None when all are subscribed, and at the end the time (ns)
-    at which the last of them received each revision.
+    Runs in a process of its own. Sends None through `times` when all are subscribed, and at the
+    end, by the number of a revision, the time (ns) at which the last subscriber received it.
     """
 
     async def follow_once(last: Counter[int], ready: asyncio.Semaphore) -> None:
@@ -111,7 +111,8 @@ def receive_revisions(address: str, id: str, revisions: int, count: int, times: 
 def receive_poses(address: str, count: int, seconds: float, gaps: Connection) -> None:
     """Follow the robot's poses `count` times for a number of seconds.
 
-    Runs in a process of its own. Sends all gaps (s) between poses that the same follower received.
+    Runs in a process of its own. Sends through `gaps` a list of all times (s) between two
+    successive poses that the same follower received.
     """
 
     async def follow_once() -> list[float]:
@@ -139,7 +140,10 @@ def receive_poses(address: str, count: int, seconds: float, gaps: Connection) ->
 
 
 def measure_poses(address: str, process: int, followers: int, seconds: float) -> None:
-    """Print the load of the service by the poses of a run, without and with followers."""
+    """Print the load that a run's poses put on the service, without and with `followers`.
+
+    `process` is the id of the service's process; each of the two measurements takes `seconds`.
+    """
     with httpx.Client(base_url=f"http://{address}", headers=HEADERS, timeout=60) as client:
         response = client.post(
             "/api/missions", json={"name": "poses", "mission": make_mission(200)}
@@ -173,7 +177,7 @@ def measure_poses(address: str, process: int, followers: int, seconds: float) ->
 
 
 def processor_seconds(process: int) -> float:
-    """Return the processor time (s) of a process so far, without that of its children."""
+    """Return the processor time (s) so far of the process with this id, without its children."""
     fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
@@ -229,7 +233,7 @@ def measure_edits(address: str, size: int, edits: int, subscribers: int) -> None
 def change_velocity(
     client: httpx.Client, id: str, revision: int, task: str, velocity: float
 ) -> None:
-    """Change a task's speed (m/s)."""
+    """Change a task's speed (m/s) in mission `id`, whose latest revision is `revision`."""
     change = {"kind": "change_task", "name": task, "velocity": velocity}
     body = {"kind": "edit", "id": f"e{revision}", "edits": [change]}
     headers = {"if-match": f'"{revision}"'}
@@ -238,7 +242,7 @@ def change_velocity(
 
 @contextmanager
 def subscribe_without_reading(address: str, id: str) -> Iterator[None]:
-    """Subscribe to a mission, and read nothing until the context ends."""
+    """Subscribe to mission `id` for this context, and read nothing that the service sends."""
     host, _, port = address.partition(":")
     with socket.create_connection((host, int(port))) as connection:
         connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)

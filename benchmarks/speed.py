@@ -61,7 +61,10 @@ class Figure:
 
 
 def fixed_work() -> float:
-    """Do a fixed work of some hundredths of a second: calls, dictionaries and small arrays."""
+    """Compute for some hundredths of a second with dictionaries and small arrays, as a reference.
+
+    The returned number has no meaning.
+    """
     sums: dict[int, float] = {}
     for number in range(40_000):
         sums[number % 997] = sums.get(number % 991, 0.0) * 0.5 + number
@@ -79,10 +82,10 @@ def compare_with_fixed_work(
     fixed: Work = fixed_work,
     clock: Clock = time.process_time,
 ) -> float:
-    """Return the time of a work over that of the fixed work, the median of the repeats.
+    """Return the time of the prepared work over that of `fixed`, the median of the repeats.
 
-    A repeat does the work `calls` times and the fixed work three times. If there are several
-    repeats, one more comes first, which is not counted.
+    A repeat does the work `calls` times and `fixed` three times; the mean times of a call are
+    compared. If there are several repeats, one more comes first, which is not counted.
     """
     work = prepare()
     ratios = []
@@ -98,8 +101,8 @@ def compare_with_fixed_work(
     return median(ratios[repeats > 1 :])
 
 
-def measure_executor(repeats: int) -> float | None:
-    """Return the executor's events per second over those of py_trees; None: not installed."""
+def compare_executor_with_py_trees(repeats: int) -> float | None:
+    """Return the executor's events per second over those of py_trees; None: no py_trees."""
     if importlib.util.find_spec("py_trees") is None:
         return None
     machines = {name: hfsm.MACHINES[name] for name in ("Argo", "py_trees")}
@@ -107,15 +110,15 @@ def measure_executor(repeats: int) -> float | None:
     return rates["Argo"] / rates["py_trees"]
 
 
-def measure_command(name: str, repeats: int) -> float:
-    """Return the time of a command over that of `import numpy`."""
+def compare_command_with_numpy(name: str, repeats: int) -> float:
+    """Return the time of a command of `startup` over that of `import numpy`."""
     with tempfile.TemporaryDirectory() as folder:
-        chosen = {name: startup.commands(Path(folder))[name]}
+        chosen = {name: startup.commands_to_time(Path(folder))[name]}
         return startup.measure_commands(chosen, repeats)[name][0]
 
 
 def prepare_import() -> Work:
-    """Return the import of a script of a thousand tasks, each time without a cache of its lines."""
+    """Return a function that imports a script of a thousand tasks, with an empty cache of lines."""
     from argo_compiler.script import import_script
     from argo_compiler.script.syntax.repeats import repeats
     from benchmarks.compile import make_catalog, make_script
@@ -131,7 +134,7 @@ def prepare_import() -> Work:
 
 
 def prepare_check() -> Work:
-    """Return the check and the analysis of a mission of a thousand tasks."""
+    """Return a function that checks and analyses a mission of a thousand tasks."""
     from argo_compiler.analysis import analyse
     from argo_compiler.checks import check
     from argo_compiler.script import import_script
@@ -143,7 +146,7 @@ def prepare_check() -> Work:
 
 
 def prepare_route_steps() -> Work:
-    """Return a hundred steps of a batch of 64 episodes of Route-v0."""
+    """Return a function that makes a hundred steps of a batch of 64 episodes of Route-v0."""
     from benchmarks.env import step_argo_batch
 
     steps = step_argo_batch(64)
@@ -151,7 +154,7 @@ def prepare_route_steps() -> Work:
 
 
 def prepare_proofs() -> Work:
-    """Return the search for routes of eight problems of up to 12 visits, with a proof for each."""
+    """Return a function that finds and proves the best routes of 8 problems of 6 to 12 visits."""
     from argo_compiler.route.suggestion import suggest_route
     from benchmarks.route_parts import random_problems
 
@@ -165,8 +168,8 @@ def prepare_proofs() -> Work:
 
 
 @contextmanager
-def open_editing() -> Iterator[Work]:
-    """Yield ten durable edits of a mission of 200 tasks, made by a service in its own process."""
+def open_edit_work() -> Iterator[Work]:
+    """Yield a function that makes ten durable edits of a mission in a service of its own."""
     import httpx
 
     from benchmarks.service import HEADERS, change_velocity, make_mission, start_service
@@ -188,9 +191,9 @@ def open_editing() -> Iterator[Work]:
         yield work
 
 
-def measure_edits(repeats: int) -> float:
+def compare_edits_with_fixed_work(repeats: int) -> float:
     """Return the time of ten edits over that of three fixed works and ten durable writes."""
-    with open_editing() as work, tempfile.TemporaryFile() as file:
+    with open_edit_work() as work, tempfile.TemporaryFile() as file:
 
         def fixed() -> None:
             for _ in range(3):  # about as much as the service does for ten edits
@@ -204,7 +207,7 @@ def measure_edits(repeats: int) -> float:
 
 
 def _command_figure(name: str) -> Figure:
-    return Figure(name, "x `import numpy`", partial(measure_command, name), repeats=9)
+    return Figure(name, "x `import numpy`", partial(compare_command_with_numpy, name), repeats=9)
 
 
 def _work_figure(
@@ -215,7 +218,9 @@ def _work_figure(
 
 
 FIGURES = (
-    Figure("executor", "x py_trees", measure_executor, repeats=9, more_is_faster=True),
+    Figure(
+        "executor", "x py_trees", compare_executor_with_py_trees, repeats=9, more_is_faster=True
+    ),
     _command_figure("argo --help"),
     _command_figure("argo check, a script"),
     _command_figure("argo check, a mission"),
@@ -228,7 +233,7 @@ FIGURES = (
     _work_figure("run, kinematic", partial(against.prepare_mission_run, "kinematic", again=True)),
     _work_figure("run, tracked", partial(against.prepare_mission_run, "tracked"), 2, short=False),
     _work_figure("8 routes proven", prepare_proofs),
-    Figure("10 edits", "x 3 times the fixed work and 10 writes", measure_edits),
+    Figure("10 edits", "x 3 times the fixed work and 10 writes", compare_edits_with_fixed_work),
 )
 
 

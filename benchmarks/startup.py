@@ -31,14 +31,16 @@ def main(arguments: Sequence[str] | None = None) -> None:
     )
     options = parser.parse_args(arguments)
     with tempfile.TemporaryDirectory() as folder:
-        chosen = {name: c for name, c in commands(Path(folder)).items() if options.only in name}
+        chosen = {
+            name: c for name, c in commands_to_time(Path(folder)).items() if options.only in name
+        }
         measured = measure_commands(chosen, options.repeats)
     for name, (paired, shortest, seconds, limit) in measured.items():
         requirement = f"at most {limit:g}" if limit else ""
         print(f"{name:24} {paired:6.2f} {shortest:6.2f}   {seconds:6.3f} s   {requirement}")
 
 
-def commands(folder: Path) -> dict[str, tuple[Sequence[str], float | None]]:
+def commands_to_time(folder: Path) -> dict[str, tuple[Sequence[str], float | None]]:
     """Return the commands by name, each with its largest allowed ratio, or None if it has none.
 
     First writes the mission that one of them checks to the folder.
@@ -63,8 +65,10 @@ def measure_commands(
 ) -> dict[str, tuple[float, float, float, float | None]]:
     """Time commands relative to `import numpy`.
 
-    Returns: By name: the median of the ratios of each repeat, the ratio of the shortest times,
-    the median in seconds, and the largest allowed ratio.
+    Returns:
+        For each command, by name: the median of the ratios of its time to that of the import, one
+        for each repeat; the ratio of the shortest times; the median of its times in s; and the
+        largest allowed ratio, None without one.
     """
     numpy = (sys.executable, "-c", "import numpy")
     results = {}
@@ -80,7 +84,7 @@ def measure_commands(
 
 
 def time_command(command: Sequence[str]) -> float:
-    """Return the seconds that a process takes from its start to its end."""
+    """Run a command in a process, and return the wall-clock time (s) that it took."""
     started = time.perf_counter()
     subprocess.run(
         command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=True

@@ -41,7 +41,7 @@ def play(
     seed: int = 0,
     clock: Clock = time.process_time,
 ) -> Iterator[EpisodeOutcome]:
-    """Yield the outcomes of a policy on the first instances of a test set.
+    """Run a policy on the first instances of a test set, and yield the outcome of each episode.
 
     Args:
         policy: the policy.

@@ -37,8 +37,8 @@ _TICKS = (-20, -10, -5, -2, 0, 2, 5, 10, 20, 50)  # %
 def plot_ranking(results: Path, folder: Path) -> list[Path]:
     """Plot processor time and gap to the best known routes of each policy, with the Pareto front.
 
-    Returns the pictures in `folder`, one for each test set in the file `results`. Raises ArgoError
-    if that is not a `results.json` of `python -m baselines.evaluate`.
+    Returns the paths of the pictures in `folder`, one for each test set in the file `results`.
+    Raises ArgoError if that is not a `results.json` of `python -m baselines.evaluate`.
     """
     return [
         _plot_ranking(comparison, folder / f"ranking-{comparison.test_set}.png")
@@ -49,8 +49,8 @@ def plot_ranking(results: Path, folder: Path) -> list[Path]:
 def plot_gaps(results: Path, folder: Path) -> list[Path]:
     """Draw box plots of the gap of each policy to the best known route of each instance.
 
-    Returns the pictures in `folder`, one for each test set in the file `results`. Raises ArgoError
-    if that is not a `results.json` of `python -m baselines.evaluate`.
+    Returns the paths of the pictures in `folder`, one for each test set in the file `results`.
+    Raises ArgoError if that is not a `results.json` of `python -m baselines.evaluate`.
     """
     return [
         _box_plot(
@@ -219,7 +219,7 @@ def plot_convergence(name: str, problem: RouteProblem, time_limit: float, pictur
 
 
 def draw_tour(test_set: InstanceSet, policy: Policy, number: int, picture: Path) -> Path:
-    """Draw a policy's route on the instance `number` over the floor plans; return the picture."""
+    """Draw a policy's route on the instance `number` over the floor plans; return `picture`."""
     source = test_set.family.source
     if isinstance(source, AlternatingSources):
         source = source.source_for(number)

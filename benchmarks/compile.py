@@ -158,7 +158,7 @@ def _parse_arguments(catalog: Catalog) -> tuple[list[str], str, list[str]]:
 
 
 def time_stages(text: str, catalog: Catalog) -> dict[str, float]:
-    """Return the CPU seconds of each stage from the text to an executor, and their sum."""
+    """Return the CPU seconds of each stage from the text to an executor, and `total`, their sum."""
     seconds: dict[str, float] = {}
 
     def time_stage(name: str, stage: Callable[..., Any], *arguments: Any) -> Any:

@@ -53,7 +53,10 @@ def best_rate(stepper: Stepper, window: float) -> float:
 
 
 def step_environment(env: gym.Env, choose: Callable) -> Stepper:
-    """Step one Gymnasium environment with actions chosen from its observations."""
+    """Yield 1 and the time (s) of each step of an environment.
+
+    `choose` returns an action for an observation. Ended episodes are reset outside the timing.
+    """
     observation, _ = env.reset(seed=0)
     while True:
         action = choose(observation)
@@ -75,7 +78,10 @@ def make_random_policy(seed: int = 0) -> Callable:
 
 
 def step_argo_batch(count: int) -> Stepper:
-    """Step a batch of Route-v0 in the vector environment."""
+    """Yield the number and the time (s) of the steps of a batch of `count` episodes of Route-v0.
+
+    Each call of `step` gives one pair. Episodes that the batch resets in it are not counted.
+    """
     env = gym.make_vec(
         "argo/Route-v0",
         num_envs=count,
@@ -96,7 +102,10 @@ def step_argo_batch(count: int) -> Stepper:
 
 
 def step_rl4co_batch(count: int) -> Stepper:
-    """Step RL4CO's orienteering environment, which is reset when all its episodes have ended."""
+    """Yield the number of running episodes and the time (s) of each step of a batch in RL4CO.
+
+    The environment is that of orienteering; the batch is reset when all its episodes have ended.
+    """
     import torch
     from rl4co.envs import OPEnv
 
@@ -116,7 +125,11 @@ def step_rl4co_batch(count: int) -> Stepper:
 
 
 def step_jumanji_batch(name: str, count: int) -> Stepper:
-    """Step a Jumanji environment, compiled and mapped over a batch; reset when all have ended."""
+    """Yield the number of running episodes and the time (s) of each step of a batch in Jumanji.
+
+    The environment `name` is compiled and mapped over the batch, which is reset when all its
+    episodes have ended.
+    """
     import jax
     import jax.numpy as jnp
     import jumanji
@@ -148,10 +161,10 @@ def step_jumanji_batch(name: str, count: int) -> Stepper:
 
 
 def step_jumanji_loop(name: str) -> Stepper:
-    """Step one Jumanji environment with random legal actions in a compiled loop.
+    """Yield the number and the time (s) of steps of one Jumanji environment in a compiled loop.
 
-    A policy in JAX may run like this, without a call from Python for each step. Ended episodes are
-    reset.
+    Each loop of 1,000 random legal actions gives one pair. A policy in JAX may run like this,
+    without a call from Python for each step. Ended episodes are reset.
     """
     import jax
     import jax.numpy as jnp
@@ -185,7 +198,7 @@ def step_jumanji_loop(name: str) -> Stepper:
 
 
 def step_with_samples(env: gym.Env) -> Stepper:
-    """Step one Gymnasium environment with actions drawn from its action space."""
+    """Yield 1 and the time (s) of each step with actions drawn from the action space."""
     env.action_space.seed(0)
     return step_environment(env, lambda _: env.action_space.sample())
 
@@ -298,7 +311,7 @@ def measure_resets(options: argparse.Namespace) -> None:
 
 
 def measure_expert(options: argparse.Namespace) -> None:
-    """Print how often the expert reaches its goal on UMAD, by the floor of the goal."""
+    """Print how often the expert reaches goals on UMAD: on the same floor, upwards, downwards."""
     wrapped = gym.make("argo/Drive-v0", max_way=options.max_way, disable_env_checker=True)
     env: Any = wrapped.unwrapped
     results: dict[str, list[tuple[bool, float, float, bool]]] = {}
@@ -341,7 +354,7 @@ def measure_batches(options: argparse.Namespace) -> None:
 
 
 def batch_rate(id: str, count: int, processes: int, seed: int, steps: int) -> float:
-    """Return the steps per second of a batch with random legal actions, and print them."""
+    """Step a batch `steps` times with random legal actions; print and return steps per second."""
     batch: Any = gym.make_vec(id, count, processes=processes).unwrapped
     rng = np.random.default_rng(seed)
     observation, _ = batch.reset(seed=100 * seed)

@@ -54,7 +54,7 @@ def timed_run(order: WorkOrder) -> RunRow:
 
 
 def seed_parts(seeds: int) -> Iterator[range]:
-    """Yield the seeds in up to five parts of the same size; the last one may be smaller."""
+    """Yield the seeds 0 to `seeds` - 1 in up to five parts of one size; the last may be smaller."""
     size = -(-seeds // _PARTS)
     for first in range(0, seeds, size):
         yield range(first, min(seeds, first + size))

@@ -99,7 +99,7 @@ class NamedProblem:
         return cost * self.problem.unit
 
     def make_route(self, nodes: Sequence[int]) -> Tour:
-        """Return the route through these nodes; the start and the end are left out."""
+        """Return the route through nodes, by their numbers in the file, without start and end."""
         visits = {node: visit for visit, node in enumerate(self.nodes)}
         return Tour(tuple(visits[node] for node in nodes if node in visits))
 

@@ -188,7 +188,7 @@ class Row:
 
 
 def time_search(problem: RouteProblem, time_limit: float) -> Row:
-    """Time the search for a route, without that for constraints that exclude each other."""
+    """Search for a route, and time that; conflicts of constraints are not searched for."""
     begun = time.perf_counter()
     suggestion = suggest_route(problem, time_limit, explain=False)
     seconds = time.perf_counter() - begun

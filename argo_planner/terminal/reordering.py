@@ -18,7 +18,7 @@ from argo_planner.use_cases.routing import suggest_order
 def optimise_and_show(
     imported: ImportedMission, site: OpenedSite
 ) -> tuple[ImportedMission, Reordering]:
-    """Return the mission in its best order, and a description of it; print both durations.
+    """Return the mission in its best order, and a description of the change; print both durations.
 
     Raises:
         ArgoError: The order can't be changed, or no order meets all requirements of the mission.

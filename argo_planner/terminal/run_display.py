@@ -40,7 +40,7 @@ class RunDisplay(Observer, Closing):
         self._progress.update(self._bar, completed=now, description=task)
 
     def on_change(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
-        """Print reported anomalies and values, and what the robot has sensed."""
+        """Print anomalies and values that people reported, and those that the robot sensed."""
         reported = entry.reported_anomalies(self._site) if self._site else ()
         for value in entry.given_values(self._site) if self._site else ():
             self._print(f"{value.t!r} s: {value.in_words}")

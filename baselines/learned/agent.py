@@ -17,7 +17,7 @@ from argo_compiler.base.errors import Invalid, NotFound
 from argo_env.envs.observations import Observation
 from argo_env.envs.route_instance import DOCK
 from argo_env.seeding import generator
-from baselines.learned.extra import check_learned
+from baselines.learned.extra import require_learned_extra
 
 WEIGHTS = Path(__file__).parent / "weights" / "route.pt"
 """file of the shipped weights"""
@@ -33,7 +33,7 @@ class Scorer:
 
     def __init__(self, path: Path = WEIGHTS) -> None:
         """Load the weights; raise ArgoError without such weights or without torch."""
-        check_learned()
+        require_learned_extra()
         import torch
 
         from baselines.learned.network import RouteNetwork

@@ -8,7 +8,7 @@ import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 
 from argo_compiler.base.errors import ArgoError, Invalid, NotFound
-from baselines.learned.extra import check_learned
+from baselines.learned.extra import require_learned_extra
 
 Points = list[tuple[int, float]]
 """pairs of the number of states learned from so far, and a value"""
@@ -25,7 +25,7 @@ def read_logs(folder: Path) -> dict[str, Points]:
 
     Raises ArgoError if there are no logs, or no part of the training is completed.
     """
-    check_learned()
+    require_learned_extra()
     from tensorboard.backend.event_processing.event_accumulator import (  # type: ignore[import-untyped]
         EventAccumulator,
     )

@@ -6,7 +6,7 @@ from argo_compiler.base.errors import Unavailable
 from argo_compiler.base.extras import install_line
 
 
-def check_learned() -> None:
+def require_learned_extra() -> None:
     """Raise Unavailable if a package that learned policies need is not installed."""
     required = {
         "torch": "torch",

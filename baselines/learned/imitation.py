@@ -44,7 +44,7 @@ class Lessons:
         return len(self.value)
 
     def select_samples(self, rows: NDArray[np.int64]) -> "Lessons":
-        """Return the samples in these rows."""
+        """Return a copy with the samples at these indices only."""
         observation = {name: array[rows] for name, array in self.observation.items()}
         return Lessons(observation, self.target[rows], self.value[rows])
 

@@ -79,7 +79,7 @@ class TrainingRoutes:
 
 
 def pad_instance(instance: RouteInstance, checkpoints: int) -> RouteInstance:
-    """Fill an instance up to `checkpoints` checkpoints with unreachable ones that have no prize."""
+    """Return an instance filled up to `checkpoints` with unreachable ones that have no prize."""
     more = checkpoints + 1 - instance.size
     if more == 0:
         return instance

@@ -8,7 +8,7 @@ from pathlib import Path
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid
 from argo_compiler.base.stages import listen_to_stages
 from argo_env.files.folders import make_folder
-from baselines.learned.extra import check_learned
+from baselines.learned.extra import require_learned_extra
 from baselines.stage_lines import StageLines
 
 
@@ -29,7 +29,7 @@ def main(arguments: list[str] | None = None) -> int:
     )
     options = parser.parse_args(arguments)
     try:
-        check_learned()
+        require_learned_extra()
         _train(options)
     except ArgoError as error:
         print(f"error: {error}", file=sys.stderr)

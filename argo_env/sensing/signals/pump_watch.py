@@ -255,9 +255,10 @@ def faulty_pumps(
 def _fit_faults(
     per_pump: NDArray[np.float64], measured: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], float]:
-    """Fit faults from 0 to WORST by least squares.
+    """Fit the powers that the pumps' faults add, 0 to WORST times a pump's own, by least squares.
 
-    Returns how much each fault adds, and the sum of squares that remains.
+    Returns these multiples, and the sum of squares that remains. `per_pump` has a column for each
+    pump and a row for each recording, as `measured`.
     """
     if not per_pump.shape[1]:
         return np.empty(0), float(measured @ measured)
@@ -266,6 +267,6 @@ def _fit_faults(
 
 
 def _attenuation(listeners: list[Vector], positions: list[Vector]) -> NDArray[np.float64]:
-    """Return the share of a pump's power at 1 m that arrives, shape (listeners, positions)."""
+    """Return the power of each pump at each listener over that at 1 m, shape (listeners, pumps)."""
     offset = np.array(listeners)[:, None, :] - np.array(positions)
     return np.asarray(1 / np.maximum((offset**2).sum(axis=2), NEAREST**2))

@@ -171,10 +171,10 @@ def _brightness_levels(
     weights: NDArray[np.float64],
     start: tuple[float, float] | None = None,
 ) -> tuple[bool, float, float]:
-    """Return whether the picture has the contrast of a face, and gain and offset of its brightness.
+    """Return True if the picture has the contrast of a face, and gain and offset of brightness.
 
-    Gain and offset map the drawn brightness to that of the picture. The fit begins at `start`, or
-    without it at estimates from the medians and percentiles.
+    Gain and offset map the drawn brightness to that of the picture, `values`. Their fit begins at
+    `start`, or without it at estimates from the medians and percentiles.
     """
     seen = np.isfinite(values) & (weights > 0)
     if seen.sum() < 20:
@@ -189,7 +189,7 @@ def _brightness_levels(
 
 
 def _initial_levels(v: NDArray[np.float64], t: NDArray[np.float64]) -> list[tuple[float, float]]:
-    """Return estimates of gain and offset.
+    """Return estimates of gain and offset from brightness in the picture, `v`, and as drawn, `t`.
 
     One is from the brightest points, with black as no light: it is right where much of the face is
     covered. The other is from the medians of the points that are drawn white and black.
@@ -212,7 +212,11 @@ def _fit_levels(
     start: tuple[float, float],
     rounds: int,
 ) -> tuple[float, float, float]:
-    """Return the weight of the points that fit, with the fitted gain and offset, from a start."""
+    """Return the weight of the points that fit, and the gain and the offset that fit them.
+
+    `v` and `t` are the brightness of points in the picture and as drawn, `w` their weights. The fit
+    begins at `start`, and has `rounds` steps at most.
+    """
     gain, offset = start
     total = 0.0
     for _ in range(rounds):

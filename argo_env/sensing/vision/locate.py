@@ -53,7 +53,10 @@ def find_poses_by_outline(
 def _poses_from_patch(
     patch: NDArray[np.int32], photo: Photo, instrument: Instrument, planned: FacePose
 ) -> list[tuple[float, FacePose]]:
-    """Return the possible poses of a face with this outline, shape (n, 1, 2) in px."""
+    """Return the possible poses of a face with this outline, shape (n, 1, 2) in px.
+
+    Each comes after a number, as in `find_poses_by_outline`.
+    """
     import cv2
 
     shape, eye, focal = instrument.shape, photo.pose.position, photo.lens.focal

@@ -36,7 +36,7 @@ def store_import_notes(
 
 
 def load_import_notes(folder: Path, plan: str) -> tuple[int, tuple[Diagnostic, ...]]:
-    """Return the number of the revision that the last import made, and its notes; or 0 and ()."""
+    """Return the revision number and the notes of the last import; 0 and () if there are none."""
     try:
         stored = _Notes.model_validate_json(_path(folder, plan).read_bytes())
     except (OSError, ValidationError):

@@ -85,7 +85,7 @@ class InstancePool:
     prizes: NDArray[np.float64]
     budget: NDArray[np.float32]
     noisy: bool
-    """whether the instances have hidden parts, which are the next two"""
+    """True if the instances have hidden parts: the next two fields"""
     failing: NDArray[np.int16]
     since: NDArray[np.float32]
     """time (s) at which each stage but the first begins, shape (m, stages - 1)"""

@@ -34,7 +34,7 @@ class RouteInstance:
     prizes: NDArray[np.float64]
     """0 to 1, shape (n + 1,); the dock has 0"""
     before: NDArray[np.bool_]
-    """whether row must be visited before column, shape (n + 1, n + 1)"""
+    """True if the row must be visited before the column, shape (n + 1, n + 1)"""
     budget: float
     """s within which the robot must dock"""
     positions: NDArray[np.float64]
@@ -255,7 +255,7 @@ class Score:
     illegal: int | None
     """first node of the route that was illegal, and so not visited; None if all were legal"""
     late: bool = False
-    """whether the robot docks after the end of the budget, which only blocked stairs can cause"""
+    """True if the robot docks after the end of the budget, which only blocked stairs can cause"""
 
 
 def score_route(instance: RouteInstance, route: Sequence[int]) -> Score:

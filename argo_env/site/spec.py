@@ -120,7 +120,7 @@ class FloorSpec(Model):
     walkways: dict[str, Rect] = Field(min_length=1, max_length=MAX_THINGS)
     openings: dict[str, Rect] = Field(default_factory=dict, max_length=MAX_THINGS)
     railed: bool = True
-    """whether free edges of the deck carry a railing"""
+    """True if free edges of the deck carry a railing"""
     gates: dict[str, Rect] = Field(default_factory=dict, max_length=MAX_THINGS)
     """areas without railing"""
     barriers: dict[str, Line] = Field(default_factory=dict, max_length=MAX_THINGS)

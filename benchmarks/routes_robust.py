@@ -14,7 +14,7 @@ import numpy as np
 
 from argo_compiler.route import RouteProblem, Tour, Visit, evaluate
 from argo_compiler.route.robust import RobustSuggestion, suggest_robust_route
-from argo_compiler.route.robust_sampling import Draws, completion
+from argo_compiler.route.robust_sampling import Draws, estimate_completion
 from argo_compiler.route.robust_spread import CAUTIOUS
 from argo_compiler.route.suggestion import suggest_route
 from argo_env.planning import open_site
@@ -61,10 +61,12 @@ def compare_with_all_orders(count: int, time_limit: float) -> None:
         draws = Draws(CAUTIOUS, DRAWS, generator(seed, "all orders"))
         assert suggestion.nominal.route is not None
         usual, robust = (
-            completion(problem, route, draws).probability
+            estimate_completion(problem, route, draws).probability
             for route in (suggestion.nominal.route, suggestion.route)
         )
-        all_orders = [completion(problem, Tour(o), draws) for o in permutations(range(VISITS))]
+        all_orders = [
+            estimate_completion(problem, Tour(o), draws) for o in permutations(range(VISITS))
+        ]
         gains.append(robust - usual)
         losses.append(max(order.probability for order in all_orders) - robust)
     print(f"{count} problems of {VISITS} mandatory visits, in percentage points:")

@@ -33,7 +33,7 @@ class MissionBounds:
         return completion_times(self.lengths, self.mission_level)
 
 
-def has_too_many_cuts(flow: Flow) -> bool:
+def has_too_many_cancellations(flow: Flow) -> bool:
     """Return True if there are too many pairs of a task and a time limit that may cancel it.
 
     Bounds are not computed then. The time limits are the hard ones of the groups around the task;

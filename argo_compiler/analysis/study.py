@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
-from argo_compiler.analysis.bounds import MissionBounds, compute_bounds, has_too_many_cuts
+from argo_compiler.analysis.bounds import MissionBounds, compute_bounds, has_too_many_cancellations
 from argo_compiler.analysis.flow import Flow
 from argo_compiler.analysis.path_lengths import BoundsTooLargeError
 from argo_compiler.analysis.reachability import Reachability
@@ -76,7 +76,7 @@ class Study:
     @cached_property
     def bounds(self) -> MissionBounds | None:
         """Bounds on duration and energy; None if the mission is too large or too deeply nested."""
-        if has_too_many_cuts(self.flow):
+        if has_too_many_cancellations(self.flow):
             return None
         if self.costs.too_many:
             return None

@@ -430,7 +430,7 @@ class Executor:
         if self._running_visit == mission.configuration.visit.number:
             mission.complete(leaf)
         else:
-            mission.complete_late(leaf)
+            mission.record_late_success(leaf)
 
     def _end_action(self, event: ActionFailed | ActionStopped) -> None:
         """Handle the failure of the running action, or its end after a cancellation."""

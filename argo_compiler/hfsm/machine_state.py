@@ -272,7 +272,7 @@ class MachineState:
         transition = configuration.take_transition(leaf.transitions, now)
         self.trace.append((now, leaf, configuration.visit.leaf, transition, detail))
 
-    def complete_late(self, leaf: LeafNode) -> None:
+    def record_late_success(self, leaf: LeafNode) -> None:
         """Count the success of an action that came after the mission had left its task."""
         if not leaf.is_return:
             self._count_end(leaf)

@@ -11,7 +11,11 @@ from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.il import Mission, Order
 from argo_compiler.reorder.assumptions import assumption_notes, assumptions
 from argo_compiler.reorder.branch_costs import BranchCosts
-from argo_compiler.reorder.precedences import precedences, required_last_visit, required_name_pairs
+from argo_compiler.reorder.precedences import (
+    precedence_name_pairs,
+    precedences,
+    required_last_visit,
+)
 from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.reorder.task_requirements import with_requirements
 from argo_compiler.reorder.travel_matrix import TravelMatrix, require_matrix_for
@@ -113,7 +117,7 @@ def route_problem(
         Tour(tuple(range(len(visits.task_units)))),
         tuple(reasons),
         None if limit is None else limit[0],
-        required_name_pairs(visits, requirements),
+        precedence_name_pairs(visits, requirements),
         tuple(map(int, matrix.work)),
         tuple(assumptions(visits, matrix)),
     )
@@ -159,7 +163,7 @@ def require_known(mission: Mission, requirements: Requirements) -> None:
     ]
     for what in named:
         visits.find(what)
-    required_name_pairs(visits, requirements)
+    precedence_name_pairs(visits, requirements)
     _probabilities(visits, requirements)
 
 

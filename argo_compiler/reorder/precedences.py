@@ -84,7 +84,9 @@ def _mission_precedences(visits: Visits) -> Iterator[Precedence]:
             yield Precedence((one, other), f"{visits.names[one]} before {visits.names[other]}")
 
 
-def required_name_pairs(visits: Visits, requirements: Requirements) -> tuple[tuple[str, str], ...]:
+def precedence_name_pairs(
+    visits: Visits, requirements: Requirements
+) -> tuple[tuple[str, str], ...]:
     """Return the precedences of the requirements as pairs of task names, as in `Mission.before`."""
     names = [visits.chain.name(unit.entry) for unit in visits.task_units]
     return tuple(

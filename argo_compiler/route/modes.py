@@ -73,7 +73,7 @@ class Step:
     parts: list["Step"] = field(default_factory=list)
 
 
-def steps(problem: RouteProblem) -> list[Step]:
+def outermost_steps(problem: RouteProblem) -> list[Step]:
     """Return the visits and outermost rounds, sorted by their lowest visits."""
     top = [Step(frozenset([visit])) for visit in range(problem.size)]
     # From the innermost round outwards; of equal ones the last is the inner one.
@@ -86,7 +86,7 @@ def steps(problem: RouteProblem) -> list[Step]:
     return sorted(top, key=lambda step: min(step.visits))
 
 
-def modes(
+def candidate_modes(
     problem: RouteProblem,
     step: Step,
     cyclic_order: Callable[[Step], tuple[Step, ...]],

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from argo_compiler.route.modes import Step, StepMode, Vector, modes, steps
+from argo_compiler.route.modes import Step, StepMode, Vector, candidate_modes, outermost_steps
 from argo_compiler.route.problem import NEVER, Objective, RouteProblem, Tour
 
 _MOST_NODES = 4000
@@ -150,9 +150,9 @@ def build_network(
 ) -> StepNetwork:
     """Build the network of a problem.
 
-    `cyclic_order` and `is_time_up` are those of `argo_compiler.route.modes.modes`.
+    `cyclic_order` and `is_time_up` are those of `argo_compiler.route.modes.candidate_modes`.
     """
-    all_steps = steps(problem)
+    all_steps = outermost_steps(problem)
     exact, step_of = True, list[int]()
     nodes: list[StepMode] = []
 
@@ -160,7 +160,7 @@ def build_network(
         return is_time_up() or len(nodes) > _MOST_NODES
 
     for number, step in enumerate(all_steps):
-        step_modes, step_exact = modes(problem, step, cyclic_order, must_stop)
+        step_modes, step_exact = candidate_modes(problem, step, cyclic_order, must_stop)
         exact &= step_exact
         nodes += step_modes
         step_of += [number] * len(step_modes)
@@ -263,14 +263,14 @@ def _step_order(
     # The needs of mandatory steps are mandatory; mandatory steps are needs of those after them.
     while True:
         closed_needs = needs | (before & mandatory[:, None])
-        closed_needs |= compose(closed_needs, closed_needs)
+        closed_needs |= compose_relations(closed_needs, closed_needs)
         closed_mandatory = mandatory | (closed_needs & mandatory[None, :]).any(axis=1)
         if (closed_needs == needs).all() and (closed_mandatory == mandatory).all():
             return needs, before | needs, mandatory
         needs, mandatory = closed_needs, closed_mandatory
 
 
-def compose(first: NDArray[np.bool_], then: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def compose_relations(first: NDArray[np.bool_], then: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Return the composition of two relations: true if some element links row with column."""
     if not (first.any() and then.any()):
         return np.zeros_like(first)

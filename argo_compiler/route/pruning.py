@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.route.network import StepNetwork, compose
+from argo_compiler.route.network import StepNetwork, compose_relations
 from argo_compiler.route.problem import NEVER
 
 _MOST_NODES = 300
@@ -45,7 +45,7 @@ def prune(network: StepNetwork) -> Pruned:
     arcs[:m, :m] &= step[:, None] != step[None, :]
     # `column` can't come directly after `row` if it must come before `row`, or if it needs a step
     # between the two.
-    between = compose(needs, needs)
+    between = compose_relations(needs, needs)
     apart: NDArray[np.bool_] = np.logical_or(before.T, between)
     arcs[:m, :m] &= ~apart[step][:, step]
     arcs[m, :m] &= (needs.sum(axis=0) == 0)[step]
@@ -85,7 +85,7 @@ def _orders(
     before = network.before | too_late.T
     needs = network.needs | (too_late.T & network.mandatory[:, None])
     while True:
-        wider = needs | compose(needs, needs)
+        wider = needs | compose_relations(needs, needs)
         if (wider == needs).all():
             return needs, before | needs
         needs = wider

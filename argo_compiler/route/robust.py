@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Conflict, Invalid
 from argo_compiler.route.problem import NEVER, RouteProblem, Tour
-from argo_compiler.route.robust_sampling import Completion, Draws, completion
+from argo_compiler.route.robust_sampling import Completion, Draws, estimate_completion
 from argo_compiler.route.robust_spread import TravelSpread
 from argo_compiler.route.suggested import RouteSuggestion
 from argo_compiler.route.suggestion import suggest_route
@@ -92,7 +92,7 @@ def suggest_robust_route(
     search.improve(lambda: time.monotonic() < end)
     final_draws = Draws(spread, FINAL_SAMPLES, _rng(seed, 1))
     routes = [search.best, nominal.route]
-    completions = [completion(problem, route, final_draws) for route in routes]
+    completions = [estimate_completion(problem, route, final_draws) for route in routes]
     keys = [_key(problem, *pair, confidence) for pair in zip(routes, completions, strict=True)]
     # A route that was only lucky on the few samples of the search must not replace the nominal one.
     pick = 0 if keys[0] >= keys[1] else 1
@@ -159,7 +159,7 @@ class _Search:
         if identity in self._seen:
             return False
         self._seen.add(identity)
-        estimate = completion(self._problem, route, self._draws)
+        estimate = estimate_completion(self._problem, route, self._draws)
         key = _key(self._problem, route, estimate, self._confidence)
         if self._best is not None and key <= self._best[0]:
             return False
@@ -168,7 +168,7 @@ class _Search:
 
     def deviation(self, route: Tour) -> float:
         """Return an estimate of the standard deviation of a route's duration, in units."""
-        estimate = completion(self._problem, route, self._draws)
+        estimate = estimate_completion(self._problem, route, self._draws)
         return max(0.0, (estimate.duration_95 - estimate.duration) / 1.645)
 
     def improve(self, has_time: Callable[[], bool]) -> None:

@@ -91,10 +91,10 @@ def completion_probability(
 
     Raises Invalid if `samples` is below 1.
     """
-    return completion(problem, route, Draws(spread, samples, rng))
+    return estimate_completion(problem, route, Draws(spread, samples, rng))
 
 
-def completion(problem: RouteProblem, route: Tour, draws: Draws) -> Completion:
+def estimate_completion(problem: RouteProblem, route: Tour, draws: Draws) -> Completion:
     """Estimate the probability that the robot completes a route, with given random numbers."""
     simulation = _SampledSimulation(problem, draws)
     if _is_infeasible_order(problem, route):

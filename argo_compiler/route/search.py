@@ -130,9 +130,9 @@ class Search:
 
     def with_time_share(self, share: float, most: float = inf) -> "Search":
         """Return a view of this search with a share of the remaining time, at most `most` s."""
-        return self.until(self.now() + min(most, share * self.remaining_time()))
+        return self.with_deadline(self.now() + min(most, share * self.remaining_time()))
 
-    def until(self, deadline: float) -> "Search":
+    def with_deadline(self, deadline: float) -> "Search":
         """Return a view of this search with a deadline, on the clock of `now`.
 
         The deadline of this view applies as well, if it is earlier.
@@ -145,7 +145,7 @@ class Search:
     @contextmanager
     def turn_of(self, solver: str) -> Iterator["Search"]:
         """Yield a view for one solver's turn: its routes and proofs are attributed to `solver`."""
-        view, shared = self.until(inf), self._shared
+        view, shared = self.with_deadline(inf), self._shared
         view._method = solver
         begin = shared.clock() - shared.begun
         yield view

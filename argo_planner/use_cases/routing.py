@@ -20,7 +20,7 @@ from argo_compiler.route.certificate import Certificate, certify
 from argo_compiler.route.evaluation import RouteEvaluation, evaluate
 from argo_compiler.route.problem import Tour
 from argo_compiler.route.robust import suggest_robust_route
-from argo_compiler.route.robust_sampling import Completion, Draws, completion
+from argo_compiler.route.robust_sampling import Completion, Draws, estimate_completion
 from argo_compiler.route.robust_spread import TravelSpread
 from argo_compiler.route.stop import SearchProgress
 from argo_compiler.route.suggested import RouteSuggestion
@@ -253,7 +253,7 @@ def estimate_completions(
     """
     problem = found.planned.problem
     written, suggested = (
-        completion(problem, tour, Draws(spread, _SAMPLES, generator(seed, "route risk")))
+        estimate_completion(problem, tour, Draws(spread, _SAMPLES, generator(seed, "route risk")))
         for tour in (found.planned.written, found.route)
     )
     return written, suggested

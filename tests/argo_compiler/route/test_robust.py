@@ -23,7 +23,7 @@ from argo_compiler.route import (
     evaluate,
 )
 from argo_compiler.route.robust import suggest_robust_route
-from argo_compiler.route.robust_sampling import Draws, completion, completion_probability
+from argo_compiler.route.robust_sampling import Draws, completion_probability, estimate_completion
 from argo_compiler.route.robust_spread import CAUTIOUS, SIMULATED, TravelSpread
 from tests.argo_compiler.route.random_problems import random_problem
 from tests.conftest import examples
@@ -177,7 +177,7 @@ def test_an_empty_battery_ends_a_route():
 def test_all_routes_have_the_same_samples():
     problem, route = chain([30, 20, 40], max_duration=90)
     draws = Draws(CAUTIOUS, 500, np.random.default_rng(3))
-    assert completion(problem, route, draws) == completion(problem, route, draws)
+    assert estimate_completion(problem, route, draws) == estimate_completion(problem, route, draws)
     assert probability(problem, route, 500, 3, way=0.2) == probability(
         problem, route, 500, 3, way=0.2
     )
@@ -244,10 +244,10 @@ def test_the_route_is_near_the_most_robust_order(seed):
     )
     found = suggest_robust_route(problem, CAUTIOUS, time_limit=2.0, seed=seed, confidence=1.0)
     draws = Draws(CAUTIOUS, 2000, rng)
-    every = [completion(problem, Tour(order), draws) for order in permutations(range(5))]
+    every = [estimate_completion(problem, Tour(order), draws) for order in permutations(range(5))]
     best = max(estimate.probability for estimate in every)
     assert 0.2 < best < 1.0
-    assert completion(problem, found.route, draws).probability >= best - 0.01
+    assert estimate_completion(problem, found.route, draws).probability >= best - 0.01
 
 
 def test_a_perfect_nominal_route_ends_the_search():

@@ -23,7 +23,10 @@ class StageLines:
         self._stage: str | None = None
 
     def __call__(self, stage: str | None, share: float | None, detail: str) -> None:
-        """Write a line about the stage if the last line was long enough ago; see StageListener."""
+        """Write a line about the current stage unless the last line is less than 10 s old.
+
+        See StageListener for the arguments.
+        """
         now = self._clock()
         if stage != self._stage:
             self._stage, self._begun = stage, now

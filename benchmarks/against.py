@@ -253,7 +253,7 @@ def time_in_process(name: str, root: Path, cache: Path) -> tuple[float, float]:
     return wall, cpu
 
 
-def time_here(name: str, root: str) -> None:
+def time_in_this_process(name: str, root: str) -> None:
     """Time a case in this process, and print wall and processor time (s) as JSON."""
     import argo_env
 
@@ -269,6 +269,6 @@ def time_here(name: str, root: str) -> None:
 
 if __name__ == "__main__":
     if sys.argv[1:2] == ["--time"]:
-        time_here(*sys.argv[2:])
+        time_in_this_process(*sys.argv[2:])
     else:
         main()

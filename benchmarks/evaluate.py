@@ -44,7 +44,7 @@ def make_plan(drive: str, seeds: range) -> EvaluationPlan:
     return EvaluationPlan(cases=(case,), seeds=tuple(seeds))
 
 
-def timed_run(order: WorkOrder) -> RunRow:
+def execute_timed_run(order: WorkOrder) -> RunRow:
     """Execute a run, and add its time (s) and the peak memory of its worker (MB) to its row."""
     begun = time.perf_counter()
     row = execute_run(order)
@@ -87,7 +87,7 @@ def time_runs(name: str, drive: str, runs: int, workers: int) -> Timing:
         for part in seed_parts(runs):
             partial = plan.model_copy(update={"seeds": tuple(part)})
             begun = time.perf_counter()
-            evaluating = EvaluationRunner(partial, backend, call=timed_run)
+            evaluating = EvaluationRunner(partial, backend, call=execute_timed_run)
             rows = list(evaluating.rows_as_completed())
             elapsed += time.perf_counter() - begun
             assert [row.outcome for row in rows] == [RunOutcome.SUCCESS] * len(part)
@@ -95,7 +95,7 @@ def time_runs(name: str, drive: str, runs: int, workers: int) -> Timing:
             memory += [row.world["memory"] for row in rows]
             begun = time.perf_counter()
             for run in partial.runs():
-                timed_run(WorkOrder("", partial.cases[0], run.spec, {}))
+                execute_timed_run(WorkOrder("", partial.cases[0], run.spec, {}))
             alone += time.perf_counter() - begun
     finally:
         backend.close()

@@ -144,7 +144,7 @@ def brick_on_path(path: Path) -> Blockage:
 
 
 def measure_matrices(navigator: Navigator, name: str) -> None:
-    """Print the times of travel-time matrices on the site of a navigator and on a large one."""
+    """Print the times of travel-time matrices on the navigator's site and on the site `name`."""
     fresh = Navigator(navigator.site, navigator.robot)
     fresh.prepare()
     ids = [c.id for c in fresh.site.checkpoints]

@@ -67,7 +67,13 @@ class StageDisplay:
         self._bar: Progress | None = None
 
     def __call__(self, stage: str | None, share: float | None, detail: str) -> None:
-        """Receive the current stage, or None when all have ended."""
+        """Receive the current stage and its progress.
+
+        Args:
+            stage: name of the stage; None: all have ended
+            share: completed part of it, from 0 to 1; None: unknown
+            detail: text about its progress; empty: none
+        """
         with self._lock:
             now = self._clock()
             if stage is None:

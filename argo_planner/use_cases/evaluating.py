@@ -173,7 +173,7 @@ def _cases(
 def make_case(
     name: str, policy: str, spec: RunSpec, faults: FaultSet, opened: OpenedSite
 ) -> EvaluationCase:
-    """Return a case with these faults; raise ArgoError if they are not possible on the site."""
+    """Return the case of mission `name` with these faults; raise ArgoError if they do not fit."""
     spec = spec.model_copy(update={"faults": faults.faults})
     check_spec(spec, opened.site, faults.text)
     return EvaluationCase(

@@ -50,7 +50,7 @@ def is_folder_format(format: str) -> bool:
 
 
 def export_mission(imported: ImportedMission, site: OpenedSite, format: str) -> ExportedMission:
-    """Return a mission in a format.
+    """Convert a mission to the format with this name; write nothing.
 
     Raises:
         NotFound: There is no such format.

@@ -126,7 +126,7 @@ class Study:
         return "" if path is None else self.path_text(path)
 
     def path_text(self, path: tuple[int, ...]) -> str:
-        """Return the names of the tasks on a path of nodes; a long path lacks its middle."""
+        """Return the tasks on a path of nodes as text, `A > B`; a long path lacks its middle."""
         leaves = [n for n in path if n < len(self.flow.leaves)]
         if len(leaves) <= _MOST_NAMES + 1:
             return " > ".join(map(self.name, leaves))

@@ -142,7 +142,7 @@ class Control:
         self._advance(Trigger.PAUSE, detail=detail)
 
     def give_back(self, by_hand: Sequence[ByHand]) -> None:
-        """Resume the mission after a person has done the tasks in `by_hand`."""
+        """Resume the mission after a person has done or skipped the tasks in `by_hand`."""
         self.mission.add_by_hand(by_hand, self.mission.now)
         self.resume()
 

@@ -157,7 +157,7 @@ def reaction_progress(
 
 
 def leaf_for(tables: Tables, name: str) -> LeafNode:
-    """Return the leaf of the task `name` at which a progress is. Raises ArgoError without one."""
+    """Return the leaf of task `name`, which a progress names; raise ArgoError if there is none."""
     leaf = tables.leaves.get(RETURN if name == RETURN_TASK else task_id(name))
     if leaf is None:
         raise Conflict(

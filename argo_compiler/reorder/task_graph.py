@@ -48,7 +48,7 @@ class Level:
         return len(self.children)
 
     def successors(self, edges: Sequence[Edge]) -> list[list[int]]:
-        """Return by these edges the successors of each child and of the sink, as positions."""
+        """Return the positions that these edges lead to, for each child and for the sink."""
         following: list[list[int]] = [[] for _ in range(len(self.children) + 1)]
         for edge in edges:
             following[edge.source].append(edge.target)

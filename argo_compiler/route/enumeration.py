@@ -63,7 +63,7 @@ class Enumeration:
         """number of partial routes"""
 
     def run(self, *, use_dominance: bool) -> None:
-        """Enumerate the routes.
+        """Enumerate the routes, and store the best one in `best`.
 
         `use_dominance`: prune partial routes that another one with the same blocks and locations
         dominates; otherwise only equal ones are merged.

@@ -33,7 +33,7 @@ class Pruned:
 
 
 def prune(network: StepNetwork) -> Pruned:
-    """Prune the arcs and steps that travel times, precedences, windows or the limit rule out."""
+    """Return what travel times, precedences, windows and the limit leave possible in a network."""
     m, step = network.size, network.step
     best = least_arc_times(network)
     earliest, latest = _windows(network, best)

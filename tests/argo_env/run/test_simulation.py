@@ -408,7 +408,7 @@ class TestGivenEvents:
                 "events of kind `succeeded` come from the run itself",
             ),
             (logged_events((3.0, Occurred(EventKind.TIME_UP))), "occurs by itself"),
-            ([(3.0, Pause())], "convert it with `logged_events`"),
+            ([(3.0, Pause())], "convert events and their times with `logged_events`"),
         ],
     )
     def test_what_no_run_can_be_given(self, site, given, says):

@@ -9,6 +9,15 @@ def clock(seconds: float) -> str:
     return f"{whole // 60:02d}:{whole % 60:02d}"
 
 
+def time_text(seconds: float) -> str:
+    """Return a time in s with its unit, such as `34 s`, `4:59 min` or `1:14:51 h`."""
+    minutes, rest = divmod(round(seconds), 60)
+    if minutes == 0:
+        return f"{rest} s"
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02d}:{rest:02d} h" if hours else f"{minutes}:{rest:02d} min"
+
+
 def where(floor: int | None, place: Vector) -> str:
     """Return a position in m on a floor as text, such as `floor 2 at (1.00, 2.00, 2.50)`."""
     x, y, z = place
@@ -25,3 +34,15 @@ def distinct_texts(first: float, second: float) -> tuple[str, str]:
         if texts[0] != texts[1] or first == second:
             break
     return texts
+
+
+def distinct_time_texts(first: float, second: float) -> tuple[str, str]:
+    """Return two times in s as texts with units, which differ unless the times are equal.
+
+    Times that have the same text in whole seconds are written in seconds with decimals.
+    """
+    texts = time_text(first), time_text(second)
+    if texts[0] != texts[1] or first == second:
+        return texts
+    one, other = distinct_texts(first, second)
+    return f"{one} s", f"{other} s"

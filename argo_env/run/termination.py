@@ -3,6 +3,7 @@
 import math
 
 from argo_env.drives.powertrain import Powertrain
+from argo_env.formatting import clock, time_text
 from argo_env.run.log import RunLog
 from argo_env.run.machine import Machine
 from argo_env.run.robot import RobotPower
@@ -18,9 +19,9 @@ def exhaustion_reason(now: float, supply: RobotPower) -> str | None:
     The reason is the time limit of a run, or an empty battery.
     """
     if now >= TIME_LIMIT:
-        return f"it was stopped after {now:.0f} s, Argo's limit for a run"
+        return f"it was stopped after {time_text(now)}, Argo's limit for a run"
     if supply.empty:
-        return f"the battery was empty after {now:.0f} s"
+        return f"the battery was empty after {time_text(now)}"
     return None
 
 
@@ -41,7 +42,7 @@ def standstill_reason(
         return None
     why = "held by its emergency stop" if is_stopped else "waiting for an event"
     why = "paused" if machine.paused else why
-    reason = f"the robot stands still since {since:.0f} s, {why}, and nothing more occurs"
+    reason = f"the robot stands still since {clock(since)}, {why}, and nothing more occurs"
     if machine.paused and machine.hfsm.supervised and not log.tasks:
         reason += ": a supervisory mission begins when a person resumes it (the event `resume`)"
     return reason

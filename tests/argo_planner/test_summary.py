@@ -9,7 +9,7 @@ from argo_compiler.base.catalog import CheckpointKind, Interval
 from argo_compiler.il import Action, Afterwards, EventKind, Mission, Reaction, Response, Task
 from argo_env.faults.plant import GasLeakFault
 from argo_env.faults.robot import ConnectionLoss
-from argo_env.formatting import clock
+from argo_env.formatting import clock, distinct_time_texts, time_text
 from argo_env.run.record import (
     Anomaly,
     Contact,
@@ -38,7 +38,7 @@ def record() -> RunRecord:
     return record_of(
         mission,
         result=Result(
-            success=False, verdict="it took 700 s of at most 600 s", duration=700.0,
+            success=False, verdict="it took 11:40 min of at most 10:00 min", duration=700.0,
             max_duration=600.0, within_max_duration=False, docked=False, distance=12.34,
             climbed=2.5,
         ),
@@ -70,7 +70,7 @@ def test_all_problems_are_shown(record: RunRecord) -> None:
     for part in (
         "abnormal", "9.50 bar", "1 to 2.5", "failed", "hidden behind x", "not docked",
         "11:40 of at most 10:00", "1 contact,", "forearm with floor 2 railing 7, 12 mm deep",
-        "No success: it took 700 s of at most 600 s. 1 finding, 1 contact: ",
+        "No success: it took 11:40 min of at most 10:00 min. 1 finding, 1 contact: ",
     ):  # fmt: skip
         assert part in text
 
@@ -225,3 +225,17 @@ def test_names_are_not_taken_for_markup(record: RunRecord) -> None:
 )
 def test_clock(seconds: float, text: str) -> None:
     assert clock(seconds) == text
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"),
+    [(34.4, "34 s"), (59.6, "1:00 min"), (1200.0, "20:00 min"), (4491.0, "1:14:51 h")],
+)
+def test_time_text(seconds: float, text: str) -> None:
+    assert time_text(seconds) == text
+
+
+def test_distinct_time_texts() -> None:
+    assert distinct_time_texts(4491.0, 1200.0) == ("1:14:51 h", "20:00 min")
+    assert distinct_time_texts(1200.25, 1200.0) == ("1200.2 s", "1200.0 s")
+    assert distinct_time_texts(5.4, 5.0) == ("5.4 s", "5.0 s")

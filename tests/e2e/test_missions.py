@@ -143,7 +143,7 @@ def test_a_mission_over_its_maximum_duration_fails(argo, missions: Path, tmp_pat
     script.write_text(text, encoding="utf-8")
     areas = ("--start-area", 1, "--end-area", 1)
     result = argo("run", script, *areas, "--drive", "route", "--report", tmp_path, status=1)
-    assert "of at most 120 s" in result.stdout
+    assert "of at most 2:00 min" in result.stdout
     assert not read_run_record(tmp_path).result.within_max_duration
 
 

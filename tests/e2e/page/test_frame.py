@@ -6,6 +6,10 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import expect
 
+from argo_compiler.analysis import Analysis
+from argo_compiler.analysis.results import Bound, Bounds, Verdict
+from argo_compiler.il import Mission
+from argo_planner.service.jobs.analysis import AnalysisFound, Analyst
 from tests.argo_planner.service.served import SECRETS
 
 HOSTILE = '"><img src=x onerror=alert(1)>{{7*7}}${7*7}'
@@ -90,6 +94,51 @@ def test_the_page_is_german_in_a_german_browser(browsers, address) -> None:
     otto = browsers.person(address, "otto", locale="de-DE")
     otto.open()
     expect(otto.button("Neue Mission")).to_be_visible()
+
+
+WIDTHS = (360, 800, 1100, 1400, 1900)
+"""px, from a phone to a large screen"""
+WIDE = Analysis(
+    diagnostics=(),
+    tasks=(),
+    groups=(),
+    ends=Verdict.POSSIBLE,
+    duration=Bounds(least=Bound(value=3_920.0), most=Bound(value=44_321.0)),
+    energy=Bounds(least=Bound(value=12.34), most=Bound(value=None)),
+)
+"""results of an analysis whose texts are long"""
+CUT_TEXTS = """() => {
+    const strip = document.querySelector("argo-app").shadowRoot.querySelector("argo-strip");
+    const totals = strip.shadowRoot.querySelector("argo-totals");
+    const { right } = strip.getBoundingClientRect();
+    const isCut = (e) => e.clientWidth > 0 && e.scrollWidth > e.clientWidth;
+    const isOutside = (e) => e.getBoundingClientRect().right > right;
+    // The names in the bar become shorter with its legs; their labels are complete.
+    const all = [strip, ...strip.shadowRoot.querySelectorAll(":not(.bar, .bar *, .unseen)"),
+        ...totals.shadowRoot.querySelectorAll("*")];
+    return all.filter((e) => isCut(e) || isOutside(e)).map((e) => e.textContent.trim());
+}"""
+
+
+def test_no_text_of_the_strip_is_cut(browsers, address, service, monkeypatch) -> None:
+    async def find_wide_bounds(_: Analyst, __: Mission, revision: int) -> AnalysisFound:
+        return AnalysisFound(revision=revision, analysis=WIDE)
+
+    monkeypatch.setattr(Analyst, "analyse_revision", find_wide_bounds)
+    ann = browsers.person(address)
+    script = SCRIPT.with_name("protocol_3.txt").read_text(encoding="utf-8")
+    ann.open(f"/missions/{service.imported(script)}")
+    bounds = ann.page.locator("argo-totals .bounds")
+    for language, label in (("en", "All executions:"), ("de", "Alle Abläufe:")):
+        ann.page.locator("argo-settings select").evaluate(
+            "(select, to) => { select.value = to; select.dispatchEvent(new Event('change')) }",
+            language,
+        )
+        expect(bounds).to_contain_text(label)
+        expect(bounds.locator("button")).to_have_count(2)
+        for width in WIDTHS:
+            ann.page.set_viewport_size({"width": width, "height": 850})
+            assert ann.evaluate(CUT_TEXTS) == [], f"{language}, {width} px"
 
 
 POSE = json.loads('{"x": 3.05, "y": 1.55, "z": 0.0, "yaw": 0.0}')

@@ -52,6 +52,7 @@ export type RequestState = Schemas["RequestState"];
 export type Entry = Schemas["EntryTold"]["entry"];
 /** The kind of any fault. */
 export type FaultKind = Schemas["BeginFault"]["fault"]["kind"];
+export type Trouble = Schemas["Trouble"];
 export type RunRequestBody =
   import("./schema").operations["ask_run"]["requestBody"]["content"]["application/json"];
 

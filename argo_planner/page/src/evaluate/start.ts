@@ -113,8 +113,7 @@ export class EvaluateStart extends PageElement {
         const text = texts.ranges[name];
         return html`<div class="range">
           <span>${text}</span>
-          <input name=${`${name}-low`} type="number" min="0.1" max="100" step="any" aria-label=${texts.from(text)} />
-          <input name=${`${name}-high`} type="number" min="0.1" max="100" step="any" aria-label=${texts.to(text)} />
+          ${shareField(`${name}-low`, texts.from(text), t().forms.from)} ${shareField(`${name}-high`, texts.to(text), t().forms.to)}
         </div>`;
       })}
       <div class="range one">
@@ -183,6 +182,19 @@ export class EvaluateStart extends PageElement {
     if (offset > 0) found["ahead"] = found["left"] = [-offset, offset];
     return found;
   }
+}
+
+/** Render a field for a percentage. */
+function shareField(name: string, label: string, placeholder: string) {
+  return html`<input
+    name=${name}
+    type="number"
+    min="0.1"
+    max="100"
+    step="any"
+    aria-label=${label}
+    placeholder=${placeholder}
+  />`;
 }
 
 function number(form: FormData, name: string): number | null {

@@ -5,6 +5,7 @@ import { mayPlan } from "../state/session";
 import { checkpointsById } from "../state/world";
 import { t } from "../texts";
 import { html } from "../ui/element";
+import { bound, unitText } from "../ui/figures";
 import { icon } from "../ui/icons";
 import type { Commit } from "./field";
 import { checkField, checkpointOptions, numberField, optionsOf, selectField, timeField } from "./parts";
@@ -43,7 +44,7 @@ function conditionForm(
   const set = (change: Partial<Condition>) =>
     save((was) => was.map((one, at) => (at === index ? { ...one, ...change } : one)));
   const checkpoint = checkpointsById.value.get(condition.object_id);
-  const unit = checkpoint?.unit ?? "";
+  const unit = unitText(checkpoint?.unit ?? "");
   const compares = condition.type.startsWith("MEASURED");
   const within = condition.type === "MEASURED_VALUE_WITHIN";
   return html`<fieldset>
@@ -70,7 +71,7 @@ function conditionForm(
       : null}
     ${checkpoint
       ? html`<p class="dim">
-          ${texts.nominal(checkpoint.nominal.low, checkpoint.nominal.high, unit)}
+          ${texts.nominal(bound(checkpoint.nominal.low), bound(checkpoint.nominal.high), unit)}
         </p>`
       : null}
     ${compares || condition.type === "READING_STALE"

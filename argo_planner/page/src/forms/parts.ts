@@ -5,6 +5,7 @@ import { mayPlan } from "../state/session";
 import { world } from "../state/world";
 import { t } from "../texts";
 import { html } from "../ui/element";
+import { figure } from "../ui/figures";
 import type { Commit, FormField, Option } from "./field";
 import "./field";
 import { readTime, writeTime } from "./times";
@@ -79,7 +80,7 @@ export function countField(label: string, value: Given, commit: TakeNumber, opti
 export function speedField(label: string, value: Given, commit: TakeNumber) {
   const most = world.value?.robot.speed ?? Infinity;
   const take: TakeNumber = (speed) =>
-    speed === null || (speed > 0 && speed <= most) ? commit(speed) : t().forms.tooFast(most);
+    speed === null || (speed > 0 && speed <= most) ? commit(speed) : t().forms.tooFast(figure(most));
   return numberField(label, value, take, { note: "m/s", placeholder: Number.isFinite(most) ? String(most) : "" });
 }
 

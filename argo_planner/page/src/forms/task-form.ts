@@ -9,6 +9,7 @@ import { lookAt } from "../state/view";
 import { checkpointsById } from "../state/world";
 import { t } from "../texts";
 import { html, nothing } from "../ui/element";
+import { bound, unitText } from "../ui/figures";
 import { icon } from "../ui/icons";
 import { aboveNormalCondition, conditionList } from "./conditions";
 import {
@@ -115,7 +116,7 @@ function measuring(task: Task, set: Save) {
     ${checkpoint
       ? html`<p class="dim">
             ${t().words.checkpoint[checkpoint.kind]},
-            ${texts.nominal(checkpoint.nominal.low, checkpoint.nominal.high, checkpoint.unit)}
+            ${texts.nominal(bound(checkpoint.nominal.low), bound(checkpoint.nominal.high), unitText(checkpoint.unit))}
           </p>
           ${checkpoint.problem ? html`<p class="error">${checkpoint.problem}</p>` : nothing}`
       : nothing}

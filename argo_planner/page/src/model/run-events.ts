@@ -1,6 +1,6 @@
 /** The noteworthy events of a run, from its many entries. */
 
-import type { Entry } from "../api/types";
+import type { Entry, Trouble } from "../api/types";
 
 export type RunEvent =
   | { readonly kind: "done" | "by hand"; readonly task: string }
@@ -9,7 +9,7 @@ export type RunEvent =
   | { readonly kind: "found"; readonly event: string; readonly detail: string }
   | { readonly kind: "steered"; readonly how: "pause" | "resume" | "take_over" | "give_back" | "cancel" }
   | { readonly kind: "fault"; readonly fault: string }
-  | { readonly kind: "mishap"; readonly trouble: string; readonly detail: string }
+  | { readonly kind: "mishap"; readonly trouble: Trouble; readonly detail: string }
   | { readonly kind: "contact"; readonly link: string; readonly element: string }
   | { readonly kind: "resumed" | "edited" }
   | { readonly kind: "ended"; readonly stopped: string | null };

@@ -60,7 +60,7 @@ export class RoutePanel extends PageElement {
           <button class="main" id="search" ?disabled=${why !== null || running}>
             ${icon("route", 20)} ${texts.search}
           </button>
-          ${choice(texts.timeLimit, "limit", LIMITS.map((s) => [s, texts.seconds(s)]), 10)}
+          ${choice(texts.timeLimit, "limit", LIMITS.map((s) => [s, writeTime(s)]), 10)}
         </div>
         ${why === null ? nothing : html`<p class="reason">${why}</p>`} ${this.fixed()}
         <details>

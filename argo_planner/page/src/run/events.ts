@@ -7,7 +7,7 @@ import { shownEntries, shownRun, shownTime } from "../state/run";
 import { t } from "../texts";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
-import { figure } from "../ui/figures";
+import { figure, unitText } from "../ui/figures";
 import { parts } from "./parts";
 
 const MOST = 100;
@@ -26,7 +26,7 @@ export function eventText(what: RunEvent): string {
     case "stopped":
       return texts.stopped(what.task, what.why);
     case "read":
-      return texts.read(what.checkpoint, `${figure(what.value)} ${what.unit}`);
+      return texts.read(what.checkpoint, `${figure(what.value)} ${unitText(what.unit)}`);
     case "given":
       return texts.given(what.checkpoint, figure(what.value));
     case "found": {
@@ -37,15 +37,17 @@ export function eventText(what: RunEvent): string {
       return texts[what.how];
     case "fault":
       return texts.fault(t().run.fault[what.fault as keyof ReturnType<typeof t>["run"]["fault"]]);
-    case "mishap":
-      return what.detail === "" ? what.trouble : `${what.trouble}: ${what.detail}`;
+    case "mishap": {
+      const name = t().run.trouble[what.trouble];
+      return what.detail === "" ? name : `${name}: ${what.detail}`;
+    }
     case "contact":
       return texts.contact(what.link, what.element);
     case "resumed":
     case "edited":
       return texts[what.kind];
     case "ended":
-      return what.stopped === null ? texts.ended : texts.stoppedRun(what.stopped);
+      return what.stopped === null ? texts.ended : texts.stoppedRun(t().service.verdict(what.stopped));
   }
 }
 

@@ -64,6 +64,12 @@ export class RunHand extends PageElement {
         grid-template-columns: minmax(0, 1fr) auto auto;
         gap: 6px;
       }
+      .tasks {
+        grid-template-columns: 1fr 1fr;
+      }
+      .tasks select {
+        grid-column: 1 / 3;
+      }
       .blocked {
         color: var(--bad);
       }
@@ -138,7 +144,7 @@ export class RunHand extends PageElement {
     const texts = t().run;
     const tasks = tasksAfterStart.value;
     const chosen = tasks.includes(this.task) ? this.task : (tasks[0] ?? "");
-    return html`<div class="line">
+    return html`<div class="line tasks">
       <select id="task" aria-label=${texts.whichTask} @change=${(event: Event) => (this.task = valueOf(event))}>
         ${options(tasks.map((name) => [name, name]), chosen)}
       </select>

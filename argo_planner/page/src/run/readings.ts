@@ -11,7 +11,7 @@ import { world } from "../state/world";
 import { t } from "../texts";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { icon } from "../ui/icons";
-import { figure, percent } from "../ui/figures";
+import { figure, percent, unitText } from "../ui/figures";
 import { parts } from "./parts";
 
 const WIDTH = 100;
@@ -105,7 +105,8 @@ export class RunReadings extends PageElement {
 
   private reading(reading: Reading) {
     const texts = t().run;
-    const { checkpoint, name, value, unit, normal, nominal } = reading;
+    const { checkpoint, name, value, normal, nominal } = reading;
+    const unit = unitText(reading.unit);
     const known = world.value?.checkpoints.find((one) => one.id === checkpoint);
     const scale = drawnScale(known?.range ?? null, nominal, value);
     const [from, to] = [shareOfScale(scale, nominal.low), shareOfScale(scale, nominal.high)];

@@ -15,6 +15,7 @@ import "./band";
 import "./controls";
 import "./events";
 import "./hand";
+import { modeWords } from "./mode-words";
 import { parts } from "./parts";
 import "./readings";
 import "./start";
@@ -133,7 +134,7 @@ export class RunPanel extends PageElement {
   }
 
   private named(one: RunState): string {
-    return t().run.pastRunOf(dateAndTime(one.begun), one.headline?.word ?? one.status);
+    return t().run.pastRunOf(dateAndTime(one.begun), modeWords(one));
   }
 
   /** Render the description of an evaluation's run, and a button that leads back. */

@@ -10,7 +10,7 @@ import { t } from "../texts";
 import { choice, iconButton } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
 import { icon } from "../ui/icons";
-import { figure } from "../ui/figures";
+import { figure, unitText } from "../ui/figures";
 import "./faults";
 import { checkpointList, parts, readSpeed, SPEEDS, speedName } from "./parts";
 
@@ -85,7 +85,7 @@ export class RunStart extends PageElement {
           const checkpoint = checkpoints.find((one) => one.id === id);
           const name = checkpoint === undefined ? `#${id}` : checkpointSuggestion(checkpoint);
           return html`<li class="row">
-            <span class="grow">${name}: ${figure(value)} ${checkpoint?.unit ?? ""}</span>
+            <span class="grow">${name}: ${figure(value)} ${unitText(checkpoint?.unit ?? "")}</span>
             ${iconButton("close", texts.remove(name), () => this.dropValue(id), { size: 16 })}
           </li>`;
         })}

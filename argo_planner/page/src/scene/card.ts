@@ -8,7 +8,7 @@ import { removeObstacle, world } from "../state/world";
 import { t } from "../texts";
 import { iconButton } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, property } from "../ui/element";
-import { figure } from "../ui/figures";
+import { bound, figure, unitText } from "../ui/figures";
 import { icon } from "../ui/icons";
 import { dependOn } from "./depend-on";
 import { type Mark, openMark } from "./marks";
@@ -92,7 +92,7 @@ export class SceneCard extends PageElement {
     const texts = t().scene;
     const { nominal, stands } = one;
     return html`<p class="dim">${t().words.checkpoint[one.kind]} · ${texts.floor(one.floor)}</p>
-      <p>${texts.nominal(bound(nominal.low), bound(nominal.high), one.unit)}</p>
+      <p>${texts.nominal(bound(nominal.low), bound(nominal.high), unitText(one.unit))}</p>
       ${mark.value === "" ? nothing : html`<p class=${mark.tone}>${texts.reading(mark.value)}</p>`}
       ${mark.numbers === "" ? nothing : html`<p class="dim">${texts.inMission(mark.numbers)}</p>`}
       ${one.problem ? html`<p class="bad">${texts.cannotRead} ${one.problem}</p>` : nothing}
@@ -160,8 +160,4 @@ function added(adding: Promise<boolean>): void {
   void adding.then((done) => {
     if (done) openMark.value = null;
   });
-}
-
-function bound(value: number | null | undefined): string {
-  return value === null || value === undefined ? "∞" : figure(value);
 }

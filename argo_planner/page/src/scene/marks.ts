@@ -11,7 +11,7 @@ import { preview } from "../state/preview";
 import { type ShownRun, shownRun } from "../state/run";
 import { world } from "../state/world";
 import { t } from "../texts";
-import { figure } from "../ui/figures";
+import { figure, unitText } from "../ui/figures";
 
 export type Subject =
   | { readonly kind: "checkpoint"; readonly checkpoint: WorldCheckpoint }
@@ -93,7 +93,7 @@ function checkpointMark(checkpoint: WorldCheckpoint): Mark {
     floor: checkpoint.floor,
     text: `#${checkpoint.id} ${checkpoint.name}`,
     numbers: shortList(there?.numbers ?? []),
-    value: reading ? `${figure(reading.value)} ${reading.unit}` : "",
+    value: reading ? `${figure(reading.value)} ${unitText(reading.unit)}` : "",
     tone: isActive
       ? "active"
       : chosen

@@ -32,7 +32,8 @@ export class ScriptPanel extends PageElement {
       padding: 10px;
     }
     .told {
-      max-height: 34%;
+      flex: none;
+      max-height: max(34%, 110px);
       overflow: auto;
       padding: 8px;
       border-radius: var(--round);

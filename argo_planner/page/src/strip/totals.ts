@@ -31,15 +31,27 @@ export class StripTotals extends PageElement {
     .warn {
       color: var(--warn);
     }
+    :host {
+      container-type: inline-size;
+    }
     .bounds {
       display: flex;
-      gap: 14px;
+      flex-wrap: wrap;
+      align-content: start;
+      gap: 0 10px;
       min-height: 20px; /* also while nothing is known: what is below does not move */
-      overflow: hidden;
-      white-space: nowrap;
+      line-height: 20px;
       font-size: 12px;
     }
+    @media (min-width: 801px) {
+      @container (max-width: 600px) {
+        .bounds {
+          min-height: 40px;
+        }
+      }
+    }
     .bounds button {
+      display: inline;
       min-height: 0;
       padding: 0;
       border: 0;
@@ -82,6 +94,7 @@ export class StripTotals extends PageElement {
       </div>
       <p class="bounds">
         ${isPart(found) ? html`<span class="dim">${texts.oneRound}</span>` : nothing}
+        ${bounds.length > 0 ? html`<span class="dim">${texts.allExecutions}</span>` : nothing}
         ${bounds.map((bound) => this.bound(bound))}
         ${found.at_least.length > 0
           ? html`<span class="dim" title=${found.at_least.join("\n")}>${icon("clock", 13)} ${found.at_least[0]}</span>`
@@ -117,7 +130,7 @@ export class StripTotals extends PageElement {
       @click=${() => this.showPath(bound)}
     >
       ${bound.broken ? icon("warning", 12) : nothing}
-      ${isTime ? texts.timeOnAllPaths : texts.batteryOnAllPaths} <b>${texts.between(least, most)}</b>
+      ${isTime ? texts.time : texts.battery} <b>${texts.between(least, most)}</b>
     </button>`;
   }
 

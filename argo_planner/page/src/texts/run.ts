@@ -1,10 +1,11 @@
-import type { FaultKind } from "../api/types";
+import type { FaultKind, Trouble } from "../api/types";
 import type { ShownMode } from "../model/run-mode";
 import { both } from "./both";
 
 type Requests = Record<string, string>;
 type Modes = Record<ShownMode, string>;
 type Faults = Record<FaultKind, string>;
+type Troubles = Record<Trouble, string>;
 
 const modes: { en: Modes; de: Modes } = {
   en: {
@@ -128,6 +129,7 @@ export const run = both(
       drive_dysfunction: "slow drive",
       displaced_checkpoint: "displaced checkpoint",
     } satisfies Faults,
+    trouble: { slipping: "slipping", stuck: "stuck", "tipped over": "tipped over" } satisfies Troubles,
     remove: (what: string) => `Remove ${what}`,
     time: "Time",
     ofLimit: (now: string, limit: string) => `${now} of ${limit}`,
@@ -264,6 +266,7 @@ export const run = both(
       drive_dysfunction: "langsamer Antrieb",
       displaced_checkpoint: "verschobener Prüfpunkt",
     },
+    trouble: { slipping: "Ketten rutschen", stuck: "festgefahren", "tipped over": "umgekippt" },
     remove: (what: string) => `${what} entfernen`,
     time: "Zeit",
     ofLimit: (now: string, limit: string) => `${now} von ${limit}`,

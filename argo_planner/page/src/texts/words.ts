@@ -35,7 +35,7 @@ export const words = both(
       end: "end the mission",
     },
     checkpoint: { "pressure gauge": "pressure gauge", "liquid level gauge": "level gauge", valve: "valve" },
-    seconds: (s: number) => duration(s),
+    seconds: (s: number) => duration(s, "en"),
   },
   {
     action: { START: "Start", WAYPOINT: "Wegpunkt", MEASURE: "Messen", WAIT: "Warten" },
@@ -69,13 +69,14 @@ export const words = both(
       end: "die Mission beenden",
     },
     checkpoint: { "pressure gauge": "Manometer", "liquid level gauge": "Füllstandsanzeige", valve: "Ventil" },
-    seconds: (s: number) => duration(s),
+    seconds: (s: number) => duration(s, "de"),
   },
 );
 
 /** Format a time (s) as `1:05:20 h`, `5:20 min` or `12 s`. */
-function duration(s: number): string {
-  if (s < 60) return `${Math.round(10 * s) / 10} s`;
+function duration(s: number, language: string): string {
+  const tenths = Math.round(10 * s) / 10;
+  if (tenths < 60) return `${tenths.toLocaleString(language)} s`;
   const whole = Math.round(s);
   const [hours, minutes] = [Math.floor(whole / 3600), Math.floor((whole % 3600) / 60)];
   const tail = String(whole % 60).padStart(2, "0");

@@ -7,6 +7,16 @@ export function figure(value: number, digits = 2): string {
   return value.toLocaleString(language.value, { maximumFractionDigits: digits });
 }
 
+/** Format a limit of a range; null: it has no limit on this side. */
+export function bound(value: number | null | undefined): string {
+  return value === null || value === undefined ? "∞" : figure(value);
+}
+
+/** Format a unit of a checkpoint. */
+export function unitText(unit: string): string {
+  return unit === "deg" ? "°" : unit;
+}
+
 /** Format a share of 1 as a percentage. */
 export function percent(part: number, digits = 0): string {
   return `${figure(100 * part, digits)} %`;

@@ -215,7 +215,7 @@ def command_results(group: str, only: str, with_prose: bool) -> Iterator[tuple[s
                 if path.is_file():
                     written = _without_times(path, folder)
                     if not with_prose:
-                        written = _without_prose(path.suffix, written)
+                        written = without_prose(path.suffix, written)
                     content += f"\n{path.relative_to(case_folder)}\n".encode() + written
             shutil.rmtree(case_folder)
             yield f"{group}: {case}, exit statuses {statuses}", content
@@ -286,15 +286,18 @@ def _without_times(path: Path, folder: Path) -> bytes:
     return content
 
 
-_PROSE = re.compile(rb'"(?:[^"\\]|\\.)* (?:[^"\\]|\\.)*"(?!:)')
-"""pattern of a JSON string that contains a blank and is not a key"""
+_JSON_STRING = re.compile(rb'"(?:[^"\\]|\\.)*"(?P<colon>\s*:)?')
+"""pattern of a JSON string, with the colon behind it if it is a key"""
 
 
-def _without_prose(suffix: str, content: bytes) -> bytes:
+def without_prose(suffix: str, content: bytes) -> bytes:
     """Return the content of a file without prose, as `--without-prose` describes."""
     if suffix in (".json", ".journal"):
         content = re.sub(rb"(?m)^[0-9a-f]{8} ", b"CHECKSUM ", content)
-        return _PROSE.sub(b'"PROSE"', content)
+        return _JSON_STRING.sub(
+            lambda found: found[0] if found["colon"] or b" " not in found[0] else b'"PROSE"',
+            content,
+        )
     if suffix == ".png":
         return content
     return b" ".join(re.findall(rb"\d+(?:\.\d+)?", content))
@@ -314,7 +317,7 @@ def print_digests(only: str, groups: Sequence[str], with_prose: bool) -> None:
             if only not in name:
                 continue
             if not with_prose and group not in (*COMMANDS, "drive"):
-                content = _without_prose(".json", content)
+                content = without_prose(".json", content)
             print(hashlib.sha256(content).hexdigest()[:16], name, flush=True)
             if folder := os.environ.get("SAME_RESULTS_KEEP"):
                 (Path(folder) / re.sub(r"\W+", "_", name)).write_bytes(content)

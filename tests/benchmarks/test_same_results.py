@@ -1,8 +1,10 @@
 """Tests of the comparison with stored results: each result that differs is named."""
 
+import json
+
 import pytest
 
-from benchmarks.same_results import main
+from benchmarks.same_results import main, without_prose
 
 
 @pytest.mark.long
@@ -19,3 +21,11 @@ def test_a_result_that_differs_is_named(tmp_path, capfd):
         main([str(stored), *only])
     name = "plans: rounds_and_windows, exit statuses [0]"
     assert capfd.readouterr().out.endswith(f"\nbefore {'0' * 16} {name}\n today {digest} {name}\n")
+
+
+@pytest.mark.parametrize("separators", [(",", ":"), (", ", ": ")])
+def test_only_texts_of_several_words_are_prose(separators):
+    data = {"a key": "one", "b": 'two "words"', "c": ["x", "y z", ": ", 1.5]}
+    expected = {"a key": "one", "b": "PROSE", "c": ["x", "PROSE", "PROSE", 1.5]}
+    content = json.dumps(data, separators=separators).encode()
+    assert json.loads(without_prose(".json", content)) == expected

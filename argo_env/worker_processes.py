@@ -69,12 +69,12 @@ def context_with(*modules: str) -> ForkServerContext:
     return context
 
 
-def end_with_parent(parent: int | None = None) -> None:
+def ignore_sigint_and_end_with_parent(parent: int | None = None) -> None:
     """Ignore SIGINT, and end this process when its parent ends, even if the parent is killed.
 
     Args:
-        parent: process id of the parent, for a process that `multiprocessing` did not start. If it
-            is None for such a process, SIGINT is ignored and nothing else happens.
+        parent: process id of the parent, needed only if `multiprocessing` did not start this
+            process. If it is needed and None, the process does not end with its parent.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     known_parent = multiprocessing.parent_process()

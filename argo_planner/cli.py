@@ -191,7 +191,10 @@ def _status_without_output(failure: OSError, status: int) -> int:
 
     Args:
         failure: why the output could not be written
-        status: the exit status if it could
+        status: the exit status that the command has without this failure
+
+    Returns:
+        141 if the reader has closed the pipe and `status` is not 2; else 2.
     """
     if failure.errno == errno.EPIPE:  # the reader has closed the pipe, so needs no message
         return 2 if status == 2 else 141

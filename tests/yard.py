@@ -186,7 +186,7 @@ class EmptyWorld:
     def __init__(self):
         self.arm = []
 
-    def move_arm(self, joints):
+    def set_arm_degrees(self, joints):
         self.arm.append(joints)
 
     def touches(self):

@@ -75,7 +75,9 @@ def resting_poses(world: World, motion: Motion, robot: RobotSpec) -> list[BodyPo
         [x[:, None] + along * cos - left * sin, y[:, None] + along * sin + left * cos], axis=-1
     )
     above = np.repeat(guess + _PROBE_HEIGHT, len(along))
-    heights = world.heights_below(points.reshape(-1, 2), above).reshape(count, len(offsets), 2)
+    heights = world.surface_heights_below(points.reshape(-1, 2), above).reshape(
+        count, len(offsets), 2
+    )
     z, slope = rest_height_and_slope(offsets, heights.max(axis=2))
     pitch = -np.arctan(slope)
     if motion.length:
@@ -180,10 +182,12 @@ class KinematicDrive(NonCopyable, TimedDrive):
 
     @property
     def can_batch_steps(self) -> bool:
-        return self._world.stays_clear(self._pose)
+        return self._world.has_surely_no_touches_at(self._pose)
 
     def poses_ahead(self, count: int) -> PoseArray:
-        clear = takewhile(self._world.stays_clear, self._upcoming_poses(min(count, _LOOKAHEAD)))
+        clear = takewhile(
+            self._world.has_surely_no_touches_at, self._upcoming_poses(min(count, _LOOKAHEAD))
+        )
         poses = [(pose.x, pose.y, pose.z, pose.yaw, pose.pitch) for pose in clear]
         return np.array(poses).reshape(-1, 5)
 

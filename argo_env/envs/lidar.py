@@ -29,7 +29,7 @@ def ray_distances(world: World, pose: BodyPose) -> NDArray[np.float64]:
     angles = pose.yaw + _ANGLES
     origin = (pose.x, pose.y, pose.z + HEIGHT)
     ends = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(RAYS)]) * RANGE
-    return np.minimum(world.ray_lengths(origin, ends + np.array(origin)), RANGE)
+    return np.minimum(world.hit_distances_or_inf(origin, ends + np.array(origin)), RANGE)
 
 
 def ground_heights(world: World, pose: BodyPose) -> NDArray[np.float64]:
@@ -40,5 +40,5 @@ def ground_heights(world: World, pose: BodyPose) -> NDArray[np.float64]:
     """
     cos, sin = math.cos(pose.yaw), math.sin(pose.yaw)
     points = _GROUND @ np.array([[cos, sin], [-sin, cos]]) + np.array([pose.x, pose.y])
-    heights = world.heights_below(points, np.full(len(points), pose.z + _ABOVE))
+    heights = world.surface_heights_below(points, np.full(len(points), pose.z + _ABOVE))
     return np.clip(heights - pose.z, -DEPTH, DEPTH)

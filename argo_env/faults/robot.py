@@ -10,7 +10,7 @@ from argo_env.faults.fault import Fault, Sign, TimedFault
 from argo_env.seeding import draw
 from argo_env.site import Site
 from argo_env.site.spec import Rect
-from argo_env.surroundings.surroundings import Shadow
+from argo_env.surroundings.surroundings import RadioShadow
 
 if TYPE_CHECKING:
     from argo_env.faults.targets import FaultTargets
@@ -65,10 +65,10 @@ class ConnectionLoss(TimedFault):
         return super().resolve_for(site, rng)
 
     def apply(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
-        targets.network.shadows.append(Shadow(self.rect, self.floor))
+        targets.network.shadows.append(RadioShadow(self.rect, self.floor))
 
     def revert(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
-        targets.network.shadows.remove(Shadow(self.rect, self.floor))
+        targets.network.shadows.remove(RadioShadow(self.rect, self.floor))
 
 
 class EmergencyStop(TimedFault):

@@ -35,7 +35,7 @@ from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec
 from argo_env.run.record import RunRecord
 from argo_env.site import Site
-from argo_env.worker_processes import end_with_parent, usable_processors
+from argo_env.worker_processes import ignore_sigint_and_end_with_parent, usable_processors
 
 GIF_COLOURS = 128
 
@@ -236,7 +236,7 @@ _drawing: tuple[RunRecord, Scene, float]
 
 def _start_worker(parent: int, record: RunRecord, site: Site, robot: RobotSpec, end: float) -> None:
     global _drawing
-    end_with_parent(parent)
+    ignore_sigint_and_end_with_parent(parent)
     _drawing = record, Scene(site, robot), end
 
 

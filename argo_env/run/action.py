@@ -97,7 +97,7 @@ class SimulatedAction:
             self._measuring_times.append((self._measuring_since, now))
             self._measuring_since = None
         if end is not None:
-            self._setup.world.move_arm(self._setup.navigator.robot.arm_stowed)
+            self._setup.world.set_arm_degrees(self._setup.navigator.robot.arm_stowed)
             if isinstance(end, ActionFailed):
                 self._setup.drive.halt()
         return end
@@ -298,7 +298,7 @@ class SimulatedAction:
         if limit is not None and not self._tried_to_read:
             self._give_up_at = min(self._give_up_at, self._now + limit)
         self._remaining = self._measuring_time
-        self._setup.world.move_arm(self._raised_arm())
+        self._setup.world.set_arm_degrees(self._raised_arm())
         self._phase = self._measure
         return None
 
@@ -338,7 +338,7 @@ class SimulatedAction:
                 path = navigator.plan_to_view(_to_pose(pose), self._checkpoint_id(), turned)
             except Unreachable:
                 continue
-            self._setup.world.move_arm(navigator.robot.arm_stowed)
+            self._setup.world.set_arm_degrees(navigator.robot.arm_stowed)
             self.path = self.arrival_path = path
             self._setup.drive.follow(path, self._velocity)
             self._phase = self._drive

@@ -26,10 +26,11 @@ COLOURS: dict[str, tuple[float, float, float]] = {
 
 @lru_cache(maxsize=32)  # worlds of a site, and its storeys, are made many times
 def to_urdf(name: str, elements: tuple[Element, ...], drawn: bool = True) -> str:
-    """Return the elements as one URDF document.
+    """Return the text of one URDF document with the elements, whose robot is named `name`.
 
-    Links are named after materials, and solids after elements. With `drawn` False, solids have no
-    visual shape: pictures show none of them, and PyBullet loads the document in half the time.
+    Each material has one link, named after it, with the solids of all its elements; solids are
+    named after their elements. With `drawn` False, solids have no visual shape: pictures show none
+    of them, and PyBullet loads the document in half the time.
 
     Every tag has a line of its own, as PyBullet cuts lines longer than 1,024 characters.
     """

@@ -59,7 +59,10 @@ def leak_concentration(
 def _unit_concentration(
     offset: NDArray[np.float64], weather: Weather, t: float
 ) -> NDArray[np.float64]:
-    """Return the share of gas per m³/s of a source, at `offset` (m) from it after `t` seconds."""
+    """Return the share of gas at `offset` (m) from a source of 1 m³/s that began `t` seconds ago.
+
+    The source has not stopped. Points nearer to it than _ORIFICE count as that far from it.
+    """
     k = weather.diffusivity
     wind = np.array([*weather.wind, 0.0])
     u = float(np.linalg.norm(wind))

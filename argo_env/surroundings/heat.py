@@ -30,7 +30,7 @@ SKY_DEFICIT = 25.0
 """K by which the sky is colder than the air"""
 
 
-def temperatures(
+def surface_temperatures(
     roles: list[Role | None], normals: NDArray[np.float64], weather: Weather
 ) -> NDArray[np.float64]:
     """Return the temperatures (°C) of surfaces with these roles and outward normals, shape (n, 3).
@@ -43,7 +43,7 @@ def temperatures(
     return np.asarray(weather.temperature + own + gain * facing)
 
 
-def highest_temperature(role: Role | None, air: float) -> float:
+def highest_temperature_without_fault(role: Role | None, air: float) -> float:
     """Return the highest temperature (°C) that surfaces with a role have without a fault.
 
     `air` (°C) is the temperature of the air. A role of None is the sky, for which it is `air`.

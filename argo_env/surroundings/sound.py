@@ -55,7 +55,7 @@ def pressure(level: float) -> float:
 
 
 @lru_cache(maxsize=64)
-def shaft_rate(pump: str) -> float:
+def shaft_turns_per_second(pump: str) -> float:
     """Return a pump's speed in turns per second, 24 or 25, which depends on its name only.
 
     It is that of a motor with four poles at 50 Hz, less slip, as the pump's type plate shows it.
@@ -75,14 +75,16 @@ def pump_sound(pump: str, fault: PumpFault | None) -> NDArray[np.float32]:
     orders += [(BLADES * k, -4.0 * (k - 1)) for k in range(1, 7)]
     lines = np.zeros(len(frequencies))
     for order, level in orders:
-        lines[round(order * shaft_rate(pump) * LENGTH / RATE)] += 10 ** (level / 20)
+        lines[round(order * shaft_turns_per_second(pump) * LENGTH / RATE)] += 10 ** (level / 20)
     sound = _scale_to_level(
         _sound_from_spectrum(rng, lines), PUMP_LEVEL + float(rng.uniform(-2, 2))
     )
     falling = 1 / np.sqrt(np.maximum(frequencies, 20.0))
     sound += _scale_to_level(_sound_from_spectrum(rng, falling), PUMP_NOISE)
     if fault is PumpFault.BEARING:
-        sound += _scale_to_level(_impacts(rng, BEARING_ORDER * shaft_rate(pump)), BEARING_LEVEL)
+        sound += _scale_to_level(
+            _impacts(rng, BEARING_ORDER * shaft_turns_per_second(pump)), BEARING_LEVEL
+        )
     elif fault is PumpFault.CAVITATION:
         sound += _scale_to_level(
             _sound_from_spectrum(rng, (frequencies > 1000.0) * 1.0), CAVITATION_LEVEL
@@ -116,7 +118,10 @@ def _sound_from_spectrum(
 
 
 def _impacts(rng: np.random.Generator, rate: float) -> NDArray[np.float64]:
-    """Return the ringing after impacts at `rate` (Hz), with small random slip of the balls."""
+    """Return the ringing after impacts at `rate` (Hz), with small random slip of the balls.
+
+    It has LENGTH samples, which can be repeated, and no unit: the caller scales it to a level.
+    """
     count = round(rate * LENGTH / RATE)
     times = (np.arange(count) + 0.02 * rng.standard_normal(count)) / count * LENGTH
     train = np.zeros(LENGTH)
@@ -136,7 +141,10 @@ SHADOW_LOSS = 20.0
 
 
 def leak_level(leak: GasLeak, distance: float, shadowed: bool) -> float:
-    """Return the level (dB) of a leak at `distance` (m), behind a solid if `shadowed`."""
+    """Return the sound level (dB) of a leak at `distance` (m), behind a solid if `shadowed`.
+
+    A distance below 0.1 m counts as 0.1 m.
+    """
     r = max(distance, 0.1)
     level = LEAK_LEVEL + 10 * math.log10(leak.rate / 0.01) - 20 * math.log10(r) - ABSORPTION * r
     return level - SHADOW_LOSS * shadowed

@@ -138,7 +138,7 @@ class Surroundings:
 
 
 @dataclass(frozen=True)
-class Shadow:
+class RadioShadow:
     """Part of the site without a radio signal."""
 
     rect: Rect | None = None
@@ -161,7 +161,7 @@ class RadioNetwork:
 
     def __init__(self, site: Site) -> None:
         self._site = site
-        self.shadows: list[Shadow] = []
+        self.shadows: list[RadioShadow] = []
 
     def is_connected(self, pose: BodyPose) -> bool:
         """Return True if a robot at `pose` has a signal: it is in none of the shadows."""

@@ -90,7 +90,7 @@ class Bodies(Connection):
         self._filter(self._robot_body, _ROBOT_BIT, SITE_BIT)
         for body in (self._site_body, *self._checkpoints.values()):
             self._filter(body, SITE_BIT, _SITE_MASK)
-        self.move_arm(robot.arm_stowed)
+        self.set_arm_degrees(robot.arm_stowed)
 
     @property
     def solids(self) -> tuple[Element, ...]:
@@ -120,12 +120,16 @@ class Bodies(Connection):
         )
         return [state[0] for state in states]
 
-    def move_arm(self, joints: Mapping[str, float]) -> None:
+    def set_arm_degrees(self, joints: Mapping[str, float]) -> None:
         """Set the arm's joints to positions in degrees, such as the robot's `arm_stowed`."""
         self.set_joints({name: math.radians(angle) for name, angle in joints.items()})
 
     def show_value(self, checkpoint_id: int, value: float) -> None:
-        """Move the needle, float or lever of a checkpoint to a value in its unit."""
+        """Move the needle, float or lever of a checkpoint to a value in its unit.
+
+        A value out of the checkpoint's range moves it beyond the ends of the scale. Raises NotFound
+        if there is no such checkpoint.
+        """
         checkpoint = self.site.checkpoint(checkpoint_id)
         share = (value - checkpoint.range.low) / (checkpoint.range.high - checkpoint.range.low)
         position = {
@@ -152,7 +156,10 @@ class Bodies(Connection):
         self._detect()
 
     def placement(self, checkpoint_id: int) -> Placement:
-        """Return the displacement of a checkpoint from its planned pose; `AS_PLANNED` if none."""
+        """Return the displacement of a checkpoint from its planned pose, `AS_PLANNED` by default.
+
+        That is also returned if there is no such checkpoint.
+        """
         return self._placements.get(checkpoint_id, AS_PLANNED)
 
     def actual_checkpoint(self, checkpoint_id: int) -> SiteCheckpoint:
@@ -244,7 +251,7 @@ class Bodies(Connection):
             ]
             body = self._robot_body
             self._robot_bounds = self._box(body, self._robot_links), self._box(body, upper)
-        return self._clearance.is_clear(pose, *self._robot_bounds, self.contact_breaking)
+        return self._clearance.is_surely_clear(pose, *self._robot_bounds, self.contact_breaking)
 
     def _detect(self) -> None:
         self._sync_robot()
@@ -265,7 +272,7 @@ class Bodies(Connection):
     def _box(self, body: int, links: Iterable[int]) -> SolidBounds:
         """Return the upright box around links of a body."""
         boxes = [pybullet.getAABB(body, link, physicsClientId=self._client) for link in links]
-        return SolidBounds.enclosing(
+        return SolidBounds.box_around_all(
             [SolidBounds(np.array(low), np.array(high)) for low, high in boxes]
         )
 
@@ -295,7 +302,10 @@ class Bodies(Connection):
         return body
 
     def _body_file(self, path: Path, folder: Path) -> Path:
-        """Return the file of a body, or a copy in `folder` without visuals if there are none."""
+        """Return the file of a body or, in a world without pictures, a copy without visuals.
+
+        The copy is written to `folder`.
+        """
         if self._drawn:
             return path
         bare = folder / path.name
@@ -331,7 +341,7 @@ def _without_visuals(path: Path) -> str:
 def _bounds_of(elements: tuple[Element, ...]) -> tuple[SolidBounds, NDArray[np.bool_]]:
     """Return the upright boxes around all solids, and which solids wheels and tracks may stand on.
 
-    As in PyBullet, a solid is walkable if its material is that of any walkable element.
+    As in PyBullet, a solid is walkable if any of the elements with its material is walkable.
     """
     parts = [(e.material, s) for e in elements for s in e.solids]
     half = np.array([half_extents(solid) for _, solid in parts])

@@ -39,7 +39,7 @@ class SolidBounds:
         return np.asarray((self.high - self.low) / 2)
 
     @staticmethod
-    def enclosing(boxes: "list[SolidBounds]") -> "SolidBounds":
+    def box_around_all(boxes: "list[SolidBounds]") -> "SolidBounds":
         """Return the smallest box that contains all the boxes."""
         low, high = [box.low for box in boxes], [box.high for box in boxes]
         return SolidBounds(np.min(low, axis=0), np.max(high, axis=0))
@@ -107,8 +107,12 @@ class Clearance:
         self._gathered_around: SolidBounds | None = None  # positions for which the cache is valid
         self._last_clear: _ClearPose | None = None
 
-    def is_clear(
-        self, pose: BodyPose, full: SolidBounds, upper: SolidBounds, distance: float
+    def is_surely_clear(
+        self,
+        pose: BodyPose,
+        whole_robot: SolidBounds,
+        without_standing_links: SolidBounds,
+        distance: float,
     ) -> bool:
         """Return True if the robot is surely farther than `distance` (m) from any contact.
 
@@ -116,21 +120,28 @@ class Clearance:
 
         Args:
             pose: pose of the robot.
-            full: box around the whole robot in its own frame; it must not touch other solids.
-            upper: box without the parts that it stands on; it must not touch walkable solids.
+            whole_robot: box around the whole robot in its own frame; it must not touch solids that
+                are not walkable.
+            without_standing_links: box around the robot without the parts that it stands on; it
+                must not touch walkable solids.
             distance: m.
         """
-        if self._last_clear and self._last_clear.covers(pose, full, upper):
+        if self._last_clear and self._last_clear.covers(pose, whole_robot, without_standing_links):
             return True
-        self._gather_solids(pose, full)
+        self._gather_solids(pose, whole_robot)
         self._last_clear = None
         margin, gaps, level = distance + _MARGIN, [], _is_level(pose)
-        for solids, box in ((self._other_solids, full), (self._walkable_solids, upper)):
+        for solids, box in (
+            (self._other_solids, whole_robot),
+            (self._walkable_solids, without_standing_links),
+        ):
             gaps.append(_gaps(solids, pose, box) if level else _gaps_tilted(solids, pose, box))
             if min(gaps[-1]) <= margin:
                 return False
         sideways, upwards = (min(pair) - margin for pair in zip(*gaps, strict=True))
-        self._last_clear = _ClearPose(pose, full, upper, level, sideways, upwards)
+        self._last_clear = _ClearPose(
+            pose, whole_robot, without_standing_links, level, sideways, upwards
+        )
         return True
 
     def _gather_solids(self, pose: BodyPose, full: SolidBounds) -> None:
@@ -158,8 +169,9 @@ def _radius(box: SolidBounds) -> float:
 def _gaps(solids: SolidBounds, pose: BodyPose, box: SolidBounds) -> tuple[float, float]:
     """Return the least horizontal and vertical gaps (m) of a level robot's box to upright boxes.
 
-    Upright boxes with a large enough vertical gap count for the vertical one, all others for the
-    horizontal one, which is less than 0 if boxes overlap.
+    Upright boxes with a vertical gap of at least _MIN_VERTICAL_GAP count for the vertical one, all
+    others for the horizontal one, which is less than 0 if boxes overlap. A gap for which no box
+    counts is _GATHER_RANGE.
     """
     low, high = solids.low[:, 2], solids.high[:, 2]
     up = np.maximum(low - (pose.z + box.high[2]), (pose.z + box.low[2]) - high)

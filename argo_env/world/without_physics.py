@@ -21,7 +21,7 @@ class AnyWorld(Protocol):
     @property
     def robot(self) -> RobotSpec: ...
 
-    def move_arm(self, joints: Mapping[str, float]) -> None:
+    def set_arm_degrees(self, joints: Mapping[str, float]) -> None:
         """Set the arm's joints to positions in degrees."""
         ...
 
@@ -42,7 +42,7 @@ class AnyWorld(Protocol):
         ...
 
     def actual_checkpoint(self, checkpoint_id: int) -> SiteCheckpoint:
-        """Return the checkpoint with its actual pose."""
+        """Return the checkpoint with its actual pose; raises NotFound if there is none."""
         ...
 
 
@@ -58,14 +58,17 @@ class WorldWithoutPhysics:
         self.robot = robot
         self._placements: dict[int, Placement] = {}
 
-    def move_arm(self, joints: Mapping[str, float]) -> None:
+    def set_arm_degrees(self, joints: Mapping[str, float]) -> None:
         """Do nothing: this world has no arm."""
 
     def show_value(self, checkpoint_id: int, value: float) -> None:
         """Do nothing: this world has no instruments."""
 
     def displace(self, checkpoint_id: int, placement: Placement) -> None:
-        """Set the displacement of a checkpoint from its planned pose, instead of an earlier one."""
+        """Set the displacement of a checkpoint from its planned pose, instead of an earlier one.
+
+        This does not check that there is such a checkpoint.
+        """
         self._placements[checkpoint_id] = placement
 
     def actual_checkpoint(self, checkpoint_id: int) -> SiteCheckpoint:

@@ -102,15 +102,16 @@ class World(Bodies):
     def set_drive_touches(self, touches: tuple[Touch, ...]) -> None:
         """Set the contacts that a drive with forces has had since the last call.
 
-        The next call of `touches` returns these contacts. From then on, `touches` itself looks for
-        contacts of the arm only.
+        The next call of `touches` returns these contacts, the later calls do not. After the first
+        call of this function, `touches` itself looks for contacts of the arm only, for good.
         """
         self._drive_touches = touches
 
     def touches(self) -> tuple[Touch, ...]:
         """Return the robot's contacts, except of its tracks and flippers with walkable ground.
 
-        After a call of `set_drive_touches`, they are those of the drive and those of the arm.
+        After a call of `set_drive_touches`, they are the present ones of the arm, and those that
+        were set since the last call of this function.
         """
         touches = []
         for contact in self._contacts():
@@ -133,7 +134,7 @@ class World(Bodies):
         )
         return (*(drive_touches or ()), *touches)
 
-    def stays_clear(self, pose: BodyPose) -> bool:
+    def has_surely_no_touches_at(self, pose: BodyPose) -> bool:
         """Return True if `touches` would surely be empty with the robot at `pose`.
 
         This is found by bounding boxes, without PyBullet; False means that it is not sure. The
@@ -222,22 +223,24 @@ class World(Bodies):
             )
         return contacts
 
-    def heights_below(
-        self, points: NDArray[np.float64], below: NDArray[np.float64]
+    def surface_heights_below(
+        self, points: NDArray[np.float64], from_heights: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """Return the height (m) of the first solid under each of `points` (x and y), shape (n, 2).
 
-        Rays go down from the heights `below` (m), shape (n,), and pass through the robot. Where
-        there is nothing within 2 m, as in the seam between two plates, the result is 2 m less than
-        `below`.
+        Rays go down from the heights `from_heights` (m), shape (n,), and pass through the robot.
+        Where there is nothing within 2 m, as in the seam between two plates, the result is 2 m less
+        than `from_heights`.
         """
-        depth = below - 2.0
-        hits = self._rays(np.column_stack([points, below]), np.column_stack([points, depth]))
+        depth = from_heights - 2.0
+        hits = self._rays(np.column_stack([points, from_heights]), np.column_stack([points, depth]))
         return np.array(
             [hit[3][2] if hit[0] >= 0 else z for hit, z in zip(hits, depth.tolist(), strict=True)]
         )
 
-    def ray_lengths(self, origin: Vector, ends: NDArray[np.float64]) -> NDArray[np.float64]:
+    def hit_distances_or_inf(
+        self, origin: Vector, ends: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
         """Return the distance (m) from `origin` to the first solid towards each of `ends` (n, 3).
 
         Rays pass through the robot. The distance is inf where there is nothing up to the end.
@@ -245,7 +248,7 @@ class World(Bodies):
         shares = [hit[2] if hit[0] >= 0 else math.inf for hit in self._rays(origin, ends)]
         return np.asarray(np.array(shares) * np.linalg.norm(ends - np.array(origin), axis=1))
 
-    def surfaces(
+    def hit_materials_and_normals(
         self, origin: Vector, ends: NDArray[np.float64]
     ) -> tuple[list[str | None], NDArray[np.float64]]:
         """Return materials and outward normals of the surfaces seen from `origin` towards `ends`.

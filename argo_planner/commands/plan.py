@@ -86,7 +86,10 @@ def plan_command(
 
 
 def _add_mission(plans: "PlanFolder", name: str, mission: Mission) -> str:
-    """Return the id of an equal mission in the folder, or of a new one."""
+    """Return the id of a plan with an equal mission, whatever its name; add one if there is none.
+
+    A plan that is added has the name `name`, or this name with a number.
+    """
     known = plans.list_plans()
     for summary in known:
         if summary.problem is None and summary.tasks == len(mission.tasks):

@@ -141,7 +141,7 @@ def _read(requirements: Path | None) -> Requirements:
 
 
 def _check_pictures(folder: Path, site: OpenedSite, force: bool) -> None:
-    """Raise ArgoError if the folder contains such pictures already."""
+    """Raise ArgoError if pictures of floors can't be written or, without `force`, replace files."""
     from argo_env.pictures.route import picture_names
 
     check_outputs([], folders=[(folder, picture_names(site.site))], force=force)

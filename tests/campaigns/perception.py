@@ -99,7 +99,7 @@ class Scene:
         share = float(rng.uniform())
         world = self.world
         world.place_robot(pose)
-        world.move_arm(world.robot.arm_raised)
+        world.set_arm_degrees(world.robot.arm_raised)
         world.light = float(rng.uniform(0.3, 1.0))
         world.displace(planned.id, placement)
         scale = planned.range
@@ -154,7 +154,7 @@ class Scene:
 
     def _in_sight(self, eye: NDArray[np.float64], points: NDArray[np.float64]) -> float:
         x, y, z = eye.tolist()
-        return float(np.isinf(self.world.ray_lengths((x, y, z), points)).mean())
+        return float(np.isinf(self.world.hit_distances_or_inf((x, y, z), points)).mean())
 
 
 def face_points(instrument: Instrument) -> NDArray[np.float64]:

@@ -13,7 +13,7 @@ from loky.process_executor import BrokenProcessPool
 
 from argo_compiler.base.errors import Unavailable
 from argo_env.evaluation.pool.backend import WorkerDiedError
-from argo_env.worker_processes import end_with_parent
+from argo_env.worker_processes import ignore_sigint_and_end_with_parent
 
 
 class ProcessBackend:
@@ -81,7 +81,7 @@ class ProcessBackend:
 
 
 def _initialize(parent: int, niceness: int) -> None:
-    end_with_parent(parent)
+    ignore_sigint_and_end_with_parent(parent)
     os.setpriority(os.PRIO_PROCESS, 0, niceness)
 
 

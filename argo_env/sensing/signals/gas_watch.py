@@ -101,7 +101,9 @@ class UltrasonicMicrophone:
         sight = np.array(leak.place) - microphone
         distance = float(np.linalg.norm(sight))
         # The leak lies in the surface of the leaking part, which therefore is no obstacle.
-        range_to_solid = self._world.ray_lengths(to_vector(microphone), np.array([leak.place]))[0]
+        range_to_solid = self._world.hit_distances_or_inf(
+            to_vector(microphone), np.array([leak.place])
+        )[0]
         return leak_level(leak, distance, bool(range_to_solid < distance - 0.2))
 
 

@@ -19,7 +19,7 @@ from argo_env.sensing.signals.site_map import SiteMap
 from argo_env.sensing.watch import Detection
 from argo_env.site.shapes import Role, Vector
 from argo_env.surroundings import HotSpot, Surroundings
-from argo_env.surroundings.heat import highest_temperature, temperatures
+from argo_env.surroundings.heat import highest_temperature_without_fault, surface_temperatures
 from argo_env.world.world import World
 
 WIDTH, HEIGHT = 80, 60
@@ -96,11 +96,11 @@ class ThermalCamera:
         c, s = math.cos(pan), math.sin(pan)
         axes = rotation(pose) @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
         image = ThermalImage(np.empty((HEIGHT, WIDTH)), to_site(pose, PLACE), axes)
-        materials, normals = self._world.surfaces(
+        materials, normals = self._world.hit_materials_and_normals(
             to_vector(image.origin), image.origin + FAR * _COARSE_RAYS @ axes.T
         )
         roles = [None if m is None else self._roles.get(m, Role.STRUCTURE) for m in materials]
-        background = temperatures(roles, normals, self._surroundings.weather)
+        background = surface_temperatures(roles, normals, self._surroundings.weather)
         background += EMISSIVITY * self._rng.standard_normal(len(background))
         coarse = background.reshape(HEIGHT // COARSE, WIDTH // COARSE)
         image.pixels[:] = np.repeat(np.repeat(coarse, COARSE, axis=0), COARSE, axis=1)
@@ -127,7 +127,9 @@ class ThermalCamera:
 
     def _is_visible(self, origin: NDArray[np.float64], spot: HotSpot) -> bool:
         distance = float(np.linalg.norm(np.array(spot.place) - origin))
-        range_to_solid = self._world.ray_lengths(to_vector(origin), np.array([spot.place]))[0]
+        range_to_solid = self._world.hit_distances_or_inf(
+            to_vector(origin), np.array([spot.place])
+        )[0]
         return bool(range_to_solid >= distance - spot.radius - 0.05)
 
 
@@ -252,7 +254,9 @@ def find_spots(image: ThermalImage, site_map: SiteMap, air: float) -> tuple[Spot
         depths, solids = depths[: len(probed)], solids[: len(probed)]
         if not np.isfinite(depths).any():
             continue
-        allowed = max(highest_temperature(site_map.element_of(k).role, air) for k in solids_hit)
+        allowed = max(
+            highest_temperature_without_fault(site_map.element_of(k).role, air) for k in solids_hit
+        )
         if float(np.median(warmth[probed])) <= allowed + MARGIN:
             continue
         nearest = int(np.argmin(depths))

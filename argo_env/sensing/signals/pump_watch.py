@@ -17,7 +17,7 @@ from argo_env.sensing.signals.microphone import NEAREST, Microphone, pump_positi
 from argo_env.sensing.watch import Detection
 from argo_env.site import Site
 from argo_env.site.shapes import Vector
-from argo_env.surroundings.sound import BEARING_ORDER, RATE, shaft_rate
+from argo_env.surroundings.sound import BEARING_ORDER, RATE, shaft_turns_per_second
 
 RECORDING = 0.25  # s
 NEAR = 5.0
@@ -189,7 +189,7 @@ class PumpWatch:
     def _detection(self, pump: str) -> Detection:
         is_only_pump = not self._reported
         self._reported[pump] = 0
-        rate = BEARING_ORDER * shaft_rate(pump) * RECORDING
+        rate = BEARING_ORDER * shaft_turns_per_second(pump) * RECORDING
         low, high = math.floor(rate * (1 - SLIP)), math.ceil(rate * (1 + SLIP))
         best = max(self._recordings, key=lambda recording: recording.excess / recording.normal)
         total = best.excess + best.normal

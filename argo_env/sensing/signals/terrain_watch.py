@@ -207,7 +207,9 @@ class TerrainScanner:
         reach: NDArray[np.float64],
     ) -> NDArray[np.float64]:
         """Return the measured depths in m; inf beyond `reach`."""
-        true = self._world.ray_lengths(to_vector(origin), origin + reach[:, None] * directions)
+        true = self._world.hit_distances_or_inf(
+            to_vector(origin), origin + reach[:, None] * directions
+        )
         fixed, share = DEPTH_NOISE
         noise = self._rng.standard_normal(len(true))
         return np.asarray(true + (fixed + share * np.minimum(true, reach)) * noise)

@@ -15,7 +15,7 @@ from argo_compiler.diagnostics import has_errors
 from argo_compiler.il import Mission
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.planning.site_warnings import view_warnings
-from argo_env.worker_processes import end_with_parent
+from argo_env.worker_processes import ignore_sigint_and_end_with_parent
 from argo_planner.service.processes.context import CONTEXT
 from argo_planner.use_cases.checking import MAX_POSES
 
@@ -66,7 +66,7 @@ def _make_pool() -> ProcessPoolExecutor:
     context = LokyContext()
     context.Process = CONTEXT.Process
     return ProcessPoolExecutor(
-        1, context=context, initializer=end_with_parent, initargs=(os.getpid(),)
+        1, context=context, initializer=ignore_sigint_and_end_with_parent, initargs=(os.getpid(),)
     )
 
 

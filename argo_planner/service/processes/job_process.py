@@ -11,7 +11,7 @@ from threading import Lock
 from typing import Any, Generic, TypeVar
 
 from argo_compiler.base.errors import ArgoError, Unavailable
-from argo_env.worker_processes import end_with_parent
+from argo_env.worker_processes import ignore_sigint_and_end_with_parent
 from argo_planner.service.processes.context import CONTEXT
 
 Result = TypeVar("Result")
@@ -89,7 +89,7 @@ class JobProcess(Generic[Result]):
 
 
 def _run_work(pipe: Connection, work: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
-    end_with_parent()
+    ignore_sigint_and_end_with_parent()
 
     def report(progress: Any) -> None:
         pipe.send(("told", progress))

@@ -24,7 +24,7 @@ from argo_env.run.record import RunRecord
 from argo_env.run.run_commands import StopRun
 from argo_env.run.simulation import Simulation
 from argo_env.run.spec import RunSpec
-from argo_env.worker_processes import end_with_parent
+from argo_env.worker_processes import ignore_sigint_and_end_with_parent
 from argo_planner.service.runs.driver import EntryReporter, RunDriver
 from argo_planner.service.runs.pictures import PictureWriter
 from argo_planner.service.runs.pipe import WorkerFailed, WorkerPipe
@@ -77,7 +77,7 @@ def run_worker(
         foxglove: Port at which the run is shown live; None: it is not.
         first_request: Request to an interrupted run, with its author; None: there is none.
     """
-    end_with_parent()
+    ignore_sigint_and_end_with_parent()
     try:
         site = with_obstacles(open_site(order.site).prepare(), order.obstacles)
         with ExitStack() as stack:

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from argo_env.site.shapes import Role
 from argo_env.surroundings import GasLeak, PumpFault, Weather
-from argo_env.surroundings.heat import highest_temperature, temperatures
+from argo_env.surroundings.heat import highest_temperature_without_fault, surface_temperatures
 from argo_env.surroundings.sound import (
     ABSORPTION,
     ALARM_TONE,
@@ -19,7 +19,7 @@ from argo_env.surroundings.sound import (
     alarm_sound,
     leak_level,
     pump_sound,
-    shaft_rate,
+    shaft_turns_per_second,
 )
 from tests.conftest import examples
 
@@ -46,7 +46,7 @@ def test_a_pump_hums_at_its_blades_passing(pump):
     sound = pump_sound(pump, None)
     power = np.abs(np.fft.rfft(sound)) ** 2
     assert level(sound) == pytest.approx(85.0, abs=3.0)
-    assert np.argmax(power) * RATE / LENGTH == pytest.approx(6 * shaft_rate(pump))
+    assert np.argmax(power) * RATE / LENGTH == pytest.approx(6 * shaft_turns_per_second(pump))
     assert np.array_equal(sound, pump_sound(pump, None))
     # The step from the end back to the start is not greater than the steps within.
     steps = np.abs(np.diff(sound))
@@ -57,7 +57,7 @@ def test_a_pump_hums_at_its_blades_passing(pump):
 @given(PUMPS, st.sampled_from(PumpFault))
 def test_a_fault_adds_to_high_frequencies_and_leaves_the_lines(pump, fault):
     normal, faulty = (np.abs(np.fft.rfft(pump_sound(pump, f))) ** 2 for f in (None, fault))
-    line = round(6 * shaft_rate(pump) * LENGTH / RATE)
+    line = round(6 * shaft_turns_per_second(pump) * LENGTH / RATE)
     assert faulty[line] == pytest.approx(normal[line], rel=0.05)
     high = slice(2000 * LENGTH // RATE, 7000 * LENGTH // RATE)
     assert faulty[high].sum() > 2 * normal[high].sum()
@@ -69,7 +69,7 @@ def test_only_a_bearing_rings_with_its_balls(fault):
     spectrum = np.fft.rfft(sound)
     spectrum[: 2500 * LENGTH // RATE] = 0
     envelope = np.abs(np.fft.rfft(np.fft.irfft(spectrum, LENGTH) ** 2))
-    rate = BEARING_ORDER * shaft_rate("P-1") * LENGTH / RATE
+    rate = BEARING_ORDER * shaft_turns_per_second("P-1") * LENGTH / RATE
     modulation = envelope[round(0.97 * rate) : round(1.03 * rate) + 1].max() / envelope[0]
     assert (modulation > 0.4) == (fault is PumpFault.BEARING)
 
@@ -89,11 +89,13 @@ def test_the_alarm_sounds_a_second_and_is_silent_a_second():
 def test_no_sound_surface_is_warmer_than_its_role_allows(role, tilt, turn, air):
     normal = [np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt)]
     weather = Weather(temperature=air)
-    warm = temperatures([role], np.array([normal]), weather)[0]
-    assert warm <= highest_temperature(role, air) + 1e-2
-    night = temperatures([role], np.array([normal]), Weather(temperature=air, sun=(0, 0, 0)))[0]
+    warm = surface_temperatures([role], np.array([normal]), weather)[0]
+    assert warm <= highest_temperature_without_fault(role, air) + 1e-2
+    night = surface_temperatures(
+        [role], np.array([normal]), Weather(temperature=air, sun=(0, 0, 0))
+    )[0]
     assert night <= warm
 
 
 def test_the_sky_is_cold():
-    assert temperatures([None], np.zeros((1, 3)), Weather())[0] < Weather().temperature
+    assert surface_temperatures([None], np.zeros((1, 3)), Weather())[0] < Weather().temperature

@@ -83,7 +83,7 @@ def test_touches_equal_those_of_asking_pybullet_each_time(
             joints = {
                 name: angle * rng.uniform(-1.0, 1.0) for name, angle in robot.arm_stowed.items()
             }
-            call_both(worlds, "move_arm", joints if rng.random() < 0.3 else robot.arm_stowed)
+            call_both(worlds, "set_arm_degrees", joints if rng.random() < 0.3 else robot.arm_stowed)
         if k % 7 == 0:
             angle = float(rng.choice([0.0, math.radians(30.0), math.radians(-20.0)]))
             flippers = dict.fromkeys(("left_flipper_joint", "right_flipper_joint"), angle)
@@ -92,7 +92,7 @@ def test_touches_equal_those_of_asking_pybullet_each_time(
         assert usual_touches == all_touches, pose
         touched += bool(usual_touches)
     assert len(detections) < STEPS or touched > STEPS / 2
-    call_both(worlds, "move_arm", robot.arm_stowed)
+    call_both(worlds, "set_arm_degrees", robot.arm_stowed)
 
 
 def test_most_detections_are_skipped_in_the_open(worlds, umad, monkeypatch):

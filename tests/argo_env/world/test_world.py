@@ -68,24 +68,24 @@ def test_tracks_stand_where_the_body_must_not(simulation):
 
 def test_raised_arm_touches_what_is_above(simulation, robot):
     # At the separator's end, at the height of its axis.
-    simulation.move_arm(robot.arm_raised)
+    simulation.set_arm_degrees(robot.arm_raised)
     try:
         simulation.place_robot(BodyPose(3.25, 4.2, 0.0, 0.0))
         links = {t.link for t in simulation.touches() if t.element == "separator V-201"}
         assert "sensor_head" in links
     finally:
-        simulation.move_arm(robot.arm_stowed)
+        simulation.set_arm_degrees(robot.arm_stowed)
 
 
 def test_a_robot_that_leans_to_its_left_touches_what_is_there(simulation, robot):
-    simulation.move_arm(robot.arm_raised)
+    simulation.set_arm_degrees(robot.arm_raised)
     try:
         for roll, leans in ((-0.3, {"separator V-201"}), (0.0, set()), (0.3, set())):
             simulation.place_robot(BodyPose(3.5, 3.2, 0.0, 0.0, roll=roll))
             touches = [t for t in simulation.touches() if t.link in {"forearm", "sensor_head"}]
             assert {t.element for t in touches} == leans
     finally:
-        simulation.move_arm(robot.arm_stowed)
+        simulation.set_arm_degrees(robot.arm_stowed)
 
 
 def test_obstacle_between_names_the_first_thing(simulation):
@@ -108,20 +108,22 @@ def test_heights(simulation):
     points = np.array([[8.0, 1.6], [8.0, -2.0], [1.9, 6.0], [0.85, 3.65], [4.0, 6.0]])
     below = np.array([1.0, 1.0, 3.0, 1.0, 12.0])
     # The slab, the gravel, floor 2, the first tread, and the void above all vessels' tops.
-    heights = simulation.heights_below(points, below)
+    heights = simulation.surface_heights_below(points, below)
     assert heights == pytest.approx([0.0, -0.03, 2.5, 0.178571, 10.0], abs=1e-4)
 
 
 def test_heights_of_more_points_than_a_batch_holds(simulation):
     points = np.tile([[8.0, 1.6], [8.0, -2.0]], (10_000, 1))
-    heights = simulation.heights_below(points, np.ones(len(points)))
+    heights = simulation.surface_heights_below(points, np.ones(len(points)))
     assert heights[::2] == pytest.approx(np.zeros(10_000), abs=1e-4)
     assert heights[1::2] == pytest.approx(np.full(10_000, -0.03), abs=1e-4)
 
 
 def test_heights_look_through_the_robot(simulation):
     simulation.place_robot(BodyPose(8.0, 1.6, 0.0, 0.0))
-    assert simulation.heights_below(np.array([[8.0, 1.6]]), np.array([1.5])) == pytest.approx(0.0)
+    assert simulation.surface_heights_below(
+        np.array([[8.0, 1.6]]), np.array([1.5])
+    ) == pytest.approx(0.0)
 
 
 @pytest.fixture

@@ -76,8 +76,8 @@ def test_an_obstacle_is_reported_once_and_again_after_it_was_gone(site, world, s
     class Changing:
         """A world that can be replaced by another one."""
 
-        def ray_lengths(self, *rays):
-            return self.now.ray_lengths(*rays)
+        def hit_distances_or_inf(self, *rays):
+            return self.now.hit_distances_or_inf(*rays)
 
     changing_world = Changing()
     watch = make_watch(changing_world, site_map)

@@ -117,7 +117,7 @@ def test_planned_views_touch_nothing_and_see_the_checkpoint(
         angle = math.acos(sight @ face_normal(checkpoint) / np.linalg.norm(sight))
         assert view.obliqueness == pytest.approx(angle, abs=1e-6)
         obliqueness.append(math.degrees(angle))
-    simulation.move_arm(robot.arm_stowed)
+    simulation.set_arm_degrees(robot.arm_stowed)
     assert min(obliqueness) <= 40
 
 
@@ -152,7 +152,7 @@ def test_the_arm_reaches_a_view_past_an_obstacle(id, place_before, simulation, r
             assert simulation.arm_obstacle(positions, 0.0) is None
     finally:
         simulation.remove_screen(screen)
-        simulation.move_arm(robot.arm_stowed)
+        simulation.set_arm_degrees(robot.arm_stowed)
 
 
 def test_the_arm_check_moves_nothing_and_names_the_obstacle(simulation, robot):

@@ -31,7 +31,7 @@ def set_checkpoint(simulation, navigator, umad, robot):
         view_pose = navigator.plan_to_view(umad.docks[1], id).end
         pose = BodyPose(view_pose.x, view_pose.y, view_pose.z, view_pose.yaw)
         simulation.place_robot(pose)
-        simulation.move_arm(robot.arm_raised)
+        simulation.set_arm_degrees(robot.arm_raised)
         simulation.show_value(id, value)
         simulation.displace(id, placement)
         simulation.light = light
@@ -40,7 +40,7 @@ def set_checkpoint(simulation, navigator, umad, robot):
     set_up.world, set_up.screens = simulation, screens
     yield set_up
     simulation.light = 1.0
-    simulation.move_arm(robot.arm_stowed)
+    simulation.set_arm_degrees(robot.arm_stowed)
     for id in ALLOWED:
         simulation.displace(id, AS_PLANNED)
     for screen in screens:

@@ -184,7 +184,7 @@ class RouteEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
     def step(self, action: np.int64 | int) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         check_under_way(self._over, self._title)
         instance = self.instance
-        node = parse_discrete_action(action, instance.size, self._title)
+        node = parse_discrete_action(action, instance.node_count, self._title)
         illegal = not self._mask[node]
         if illegal:
             node = DOCK
@@ -270,14 +270,14 @@ class RouteEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
         if self.instance.hidden is not None:  # a robot that docks too late has no time left
             left = np.maximum(left, np.float32(0.0))
         observation: Observation = {
-            "travel": instance.travel_rows[place].copy(),
-            "home": instance.home.copy(),
+            "travel": instance.travel_share_rows[place].copy(),
+            "home": instance.home_shares.copy(),
             "prize": self._prizes.copy(),
             "left": left / instance.budget_array,
             "mask": mask.view(np.int8).copy(),
         }
         if self._full:
-            observation["matrix"] = instance.travel.copy()
+            observation["matrix"] = instance.travel_shares.copy()
             observation["before"] = instance.before.astype(np.int8)
             observation["place"] = np.int64(place)  # type: ignore[assignment]
         return observation

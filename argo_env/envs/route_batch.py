@@ -263,10 +263,11 @@ class RouteVectorEnv(Copyable, VectorEnv[Observation, NDArray[np.int64], NDArray
     def _apply_failures(
         self, nodes: NDArray[np.int64], prizes: NDArray[np.float64], effect: NDArray[np.int16]
     ) -> NDArray[np.bool_]:
-        """Return a mask of the visits that fail, shape (num_envs,), and change what they leave.
+        """Return a mask of the visits that fail, shape (num_envs,), and record all visits.
 
-        In `prizes` and `effect`, the values of visits that fail are set to 0. The other visits get
-        their prizes, which their nodes no longer have then.
+        `prizes` and `effect` are changed in place: the values of visits that fail are set to 0. A
+        node where a visit fails has one failure less left. The prizes of the other visits are won,
+        and their nodes have no prize any more.
         """
         rows = self._all_rows
         failed = self._failing[rows, nodes] > 0
@@ -280,7 +281,7 @@ class RouteVectorEnv(Copyable, VectorEnv[Observation, NDArray[np.int64], NDArray
         """Start the next episode's instance in these environments."""
         pool = self._episodes.pool
         drawn = episode_hash(self._keys[rows], self._episode[rows])
-        chosen = pool.select_rows(rows, drawn)
+        chosen = pool.pool_rows_for_envs(rows, drawn)
         self._chosen[rows] = chosen
         self._known[rows] = chosen * pool.stages
         self._missing[rows] = pool.missing_predecessors[chosen]
@@ -304,15 +305,15 @@ class RouteVectorEnv(Copyable, VectorEnv[Observation, NDArray[np.int64], NDArray
         if pool.noisy:  # a robot that docks too late has no time left
             np.maximum(left, np.float32(0.0), out=left)
         observation: Observation = {
-            "travel": pool.travel.take(row, axis=0),
-            "home": pool.home.take(self._known, axis=0),
+            "travel": pool.travel_shares.take(row, axis=0),
+            "home": pool.home_shares.take(self._known, axis=0),
             "prize": self._prizes.copy(),
             "left": left / budget,
             "mask": mask.astype(np.int8),
         }
         if self._full:
             shape = (-1, self._missing.shape[1] + 1, self._missing.shape[1])
-            observation["matrix"] = pool.travel.reshape(shape)[self._known]
+            observation["matrix"] = pool.travel_shares.reshape(shape)[self._known]
             observation["before"] = pool.before[chosen]
             observation["place"] = place.copy()
         return observation

@@ -35,12 +35,12 @@ class LegPaths(Protocol):
         """Return where the robot stands when it visits a position, and its heading (rad) there."""
         ...
 
-    def path_between(
+    def path_and_final_heading(
         self, a: Position, b: Position, blocked: tuple[Stair, ...]
     ) -> tuple[list[Position], float]:
         """Return the points of the path from a to b, and the robot's heading (rad) at its end.
 
-        The path avoids the blocked stairs.
+        The path avoids the blocked stairs; there must be one without them.
         """
         ...
 
@@ -60,7 +60,7 @@ class _StraightLegs:
     def robot_pose_at(self, position: Position) -> tuple[Position, float]:
         return position, 0.0
 
-    def path_between(
+    def path_and_final_heading(
         self, a: Position, b: Position, _: tuple[Stair, ...]
     ) -> tuple[list[Position], float]:
         return [a, b], 0.0
@@ -75,7 +75,7 @@ class _AisleLegs(_StraightLegs):
     def __init__(self, ends: int) -> None:
         self._ends = ends
 
-    def path_between(
+    def path_and_final_heading(
         self, a: Position, b: Position, blocked: tuple[Stair, ...]
     ) -> tuple[list[Position], float]:
         if a[2] == b[2]:
@@ -118,7 +118,7 @@ class _SiteLegs:
         pose = self._pose(position)
         return (pose.x, pose.y, position[2]), pose.yaw
 
-    def path_between(
+    def path_and_final_heading(
         self, a: Position, b: Position, blocked: tuple[Stair, ...]
     ) -> tuple[list[Position], float]:
         if blocked not in self._avoiding:
@@ -174,7 +174,7 @@ def draw_route(
     ]
     start = instance.start
     markers = []
-    for node in range(1, instance.size):
+    for node in range(1, instance.node_count):
         x, y, floor = positions[node]
         is_reachable = bool(np.isfinite(instance.arrival[start, node]))
         if not floor:  # an empty slot has no position
@@ -194,7 +194,9 @@ def draw_route(
     for a, b in pairwise(route):
         t = path[-1].t
         duration = float(instance.known_at(t).arrival[a, b])
-        part, heading = legs.path_between(positions[a], positions[b], instance.blocked_at(t))
+        part, heading = legs.path_and_final_heading(
+            positions[a], positions[b], instance.blocked_at(t)
+        )
         path += [
             PathPoint(t + duration * k / max(len(part) - 1, 1), *p) for k, p in enumerate(part)
         ]

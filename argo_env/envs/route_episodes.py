@@ -34,7 +34,7 @@ from argo_env.envs.route_sources import (
     RouteFaults,
     RouteSource,
     SiteRoutes,
-    existing_checkpoints,
+    count_existing_checkpoints,
 )
 
 FPS = 4  # frames per second of films
@@ -73,9 +73,9 @@ class InstancePool:
     """rows of all instances one below the other, each instance once for each stage"""
     time_to_dock_via: NDArray[np.float32]
     """as `arrival`"""
-    travel: NDArray[np.float32]
+    travel_shares: NDArray[np.float32]
     """as `arrival`"""
-    home: NDArray[np.float32]
+    home_shares: NDArray[np.float32]
     """one row for each stage of each instance"""
     before: NDArray[np.int8]
     missing_decrease: NDArray[np.int16]
@@ -90,16 +90,18 @@ class InstancePool:
     since: NDArray[np.float32]
     """time (s) at which each stage but the first begins, shape (m, stages - 1)"""
 
-    def select_rows(self, rows: NDArray[np.int64], drawn: UInt64Array) -> NDArray[np.int64]:
-        """Return the row of the pool for each of some environments' next episodes.
+    def pool_rows_for_envs(
+        self, env_numbers: NDArray[np.int64], random_numbers: UInt64Array
+    ) -> NDArray[np.int64]:
+        """Return the row of the pool with the next episode's instance, for each environment given.
 
         Args:
-            rows: Numbers of the environments.
-            drawn: Random numbers, one for each of them; unused if `one_per_env` is True.
+            env_numbers: Numbers of the environments.
+            random_numbers: One for each of them; unused if `one_per_env` is True.
         """
         if self.one_per_env:
-            return rows
-        return (drawn % np.uint64(len(self.numbers))).astype(np.int64)
+            return env_numbers
+        return (random_numbers % np.uint64(len(self.numbers))).astype(np.int64)
 
 
 class Episodes:
@@ -165,7 +167,7 @@ class Episodes:
 
     @property
     def pool(self) -> InstancePool:
-        """Pool of all instances from which episodes draw, made on first use."""
+        """Pool of all instances from which episodes draw; made anew after `apply_options`."""
         if self._pool is None:
             source = self.source
             # A source from elsewhere may give different instances each time.
@@ -180,19 +182,19 @@ class Episodes:
 
 
 def read_route_options(
-    given: Mapping[str, Any], episodes: Episodes, count: int | None = None
+    given: Mapping[str, Any], episodes: Episodes, batch_size: int | None = None
 ) -> RouteOptions:
     """Return the options of a `reset` as an object, checked for the environment's `episodes`.
 
-    `count` is the number of environments in a batch; None: it is a single one. Raises ArgoError if
-    the options are invalid. They are not applied yet.
+    `batch_size` is the number of environments; None: it is a single one without a batch. Raises
+    ArgoError if the options are invalid. They are not applied yet.
     """
     options = read_options(RouteOptions, given, _NAME)
     if options.instance is not None:
-        _check_instance(options, count)
+        _check_instance(options, batch_size)
     source, scenario = episodes.source_for(options), episodes.scenario_name(options)
     check_floors(scenario, range(1, source.floors + 1), options.floors)
-    available, slots = existing_checkpoints(source), episodes.size - 1
+    available, slots = count_existing_checkpoints(source), episodes.size - 1
     if options.faults.closed > available:
         of = f"scenario {scenario}" if available < slots else "a route"
         more = "" if available < slots else ", or make the environment with more `checkpoints`"
@@ -270,15 +272,15 @@ def _make_pool(
         since[row, : len(instance_changes)] = [change.since for change in instance_changes]
         known += [instance, *(change.known for change in instance_changes)]
         known += [known[-1]] * (stages - 1 - len(instance_changes))
-    no_failures = np.zeros(instances[0].size, np.int16)
+    no_failures = np.zeros(instances[0].node_count, np.int16)
     return InstancePool(
         numbers=np.array(numbers, dtype=np.int64),
         one_per_env=one_per_env,
         stages=stages,
         arrival=np.concatenate([_arrival_at_rest(k) for k in known]),
         time_to_dock_via=np.concatenate([k.time_to_dock_via for k in known]),
-        travel=np.concatenate([k.travel for k in known]),
-        home=np.stack([k.home for k in known]),
+        travel_shares=np.concatenate([k.travel_shares for k in known]),
+        home_shares=np.stack([k.home_shares for k in known]),
         before=np.stack([m.before for m in instances]).astype(np.int8),
         missing_decrease=np.concatenate([m.missing_decrease for m in instances]),
         missing_predecessors=np.stack([m.before.sum(axis=0, dtype=np.int16) for m in instances]),
@@ -309,21 +311,21 @@ def _site_routes(checkpoints: int, scenario: str, budget: float, noise: RouteNoi
     return source
 
 
-def observation_space(size: int, full: bool) -> spaces.Space[Observation]:
-    """Return the observation space of Route-v0 for `size` nodes, with the dock.
+def observation_space(node_count: int, full: bool) -> spaces.Space[Observation]:
+    """Return the observation space of Route-v0 for `node_count` nodes, with the dock.
 
     With `full`, observations also have `matrix`, `before` and `place`.
     """
-    share = spaces.Box(0.0, 1.0, (size,), np.float32)
+    share = spaces.Box(0.0, 1.0, (node_count,), np.float32)
     parts: dict[str, spaces.Space[Any]] = {
         "travel": share,
         "home": share,
         "prize": share,
         "left": spaces.Box(0.0, 1.0, (1,), np.float32),
-        "mask": spaces.MultiBinary(size),
+        "mask": spaces.MultiBinary(node_count),
     }
     if full:
-        parts["matrix"] = spaces.Box(0.0, 1.0, (size + 1, size), np.float32)
-        parts["before"] = spaces.MultiBinary((size, size))
-        parts["place"] = spaces.Discrete(size + 1)
+        parts["matrix"] = spaces.Box(0.0, 1.0, (node_count + 1, node_count), np.float32)
+        parts["before"] = spaces.MultiBinary((node_count, node_count))
+        parts["place"] = spaces.Discrete(node_count + 1)
     return dict_space(parts)

@@ -43,20 +43,20 @@ class RouteInstance:
     """parts that the robot does not know at the start; None if it knows all"""
 
     @property
-    def size(self) -> int:
+    def node_count(self) -> int:
         """Number of nodes, with the dock."""
         return len(self.prizes)
 
     @property
     def start(self) -> int:
-        """Index of the start's row in `arrival`, `time_to_dock_via`, `travel` and `positions`."""
-        return self.size
+        """Index of the start's row in `arrival`, `positions` and the tables of the same shape."""
+        return self.node_count
 
     @cached_property
-    def home(self) -> NDArray[np.float32]:
+    def home_shares(self) -> NDArray[np.float32]:
         """Time from each node to the dock as a share of the budget, at most 1, shape (n + 1,)."""
         home: NDArray[np.float32] = np.minimum(
-            self.arrival[: self.size, DOCK] / np.float32(self.budget), np.float32(1.0)
+            self.arrival[: self.node_count, DOCK] / np.float32(self.budget), np.float32(1.0)
         )
         home[DOCK] = 0.0
         return home
@@ -67,18 +67,18 @@ class RouteInstance:
 
         It has the shape of `arrival`.
         """
-        home = self.arrival[: self.size, DOCK].copy()
+        home = self.arrival[: self.node_count, DOCK].copy()
         home[DOCK] = 0.0
         return np.asarray(self.arrival + home, dtype=np.float32)
 
     @cached_property
-    def travel(self) -> NDArray[np.float32]:
+    def travel_shares(self) -> NDArray[np.float32]:
         """`arrival` as a share of the budget, at most 1, of the same shape."""
         return np.asarray(np.minimum(self.arrival / np.float32(self.budget), np.float32(1.0)))
 
     @cached_property
     def missing_predecessors(self) -> NDArray[np.int16]:
-        """Number of checkpoints that must be visited before each node, shape (n + 1,)."""
+        """Number of checkpoints that `before` has before each node, shape (n + 1,)."""
         return np.asarray(self.before.sum(axis=0, dtype=np.int16))
 
     @cached_property
@@ -99,9 +99,9 @@ class RouteInstance:
         return list(self.time_to_dock_via)
 
     @cached_property
-    def travel_rows(self) -> list[NDArray[np.float32]]:
-        """Rows of `travel`."""
-        return list(self.travel)
+    def travel_share_rows(self) -> list[NDArray[np.float32]]:
+        """Rows of `travel_shares`."""
+        return list(self.travel_shares)
 
     @cached_property
     def budget_array(self) -> NDArray[np.float32]:
@@ -111,7 +111,8 @@ class RouteInstance:
     def known_at(self, time: float) -> "RouteInstance":
         """Return the instance as the robot knows it at a time (s) after its start.
 
-        Its travel times are those without the stairs that were found blocked by then.
+        If stairs were found blocked by then, it is a copy without hidden parts, whose travel times
+        are those without these stairs. Otherwise it is this instance itself, hidden parts included.
         """
         changes = self._changes_by(time)
         return changes[-1].known if changes else self
@@ -196,7 +197,8 @@ def make_instance(
         times: Travel times (s), shape (n + 2, n + 1), with the rows and columns of `RouteInstance`.
         service: Time (s) that the visit of each node takes, shape (n + 1,).
         prizes: See `RouteInstance.prizes`.
-        pairs: Pairs of checkpoints, the first of which must be visited before the second.
+        pairs: Numbers (1 to n) of two checkpoints, the first of which must be visited before the
+            second.
         budget: s within which the robot must dock.
         positions: See `RouteInstance.positions`.
 
@@ -259,11 +261,12 @@ class Score:
 
 
 def score_route(instance: RouteInstance, route: Sequence[int]) -> Score:
-    """Return what a route, which is a sequence of nodes, wins on an instance, and its time.
+    """Return what a route, a sequence of checkpoints' nodes, wins on an instance, and its time.
 
-    The robot goes to the dock at the end of the route, or earlier if the next node would break a
-    rule: it was visited already, or it comes before a node that must precede it, or the robot would
-    dock too late by what it knows when it leaves for that node.
+    The robot goes to the dock at the end of the route, at a 0 (the dock) in it, or earlier if the
+    next node would break a rule: it was visited already without failure, or it comes before a node
+    that must precede it, or the robot would dock too late by what it knows when it leaves for that
+    node.
 
     A visit that fails takes its time and gives no prize. Stairs that are found blocked on the way
     to a checkpoint may make the way back too long: a route that docks too late has prize 0.
@@ -272,7 +275,7 @@ def score_route(instance: RouteInstance, route: Sequence[int]) -> Score:
     """
     place, time, prize = instance.start, 0.0, 0.0
     visited: list[int] = []
-    attempts = [0] * instance.size
+    attempts = [0] * instance.node_count
     illegal = None
     for node in route:
         if node == DOCK:
@@ -280,7 +283,7 @@ def score_route(instance: RouteInstance, route: Sequence[int]) -> Score:
         times = _times_at(instance, time)
         arrived = time + float(times[place, node])
         docked = arrived + float(times[node, DOCK])
-        predecessors = [k for k in range(instance.size) if instance.before[k, node]]
+        predecessors = [k for k in range(instance.node_count) if instance.before[k, node]]
         if (
             node in visited
             or docked > instance.budget

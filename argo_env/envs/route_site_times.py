@@ -47,7 +47,7 @@ def site_times(scenario: str) -> SiteTimes:
 
 @lru_cache(maxsize=8)
 def site_stairs(scenario: str) -> tuple[Stair, ...]:
-    """Return all stairs of a site: those of each tower, numbered from 0, above each floor."""
+    """Return all stairs of a site, each as the index of its tower and the number of its floor."""
     spec = open_site(scenario).site.spec
     return tuple(
         (tower, floor.number) for tower in range(len(spec.towers)) for floor in spec.floors[:-1]

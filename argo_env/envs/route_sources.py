@@ -40,7 +40,7 @@ def aisle_times(
     of the floors. Returns None if a floor can't be reached as all its stairs are blocked.
 
     Args:
-        positions: x, y (m) and the number of the floor, shape (n, 3).
+        positions: x, y (m) and the number of the floor, from 1, shape (n, 3).
         floors: Number of floors.
         ends: Number of ends with stairs, 1 or 2.
         blocked: Stairs that can't be used.
@@ -112,7 +112,7 @@ class RouteSource(Protocol):
 
     @property
     def checkpoints(self) -> int:
-        """Number of checkpoints, with those that a site does not have."""
+        """Number of checkpoints in each instance; those that a site lacks can't be reached."""
         ...
 
     @property
@@ -200,7 +200,7 @@ class SiteRoutes:
         return self._site.floors
 
     @property
-    def existing_checkpoints(self) -> int:
+    def existing_checkpoint_count(self) -> int:
         """Number of checkpoints in an instance that exist, as the site may have fewer."""
         return min(self.checkpoints, len(self._site.positions) - 1)
 
@@ -275,8 +275,9 @@ def _complete_instance(
     rng: np.random.Generator,
     noise: np.random.Generator,
 ) -> RouteInstance:
-    """Return the instance with its prizes, precedence and noise drawn, and with closed checkpoints.
+    """Return the instance; draw its prizes, precedence, closed checkpoints and noise.
 
+    Closed checkpoints, and those on floors other than `spec.floors`, can't be reached.
     `times_without` returns the travel times (s) between all positions without some of the stairs,
     None if these are indispensable.
     """
@@ -313,9 +314,11 @@ def _complete_instance(
     return with_hidden(instance, failing, blocked, service)
 
 
-def existing_checkpoints(source: RouteSource) -> int:
+def count_existing_checkpoints(source: RouteSource) -> int:
     """Return the number of checkpoints in a source's instances that exist.
 
     It is lower than `source.checkpoints` if the site does not have as many.
     """
-    return source.existing_checkpoints if isinstance(source, SiteRoutes) else source.checkpoints
+    return (
+        source.existing_checkpoint_count if isinstance(source, SiteRoutes) else source.checkpoints
+    )

@@ -57,12 +57,13 @@ class Workers(NonCopyable):
             self.close()
             raise
 
-    def request(self, name: str, arguments: Sequence[tuple[Any, ...]]) -> list[Any]:
-        """Call a method of `_WorkerEnvs` in each process, and return all answers in order.
+    def call_in_each_process(self, name: str, arguments: Sequence[tuple[Any, ...]]) -> list[Any]:
+        """Call a method of `_WorkerEnvs` in each process, and return each environment's answer.
 
         `arguments` has those of each process. The method returns a list with an answer for each of
-        its environments. If environments raise errors, the first one is raised after all processes
-        have answered. If a process has died, all processes are ended and Unavailable is raised.
+        its environments; these lists are joined, in the order of the environments. If
+        environments raise errors, the first one is raised after all processes have answered. If a
+        process has died, all processes are ended and Unavailable is raised.
         """
         if not self._finalizer.alive:
             raise gym.error.ClosedEnvironmentError("the processes of this batch have ended")

@@ -80,14 +80,14 @@ class TrainingRoutes:
 
 def pad_instance(instance: RouteInstance, checkpoints: int) -> RouteInstance:
     """Return an instance filled up to `checkpoints` with unreachable ones that have no prize."""
-    more = checkpoints + 1 - instance.size
+    more = checkpoints + 1 - instance.node_count
     if more == 0:
         return instance
-    arrival = np.insert(instance.arrival, [instance.size] * more, np.inf, axis=0)
+    arrival = np.insert(instance.arrival, [instance.node_count] * more, np.inf, axis=0)
     return replace(
         instance,
         arrival=np.pad(arrival, ((0, 0), (0, more)), constant_values=np.inf),
         prizes=np.pad(instance.prizes, (0, more)),
         before=np.pad(instance.before, (0, more)),
-        positions=np.insert(instance.positions, [instance.size] * more, 0.0, axis=0),
+        positions=np.insert(instance.positions, [instance.node_count] * more, 0.0, axis=0),
     )

@@ -27,7 +27,7 @@ def all_routes(env_instance):
 
     def extend(route, time, place, prize):
         routes.append((tuple(route), prize))
-        for node in range(1, env_instance.size):
+        for node in range(1, env_instance.node_count):
             if node in route:
                 continue
             if any(env_instance.before[k, node] and k not in route for k in range(node_count)):
@@ -37,7 +37,7 @@ def all_routes(env_instance):
                 won = prize + round(100 * env_instance.prizes[node])
                 extend([*route, node], arrived, node, won)
 
-    node_count = env_instance.size
+    node_count = env_instance.node_count
     extend([], 0.0, env_instance.start, 0)
     return routes
 
@@ -85,7 +85,9 @@ def test_the_problem_of_a_later_state_loses_nothing(number, checkpoints, failing
     while not over:
         open_problem = problem_from_observation(observation, instance.budget, Objective.PRIZE)
         known, place = instance.known_at(time), int(observation["place"])
-        assert open_problem.nodes == tuple(k for k in range(1, instance.size) if k not in done)
+        assert open_problem.nodes == tuple(
+            k for k in range(1, instance.node_count) if k not in done
+        )
         problem, nodes = open_problem.problem, [*open_problem.nodes, DOCK]
         assert problem.max_duration * TICK == instance.budget - time
         for row, a in enumerate([*open_problem.nodes, place]):

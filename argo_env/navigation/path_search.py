@@ -152,7 +152,8 @@ def entry_costs_and_times(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the costs and times (s) from each entry of a region to each of its states `ends`.
 
-    The states are in the region's own numbers. Both arrays have the shape (entries, ends).
+    The states are in the region's own numbers. Both arrays have the shape (entries, ends). Without
+    a path, the cost is inf and the time 0.
     """
     return area.trees_from_entries[0][:, ends], tree_times(
         lattice, area, area.trees_from_entries, ends

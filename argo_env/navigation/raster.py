@@ -59,7 +59,7 @@ class Columns:
 
 
 def rasterise(elements: tuple[Element, ...], grid: Grid) -> Columns:
-    """Return the entries of the elements' solids for each cell that they reach, sorted by cell."""
+    """Return a row for each solid of the elements and each cell that it reaches, sorted by cell."""
     parts = [
         (*_columns_of(solid, grid), element.role in WALKING_ROLES)
         for element in elements
@@ -79,7 +79,7 @@ def rasterise(elements: tuple[Element, ...], grid: Grid) -> Columns:
 def _columns_of(
     solid: Solid, grid: Grid
 ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Return cells, bottoms, tops, and tops at the cells' centres of one solid."""
+    """Return cells, a solid's lowest and highest point in each, and its top at each centre."""
     half = half_extents(solid)
     i0, i1 = _cells(solid.center[0], half[0], grid.x0, grid.nx)
     j0, j1 = _cells(solid.center[1], half[1], grid.y0, grid.ny)

@@ -125,7 +125,10 @@ class Landmarks:
 
 
 def _outermost(positions: NDArray[np.float64]) -> list[int]:
-    """Return the outermost state in each of _OUTER_LANDMARKS directions; of a tie, the middle."""
+    """Return the outermost state in each of _OUTER_LANDMARKS directions.
+
+    Of the states within 0.15 m of the outermost one, it is the one nearest to their middle.
+    """
     states = []
     for k in range(_OUTER_LANDMARKS):
         angle = 2 * math.pi * k / _OUTER_LANDMARKS
@@ -251,8 +254,8 @@ def make_partition(lattice: Lattice, cuts: Sequence[float], parts: Parts = NO_CA
 def repartition(partition: Partition, lattice: Lattice, changed: NDArray[np.bool_]) -> Partition:
     """Return the same partition for another lattice, with the same states but fewer moves.
 
-    `changed` is a mask of the states that moves are missing from. Regions without such states are
-    shared with `partition`, with all that has been computed of them.
+    `changed` is a mask of the states at which a missing move starts. Regions without such states
+    are shared with `partition`, with all that has been computed of them.
     """
     crossings = _crossings(lattice, partition.region)
     regions = [

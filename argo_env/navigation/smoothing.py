@@ -39,7 +39,7 @@ class FlatMap:
     grid: Grid
     free: NDArray[np.bool_]
     rims: NDArray[np.bool_]
-    """free cells beside a rim over which the robot must not turn"""
+    """free cells that no turn may touch: beside one more than TURNING_LEVEL higher or lower"""
 
     @staticmethod
     def at_height(surface: Surface, z: float) -> "FlatMap":
@@ -61,7 +61,7 @@ class FlatMap:
 
     @cached_property
     def _turning_border(self) -> Centers:
-        """Centres of the cells of the border and the rims."""
+        """Centres of the cells of the border, which are not free, and of the rims, which are."""
         return self._centers(self._beside_free | np.pad(self.rims, 2))
 
     @cached_property
@@ -88,7 +88,7 @@ class FlatMap:
 
     @cached_property
     def _turning_border_distance(self) -> NDArray[np.float64]:
-        """Distance (m) as `_border_distance`, to the nearest cell of the border or the rims."""
+        """Distance (m) as `_border_distance`, to the nearest cell of the border or of `rims`."""
         near = self._beside_free | np.pad(self.rims, 2)
         return np.where(np.pad(self.free, 2), _distances(near), 0.0)
 
@@ -129,7 +129,7 @@ class FlatMap:
         return not overlaps_cells(swept, MARGIN, yaw, x - a.x, y - a.y).any()
 
     def is_turn_clear(self, at: Pose, turn: float, footprint: Footprint) -> bool:
-        """Return True if the robot touches free cells only, and no rim, in a turn in place.
+        """Return True if the robot touches free cells only, and none of `rims`, in a turn in place.
 
         It turns by `turn` (rad, counter-clockwise) from the pose `at`.
         """

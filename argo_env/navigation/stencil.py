@@ -176,5 +176,5 @@ def turn_stencil(footprint: Footprint, heading: int, margin: float) -> Stencil:
 
 
 def heading_angle(heading: int) -> float:
-    """Return the angle (rad) of a lattice heading, which is its number from 0 to 7."""
+    """Return the angle (rad), pi/4 times the number, of a lattice heading numbered 0 to 7."""
     return heading * 2 * math.pi / HEADINGS

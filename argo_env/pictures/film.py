@@ -336,7 +336,7 @@ def write_film(
 
 
 def _spread_times(times: list[float]) -> list[float]:
-    """Return some of the times (s), as far apart as possible."""
+    """Return _PALETTE_SAMPLES of the times (s), evenly by index, or all if there are fewer."""
     picks = np.linspace(0, len(times) - 1, _PALETTE_SAMPLES).round().astype(int)
     return [times[k] for k in dict.fromkeys(picks.tolist())]
 

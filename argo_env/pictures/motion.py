@@ -42,16 +42,19 @@ class RecordedMotion:
         return float(self._times[-1])
 
     def pose_at(self, t: float) -> BodyPose:
-        """Return the robot's pose at the time t (s)."""
+        """Return the pose at the time t (s), interpolated; outside the path, its nearest end."""
         x, y, z, pitch, yaw = (float(np.interp(t, self._times, v)) for v in self._values.T)
         return BodyPose(x, y, z, yaw, pitch)
 
     def floor_at(self, t: float) -> int:
-        """Return the floor that the robot is on at the time t (s)."""
+        """Return the floor of the last sample up to the time t (s), or of the first one."""
         return self._floors[max(0, int(np.searchsorted(self._times, t, side="right")) - 1)]
 
     def joints_at(self, t: float) -> dict[str, float]:
-        """Return the positions of the robot's joints at the time t (s), in degrees, by name."""
+        """Return the positions of the robot's joints at the time t (s), in degrees, by name.
+
+        They are computed from the pitch and the times of the readings: the record has no joints.
+        """
         stairs = (abs(self.pose_at(t).pitch) - _STAIR_PITCH) / _PITCH_RAMP
         level = min(1.0, max(0.0, (1.0 - stairs) / 2))
         flippers = math.degrees(FLAT + level * (RAISED - FLAT))

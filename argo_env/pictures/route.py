@@ -127,7 +127,7 @@ def _path_points(
 
 
 def _tasks(planned: MissionProblem, route: Tour) -> Iterator[Task]:
-    """Yield the tasks that are always executed, and then the one of the end, if there is one."""
+    """Yield the tasks that are always executed, in the order of `route`, then that of the end."""
     visits = planned.visits
     for visit in route.order:
         yield visits.leaf_task(visits.task_units[visit].entry)
@@ -203,7 +203,10 @@ def _draw_floor(
 def _stations(
     planned: MissionProblem, travel: SiteTravel, site: Site
 ) -> list[tuple[float, float, int, str]]:
-    """Return the start and the end of the mission: x, y (m), floor and name."""
+    """Return the start of the mission and, if it has one elsewhere, the end.
+
+    Each is given as x, y (m), floor and name.
+    """
     start = travel.start_pose(planned.mission)
     end = planned.visits.chain.end
     dock = None if end is None else planned.visits.leaf_task(end).pose

@@ -24,7 +24,7 @@ def make_catalog(navigator: "Navigator") -> Catalog:
 
 
 def load_catalog(site: Site, parts: Parts) -> Catalog | None:
-    """Return the catalogue of a site with patrols from the disk cache; None if one is not there.
+    """Return the catalogue of a site from cached patrols; None if that of any floor is missing.
 
     `parts` is the site's entry of the cache.
     """

@@ -10,8 +10,9 @@ def inspection_views(mission: Mission, navigator: Navigator) -> dict[str, Inspec
     """Return the viewing pose for each checkpoint that a mission measures, by its `object_id`.
 
     They are the poses of a robot that executes the tasks in the order of the list and chooses by
-    itself from where it measures: the poses of MEASURE tasks are not used. Checkpoints that are not
-    on the site are left out. Raises Unreachable if a checkpoint has no viewing pose.
+    itself from where it measures: the poses of MEASURE tasks are not used. If a checkpoint is
+    measured several times, the pose is that of the first time. Checkpoints that are not on the site
+    are left out. Raises Unreachable if a checkpoint has no viewing pose.
     """
     known = {str(checkpoint.id): checkpoint for checkpoint in navigator.site.checkpoints}
     docks = navigator.site.docks

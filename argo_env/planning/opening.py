@@ -62,7 +62,8 @@ class OpenedSite:
     def from_site(site: Site, robot: RobotSpec | None = None) -> "OpenedSite":
         """Return an opened site for a site that was made in memory.
 
-        Equal sites that nothing has altered share one object. `robot` None: the tracker.
+        Equal sites share one object, unless their elements were replaced (`Site.altered`). `robot`
+        None: the tracker.
         """
         robot = robot or load_robot()
         if site.altered is None:

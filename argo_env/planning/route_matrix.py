@@ -65,7 +65,8 @@ def mission_travel(
     ArgoError if the robot can't execute a task.
 
     Args:
-        mission: Mission whose tasks are the rows and columns, apart from START.
+        mission: Mission whose tasks, without START, are the rows and columns; the pose at which it
+            starts is a row only.
         navigator: Navigator of the site.
         travel: Travel times on the site.
         chargers: True if the docking stations are rows and columns as well.
@@ -166,8 +167,8 @@ def _estimate_on_lattice(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return times (s) and energies (Wh) from origins (rows) to goals, with the actions there.
 
-    They are those of paths on the lattice; inf where there is no path. Energies are those of
-    driving up stairs, which takes the most.
+    They are those of paths on the lattice; inf where there is no path. All driving is counted with
+    the power of driving up stairs, which is the highest, so that energies are not too low.
     """
     distinct = list(dict.fromkeys([*origins, *end_poses]))
     index = {pose: k for k, pose in enumerate(distinct)}

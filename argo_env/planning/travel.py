@@ -181,7 +181,10 @@ class SiteTravel:
         return self._legs[key]
 
     def _find_path(self, origin: Pose, goal: str | Pose | None) -> Path | NoPath:
-        """Return the path to a pose, or to a viewing pose of a checkpoint by its `object_id`."""
+        """Return the path to a pose, or to a viewing pose of a checkpoint by its `object_id`.
+
+        If there is no path, or `goal` is None, it is a NoPath with the reason.
+        """
         key = origin, goal
         if key not in self._paths:
             goal_data = pose_data(goal) if isinstance(goal, Pose) else goal

@@ -44,10 +44,10 @@ class RecordingFile:
         self._failed = False
 
     def write(self, data: bytes) -> int:
-        """Write all of the data.
+        """Write all of the data and return their length.
 
-        After a failure, the file is truncated to the intact part, and nothing more is written, so
-        that it has no gap.
+        A call that fails truncates the file to its intact part and raises UnwritableRecording.
+        Calls after that write nothing, so that the file has no gap, and return the length as usual.
         """
         left = memoryview(data)
         try:

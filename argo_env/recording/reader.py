@@ -163,7 +163,7 @@ class Recording:
 
     @property
     def loss(self) -> str:
-        """Reason why the record is missing, in words."""
+        """Reason why the record is missing, in words; meaningless if `record` is not None."""
         if self.flaw is None:
             return f"the run broke off after {self.until:g} s"
         return f"the recording {self.flaw}"

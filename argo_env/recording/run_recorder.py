@@ -74,7 +74,7 @@ class BatteryState(Model):
 
 
 def make_mission_state(machine: Machine, done: int, readings: int, abnormal: int) -> MissionState:
-    """Return the state of the mission, from its machine and the numbers of the same names."""
+    """Return the state of the mission, from its machine and counts for the fields so named."""
     running = machine.running
     return MissionState(
         task=running.name if running else None,

@@ -46,19 +46,19 @@ class TopicWriter:
         self._write_message(topic, message.model_dump_json(exclude_none=True).encode(), t)
 
     def attach(self, name: str, media_type: str, content: str | bytes, t: float = 0.0) -> None:
-        """Store a file that belongs to the run, at the time t (s); by default do nothing."""
+        """Store a file of the run, at the time t (s); without an override, nothing is stored."""
 
     def write_metadata(self, name: str, facts: Mapping[str, str]) -> None:
-        """Store metadata under this name: texts by key; by default do nothing."""
+        """Store metadata under this name: texts by key; without an override, nothing is stored."""
 
     def flush_if_due(self, t: float) -> None:
-        """Store all messages so far if a period is over at time t (s); by default do nothing."""
+        """Store all messages if a period is over at time t (s); do nothing without an override."""
 
     def flush(self, t: float) -> None:
-        """Store all messages so far; t (s) is the present time. By default do nothing."""
+        """Store all messages; t (s) is the present time. Without an override, do nothing."""
 
     def close(self) -> None:
-        """Write what is pending and what completes the recording; by default do nothing."""
+        """Write what is pending and completes the recording; do nothing without an override."""
 
     @abstractmethod
     def _open_channel(self, topic: str, encoding: str, name: str, schema: bytes) -> None:

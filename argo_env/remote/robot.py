@@ -319,7 +319,8 @@ class RemoteRobot:
     def start(self, command: StartAction, now: float, arrival_path: Path | None) -> RobotAction:  # noqa: ARG002
         """Prepare the order of an action, which the next `advance` sends.
 
-        An action of the same run and id that the robot knows already continues.
+        If the robot already executes an action of the same run and id, it continues that action
+        instead of starting it again.
         """
         # An action by hand has no id, but no two start at the same time.
         id = f"{self._run}/{command.id}" if command.id else f"{self._run}/by hand at {now:g} s"

@@ -88,9 +88,10 @@ def _template() -> Template:
 
 
 def _findings(record: RunRecord) -> list[tuple[int | None, Anomaly]]:
-    """Return all findings and their ends, sorted by time, with their numbers in the drawings.
+    """Return a row for each finding and a further one for its end, if reported, sorted by time.
 
-    The number is None for an abnormal reading without an anomaly, which no drawing shows.
+    A row is the number in the drawings and the anomaly. The number is None for an abnormal reading
+    without an anomaly, which no drawing shows.
     """
     findings = {finding.number: finding for finding in record.findings}
     rows: list[tuple[int | None, Anomaly]] = [

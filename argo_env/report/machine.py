@@ -241,7 +241,10 @@ def _boxes(hfsm: Hfsm, rows: list[_Row], index: dict[str, int], left: float) -> 
 
 
 def _is_inside(row: _Row, depth: int) -> bool:
-    """Return True if the row belongs to the composite of this depth that the previous row is in."""
+    """Return True if the row after rows of a composite belongs to the composite as well.
+
+    `depth` is that of the composite's head and direct children: 1 for the machine itself.
+    """
     return row.depth > depth or (row.depth == depth and row.kind != "head")
 
 

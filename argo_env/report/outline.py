@@ -56,9 +56,10 @@ def height_range(solid: Solid) -> tuple[float, float]:
 def solids_on_floor(element: Element, z: float, storey: float) -> tuple[Solid, ...]:
     """Return the solids of the element that a plan of the floor at height `z` (m) shows.
 
-    For decks and the ground their top decides. A flight of stairs, a handrail or a railing is shown
-    on the floor whose height range contains the middle of its own. Equipment and columns are shown
-    on every floor that they reach into. `storey` is the height from floor to floor in m.
+    Decks and the ground are shown on the floor whose height range contains their top: from 0.2 m
+    below the floor to 0.3 m below the next one. A flight of stairs, a handrail or a railing is
+    shown where the range contains the middle of its own. Equipment and columns are shown on every
+    floor that they reach into. `storey` is the height from floor to floor in m.
     """
     low, high = z - 0.2, z + storey - 0.3
     if element.role in {Role.STAIR, Role.RAILING}:

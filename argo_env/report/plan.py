@@ -99,7 +99,7 @@ def _text(x: float, y: float, text: str, class_: str) -> Node:
 
 
 def _every(step: int, low: float, high: float) -> range:
-    """Return the multiples of `step` between the bounds."""
+    """Return the multiples of `step` from `low` to `high`, both included if they are multiples."""
     return range(math.ceil(low / step) * step, math.floor(high) + 1, step)
 
 
@@ -178,7 +178,10 @@ def _flags(canvas: Canvas, parts: list[list[PathSample]], record: RunRecord) -> 
 
 
 def _checkpoint(canvas: Canvas, checkpoint: SiteCheckpoint, measured: dict[int, bool]) -> Node:
-    """Draw the face as a dot, a line in its direction, and its id on the opposite side."""
+    """Draw the face as a dot, a line in its direction, and its id on the opposite side.
+
+    `measured` has the ids of measured checkpoints: True if the last value is normal.
+    """
     x, y = canvas.to_pixels(checkpoint.position[0], checkpoint.position[1])
     cos, sin = math.cos(checkpoint.yaw), math.sin(checkpoint.yaw)
     state = {None: "unread", True: "read", False: "read abnormal"}[measured.get(checkpoint.id)]

@@ -134,9 +134,9 @@ class Block:
 def blocks_by_group(record: RunRecord) -> tuple[Block, ...]:
     """Split the task runs of a record into blocks, each in one outermost group or in none.
 
-    The order of the task runs is kept. If a group consists of nothing but another group, the rounds
-    of the inner one count as well. A task that a reaction drives belongs to the block that the
-    reaction interrupts.
+    The order of the task runs is kept. If a group consists of nothing but another group, each round
+    of the inner one is a round of the block. A task that a reaction drives belongs to the block
+    that the reaction interrupts.
     """
     hfsm = record.hfsm
     outermost = _outermost(hfsm)

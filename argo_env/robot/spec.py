@@ -36,7 +36,7 @@ class MotionKind(StrEnum):
 def motion_kind(gear: int, on_stairs: bool) -> MotionKind:
     """Return the kind of a straight motion, forwards for gear +1 and backwards for gear -1.
 
-    On stairs, the robot's front is downhill.
+    On stairs, the robot's front is always downhill: forwards is down, and backwards is up.
     """
     if on_stairs:
         return MotionKind.DOWN if gear > 0 else MotionKind.UP
@@ -204,7 +204,7 @@ class RobotSpec(Model):
 
 @lru_cache
 def _joints(urdf: str) -> frozenset[str]:
-    """Return the names of a model's joints; raises ValueError if the model can't be read."""
+    """Return the names of the joints in a URDF file of the robots' folder, or raise ValueError."""
     from xml.parsers import expat  # faster to import than ElementTree
 
     names: set[str] = set()

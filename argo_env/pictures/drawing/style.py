@@ -87,7 +87,11 @@ def paint_ring(draw: ImageDraw.ImageDraw, position: Pixel, radius: float) -> Non
 def paint_robot(
     draw: ImageDraw.ImageDraw, position: Pixel, footprint: Footprint, scale: float, heading: float
 ) -> None:
-    """Draw the robot's footprint with its front; `scale` in px of the enlarged picture for 1 m."""
+    """Draw the robot's footprint with its front.
+
+    `scale` is in px of the enlarged picture for 1 m, `heading` in rad, counter-clockwise in the
+    picture from its x axis.
+    """
     front, rear, wide = (scale * v for v in (footprint.front, footprint.rear, footprint.half_width))
     for rim, ink in ((1.5 * FINER, PAPER), (0.0, ROBOT)):
         x0, x1, y = -rear - rim, front + rim, wide + rim
@@ -201,7 +205,7 @@ def _draw_entry(draw: ImageDraw.ImageDraw, text: str, x: float, y: float) -> flo
 def draw_length_scale(
     draw: ImageDraw.ImageDraw, sheet: FloorSheet, right: float, y: float
 ) -> float:
-    """Draw a bar of some metres that ends at x = `right`; return the x at which its text begins."""
+    """Draw a bar of some metres, up to x = `right`, after its text; return the text's left x."""
     metres = max((m for m in _BARS if m * sheet.scale <= _LONGEST), default=_BARS[0])
     left, tick, face = right - metres * sheet.scale, 4 * FINER, font(12)
     bar = [(left, y - tick), (left, y + tick), (left, y), (right, y), (right, y - tick)]

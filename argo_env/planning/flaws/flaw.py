@@ -50,7 +50,7 @@ def compass_direction(yaw: float) -> str:
 
 
 def obstructions_in_box(site: Site, low: Sequence[float], high: Sequence[float]) -> str:
-    """Return a text that lists the elements in a box, without those that the robot can stand on.
+    """Return a text that lists the elements that reach into a box, except those to stand on.
 
     An example is `a, b and 2 more things`; it is empty if there are none. `low` and `high` are the
     corners (m) of the box with the lowest and the highest coordinates.

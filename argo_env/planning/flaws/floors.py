@@ -47,7 +47,7 @@ def floor_flaws(states: SafeStates, navigator: Navigator) -> list[Flaw]:
 def unreached_floors(states: SafeStates) -> list[int]:
     """Return the numbers of the floors on which the robot can't reach any state, ascending.
 
-    It starts at the first docking station at which it can stand.
+    It starts at the first docking station at which it can stand; without one, all floors count.
     """
     floors = states.site.spec.floors
     return [f.number for f in floors if not states.reached[states.is_on_floor(f)].any()]

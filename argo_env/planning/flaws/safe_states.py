@@ -38,12 +38,12 @@ class SafeStates:
 
     @property
     def first_dock(self) -> int | None:
-        """First docking station at which the robot can stand; None if there is none."""
+        """Lowest number of a station at which the robot can stand; None if there is none."""
         return next((number for number, state in self.docks.items() if state is not None), None)
 
     @cached_property
     def reached(self) -> NDArray[np.bool_]:
-        """True for each state that can be reached from the first docking station and back."""
+        """Mask of the states that can be reached from the first usable dock, if any, and back."""
         if self.first_dock is None:
             return np.zeros(self.lattice.size, dtype=bool)
         return np.asarray(self.part == self.part[self.docks[self.first_dock]])

@@ -31,8 +31,8 @@ from argo_env.site.shapes import Vector, crossing
 def dock_flaws(states: SafeStates) -> list[Flaw]:
     """Return a flaw for each docking station at which the robot can't stand, or that is cut off.
 
-    A station is cut off if there is no path to it from the first usable one and back. If there is
-    neither, but the robot can't turn anywhere, that is the only flaw.
+    A station is cut off if there is no path to it from the first usable one and back. If no station
+    has such a flaw, but the robot can't turn anywhere, that is the only flaw.
     """
     flaws = [_unusable_dock(states, n) for n, state in states.docks.items() if state is None]
     for number, state in states.docks.items():
@@ -112,7 +112,7 @@ def checkpoint_flaws(
 ) -> list[Flaw]:
     """Return the flaws of checkpoints that can't be read.
 
-    There is one for each such checkpoint, but only one for all on the same `unreached` floor.
+    There is one for each such checkpoint, but only one for all on the same one of `merged_floors`.
     """
     site = navigator.site
     unseen = [site.checkpoint(id) for id in unseen_checkpoints(navigator)]
@@ -183,7 +183,10 @@ def _explain_unseen(states: SafeStates, navigator: Navigator, checkpoint: SiteCh
 
 
 def _find_hiding_element(site: Site, cameras: NDArray[np.float64], target: Vector) -> str:
-    """Return the name of the element that hides a point from most of the cameras, shape (n, 3)."""
+    """Return the name of the element that hides a point from the greatest number of cameras.
+
+    `cameras` are the positions (m) of the cameras, shape (n, 3), of which a sample is used.
+    """
     origins = cameras[:: max(1, len(cameras) // _SAMPLED)]
     low = np.minimum(origins.min(axis=0), target)
     high = np.maximum(origins.max(axis=0), target)

@@ -47,7 +47,7 @@ def play(
         policy: the policy.
         test_set: the test set.
         instances: number of its first instances to play.
-        seed: seed of the policy's random decisions in each episode.
+        seed: seed of the policy's random decisions, the same one for each episode.
         clock: clock that times the policy's decisions; by default that of the processor time.
 
     Raises:

@@ -53,7 +53,7 @@ def comparison_title(comparison: PolicyComparison) -> str:
     return f"{title}; no routes win more than {100 * comparison.open:.1f} % above the best known"
 
 
-def reference_warnings(comparison: PolicyComparison) -> list[str]:
+def beaten_reference_warnings(comparison: PolicyComparison) -> list[str]:
     """Return a warning for each policy that wins more on an instance than the best known route."""
     better: dict[str, list[BetterRoute]] = {}
     for route in comparison.better_routes:
@@ -109,7 +109,7 @@ def to_markdown(comparison: PolicyComparison) -> str:
     """Return title, table and warnings of a comparison as Markdown text."""
     rows = [COLUMNS, ("---",) * len(COLUMNS), *table_rows(comparison)]
     text = "".join(f"| {' | '.join(row)} |\n" for row in rows)
-    warnings = "".join(f"\n{warning}\n" for warning in reference_warnings(comparison))
+    warnings = "".join(f"\n{warning}\n" for warning in beaten_reference_warnings(comparison))
     return f"{comparison_title(comparison)}\n\n{text}{warnings}"
 
 
@@ -217,7 +217,7 @@ def _evaluate(options: argparse.Namespace) -> None:
             outcomes[name] = tuple(done)
         comparisons.append(compare_policies(test_set, outcomes, best[test_set.name], options.seed))
         console.print(make_table(comparisons[-1]))
-        for warning in reference_warnings(comparisons[-1]):
+        for warning in beaten_reference_warnings(comparisons[-1]):
             notes.print(f"WARNING: {warning}", style="bold red", highlight=False, soft_wrap=True)
         if options.out is not None:
             write_results(comparisons, options.out)

@@ -177,7 +177,9 @@ def _box_plot(name: str, gaps: dict[str, list[float]], picture: Path) -> Path:
     return _save(figure, picture)
 
 
-def plot_convergence(name: str, problem: RouteProblem, time_limit: float, picture: Path) -> Path:
+def plot_prize_and_bound(
+    name: str, problem: RouteProblem, time_limit: float, picture: Path
+) -> Path:
     """Search for a route; plot its prize and the bound on the prize over the time of the search.
 
     Args:
@@ -291,7 +293,9 @@ def _draw(options: argparse.Namespace) -> list[Path]:
         return [draw_tour(test_set, make_policy(options.policy), number, picture)]
     problem = hindsight_problem(test_set.family.source.draw(number)).problem
     picture = options.out / f"convergence-{test_set.name}-{number}.png"
-    return [plot_convergence(f"{test_set.name}, {number}", problem, options.time_limit, picture)]
+    return [
+        plot_prize_and_bound(f"{test_set.name}, {number}", problem, options.time_limit, picture)
+    ]
 
 
 if __name__ == "__main__":

@@ -20,12 +20,13 @@ class Policy(Protocol):
 
     name: str
 
-    def begin(self, observation: Observation, budget: float, seed: int) -> None:
+    def begin(self, observation: Observation, episode_time_budget: float, seed: int) -> None:
         """Prepare for an episode, before its first decision; by default do nothing.
 
         Args:
             observation: first observation of the episode.
-            budget: time budget in s; times in observations are shares of it.
+            episode_time_budget: time budget of the episode in simulated s; times in observations
+                are shares of it.
             seed: seed of all random decisions.
         """
 

@@ -114,7 +114,7 @@ class _Search:
         return int(time + self._travel[previous][self._end])
 
     def _insertions(self, order: list[int], visit: int) -> Iterator[tuple[int, int]]:
-        """Yield each index at which the visit may be inserted, with the time that it adds."""
+        """Yield each index that precedence allows for the visit, with the time that it adds."""
         if not self._predecessors[visit] <= set(order):
             return
         first = max((order.index(other) + 1 for other in self._predecessors[visit]), default=0)

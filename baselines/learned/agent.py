@@ -81,12 +81,12 @@ class LearnedPolicy:
         """Return a policy with the weights of a file, by default the shipped ones."""
         return cls(Scorer(path))
 
-    def begin(self, observation: Observation, budget: float, seed: int) -> None:
+    def begin(self, observation: Observation, episode_time_budget: float, seed: int) -> None:
         """Do nothing: there is nothing to prepare."""
 
     def act(self, observation: Observation) -> int:
-        nodes = open_nodes(observation)
-        return int(nodes[self.scorer(select_nodes(observation, nodes))[0].argmax()])
+        nodes = dock_and_open_nodes(observation)
+        return int(nodes[self.scorer(select_nodes_as_batch(observation, nodes))[0].argmax()])
 
 
 class SampledPolicy:
@@ -110,7 +110,7 @@ class SampledPolicy:
         """Return a policy with the weights of a file, by default the shipped ones."""
         return cls(Scorer(path), rollouts)
 
-    def begin(self, observation: Observation, budget: float, seed: int) -> None:  # noqa: ARG002
+    def begin(self, observation: Observation, episode_time_budget: float, seed: int) -> None:  # noqa: ARG002
         """Discard the plan of the last episode, and seed the draws."""
         self._rng = generator(seed, "sampled routes")
         self._matrix = None
@@ -134,14 +134,16 @@ class SampledPolicy:
         )
 
 
-def open_nodes(observation: Observation) -> NDArray[np.int64]:
+def dock_and_open_nodes(observation: Observation) -> NDArray[np.int64]:
     """Return the numbers of the dock and of all nodes that are legal or still have a prize."""
     is_open = (observation["prize"] > 0) | (observation["mask"] == 1)
     is_open[DOCK] = True
     return np.flatnonzero(is_open)
 
 
-def select_nodes(observation: Observation, nodes: NDArray[np.int64]) -> dict[str, NDArray[Any]]:
+def select_nodes_as_batch(
+    observation: Observation, nodes: NDArray[np.int64]
+) -> dict[str, NDArray[Any]]:
     """Return a copy of the observation with these nodes only, as a batch of one state."""
     selected = {name: observation[name][nodes] for name in ("travel", "home", "prize", "mask")}
     selected["left"] = observation["left"]
@@ -159,10 +161,10 @@ def best_rollout(
     of nodes, with the dock at the end. The first simulation chooses the highest scores; the others
     draw nodes with softmax probabilities of the scores (Gumbel-max trick).
     """
-    nodes = open_nodes(observation)
+    nodes = dock_and_open_nodes(observation)
     state = {
         name: np.repeat(array, rollouts, axis=0)
-        for name, array in select_nodes(observation, nodes).items()
+        for name, array in select_nodes_as_batch(observation, nodes).items()
     }
     rows, total = np.arange(rollouts), np.zeros(rollouts)
     steps: list[NDArray[np.int64]] = []
@@ -187,9 +189,9 @@ def _step(
     chosen: NDArray[np.int64],
     docked: NDArray[np.bool_],
 ) -> None:
-    """Apply the chosen nodes to the states of all rows, as the environment would.
+    """Change `state`, a batch, by the chosen node of each row, as the environment would.
 
-    Rows that are docked stay there.
+    `rows` are the indices of all rows. Rows that are docked stay there.
     """
     moving = chosen != DOCK
     took = np.where(docked, 0.0, state["travel"][rows, chosen])

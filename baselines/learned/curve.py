@@ -20,7 +20,7 @@ _SETS = {
 }
 
 
-def read_logs(folder: Path) -> dict[str, Points]:
+def read_points_by_tag(folder: Path) -> dict[str, Points]:
     """Return the values in the TensorBoard logs of a training, by tag.
 
     Raises ArgoError if there are no logs, or no part of the training is completed.
@@ -55,7 +55,7 @@ def draw_curve(logs: dict[str, Points], picture: Path) -> None:
 
 
 def _draw_set(panel: Axes, points: Points, lessons: int) -> None:
-    """Plot one validation set; the first `lessons` states are those of the lessons."""
+    """Plot one validation set; the first `lessons` states learned from are those of lessons."""
     steps = [step / 1e6 for step, _ in points]
     prizes = [prize for _, prize in points]
     panel.axvspan(0, lessons / 1e6, color="#e8eef4", label="lessons")
@@ -74,7 +74,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("picture", type=Path, metavar="PICTURE", help="a .png or .svg to write")
     options = parser.parse_args(arguments)
     try:
-        draw_curve(read_logs(options.folder), options.picture)
+        draw_curve(read_points_by_tag(options.folder), options.picture)
     except ArgoError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2

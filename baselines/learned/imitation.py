@@ -76,7 +76,7 @@ def make_lessons(source: RouteSource, size: int, count: int, seed: int) -> Lesso
 
 
 def _draw_problem(source: RouteSource, size: int, rng: np.random.Generator) -> tuple[Any, ...]:
-    """Draw a small problem: some checkpoints of an instance, a start and the time left.
+    """Draw a small problem: `size` checkpoints of an instance, a start and the time left.
 
     Returns the values of RemainingRoutes, of one route.
     """
@@ -116,7 +116,7 @@ def _nearest_neighbour_time(start: Floats, between: Floats, home: Floats) -> flo
 def _follow_route(
     oracle: Oracle, k: int, rng: np.random.Generator
 ) -> Iterator[tuple[dict[str, Floats], Floats, float]]:
-    """Yield the samples on a random route through problem k.
+    """Yield samples on a random route through problem k: observation, target, and prize to win.
 
     Most steps are drawn from the target distribution, the others from all legal actions.
     """
@@ -124,7 +124,7 @@ def _follow_route(
     travel, back, left = routes.start[k], routes.back[k], float(routes.left[k])
     budget = left
     while len(actions := oracle.legal_actions(k, visited, travel, left)):
-        prize, time = oracle.action_values(k, visited, travel, left, actions)
+        prize, time = oracle.action_prizes_and_times(k, visited, travel, left, actions)
         lost = (prize.max() - prize) / _PRIZE_SCALE
         best = time[prize >= prize.max() - 1e-5].min()
         lost = lost + np.maximum(time - best, 0.0) / left / _TIME_SCALE
@@ -177,11 +177,13 @@ def _observe(
     return {name: array.astype(np.float32) for name, array in observation.items()}
 
 
-def imitation_loss(network: RouteNetwork, lessons: Lessons) -> tuple[torch.Tensor, torch.Tensor]:
+def action_and_value_losses(
+    network: RouteNetwork, lessons: Lessons
+) -> tuple[torch.Tensor, torch.Tensor]:
     """Return the losses of the network's action distribution and of its value.
 
     The first is the Kullback-Leibler divergence from the target distribution in nats, the second
-    the mean squared error of the value, divided by the number of checkpoints.
+    the mean of the squared errors of the value; this mean is divided by the number of checkpoints.
     """
     observation = {name: torch.from_numpy(array) for name, array in lessons.observation.items()}
     scores, value = network(observation)

@@ -17,7 +17,7 @@ _TIE = 1e-4  # weight of the prize that decides between nodes with equal scores
 
 
 @torch.no_grad()
-def look_ahead(
+def rule_prizes_and_times_left(
     legal: Tensor, unvisited: Tensor, prize: Tensor, here: Tensor, home: Tensor, between: Tensor,
     before: Tensor,
 ) -> tuple[Tensor, Tensor]:  # fmt: skip

@@ -12,7 +12,7 @@ import torch
 from torch import Tensor, nn
 
 from argo_env.envs.route_instance import DOCK
-from baselines.learned.look_ahead import RULES, look_ahead
+from baselines.learned.look_ahead import RULES, rule_prizes_and_times_left
 
 WIDTH, HEADS, LAYERS = 64, 4, 3
 _NODE, _PAIR, _PAIR_WIDTH = 16 + 2 * RULES + 2, 8, 16
@@ -41,17 +41,19 @@ class RouteNetwork(nn.Module):
             Logits, shape (batch, n + 1), not masked; and the expected prize that will still be won,
             shape (batch, 1).
         """
-        scores, visited, prizes = self.node_outputs(observation)
+        scores, visited, prizes = self.next_and_visit_logits_and_prizes(observation)
         return scores, (prizes * torch.sigmoid(visited)).sum(dim=1, keepdim=True)
 
-    def node_outputs(self, observation: Mapping[str, Tensor]) -> tuple[Tensor, Tensor, Tensor]:
+    def next_and_visit_logits_and_prizes(
+        self, observation: Mapping[str, Tensor]
+    ) -> tuple[Tensor, Tensor, Tensor]:
         """Return the outputs for each node.
 
         Returns:
             Logits of being the next node; logits of being visited at all; and the prize that can be
             won, 0 at nodes out of reach. Each has the shape (batch, n + 1).
         """
-        nodes, pairs, open_, prizes = extract_features(observation)
+        nodes, pairs, open_, prizes = extract_features_open_nodes_and_prizes(observation)
         x = self.node(nodes)
         batch, size = open_.shape
         bias = self.pair(pairs).view(batch, size, size, len(self.layers), -1).permute(3, 0, 4, 1, 2)
@@ -89,7 +91,9 @@ class _Layer(nn.Module):
         return x
 
 
-def extract_features(observation: Mapping[str, Tensor]) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+def extract_features_open_nodes_and_prizes(
+    observation: Mapping[str, Tensor],
+) -> tuple[Tensor, Tensor, Tensor, Tensor]:
     """Compute the inputs of the network from an observation.
 
     Returns:
@@ -115,7 +119,7 @@ def extract_features(observation: Mapping[str, Tensor]) -> tuple[Tensor, Tensor,
     mean = prizes.sum(dim=1, keepdim=True) / count + 1e-6
 
     choices = legal & ~dock
-    won, spare = look_ahead(choices, unvisited, prize, here, home, between, before)
+    won, spare = rule_prizes_and_times_left(choices, unvisited, prize, here, home, between, before)
     ahead = _look_ahead_features(won, spare, prizes, mean) * choices[:, :, None]
 
     here, home, between = here.clamp_max(_FAR), home.clamp_max(_FAR), between.clamp_max(_FAR)

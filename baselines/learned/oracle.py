@@ -66,7 +66,7 @@ class Oracle:
 
         Args:
             k: index of the route in the batch.
-            visited: set of visited checkpoints.
+            visited: set of visited checkpoints, as a mask with bit i for checkpoint i.
             travel: times in s from the robot's node to the end of a visit of each checkpoint.
             left: time left in s.
         """
@@ -74,7 +74,7 @@ class Oracle:
         free &= (self._predecessors[k] & ~np.int32(visited)) == 0
         return np.flatnonzero(free & (travel + self.routes.home[k] <= left)).astype(np.int32)
 
-    def action_values(
+    def action_prizes_and_times(
         self, k: int, visited: int, travel: Floats, left: float, actions: Ints
     ) -> tuple[Floats, Floats]:
         """Return the values of legal actions on route k; see `legal_actions` for the arguments.
@@ -111,7 +111,7 @@ def _docking_times(routes: RemainingRoutes, predecessors: Ints) -> Floats:
     """Return the least time in s to visit all of a set and dock, from each checkpoint.
 
     The shape is (batch, 2^m, m): set, then checkpoint from which the robot departs; inf: impossible
-    in any order that precedence allows.
+    in any order that precedence within the set allows. A checkpoint in the set is no valid start.
     """
     batch, m = routes.prizes.shape
     table = np.full((1 << m, batch, m), np.inf, np.float32)

@@ -20,7 +20,7 @@ from stable_baselines3.common.utils import set_random_seed
 from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.base.stages import ProgressReporter, stage
 from argo_env.seeding import generator
-from baselines.learned.imitation import imitation_loss, make_lessons
+from baselines.learned.imitation import action_and_value_losses, make_lessons
 from baselines.learned.network import RouteNetwork
 from baselines.learned.policy import RoutePolicy
 from baselines.learned.sources import SITES, TrainingRoutes
@@ -182,7 +182,9 @@ def _train_on_lessons(state: TrainingState, logger: Logger) -> None:
             for number, b in enumerate(rng.permutation(len(batches))):
                 report((done + number / len(batches)) / _PASSES, _loss_text(losses))
                 k, rows = batches[b]
-                actions, value = imitation_loss(state.network, lessons[k].select_samples(rows))
+                actions, value = action_and_value_losses(
+                    state.network, lessons[k].select_samples(rows)
+                )
                 optimiser.zero_grad()
                 (actions + value).backward()  # type: ignore[no-untyped-call]
                 torch.nn.utils.clip_grad_norm_(state.network.parameters(), 1.0)

@@ -57,7 +57,7 @@ class RouteVecEnv(VecEnv):
     def env_method(
         self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any
     ) -> list[Any]:
-        """Return the action mask of each route, shape (n + 1,).
+        """Return the action mask of each route, shape (n + 1,), whatever the `indices`.
 
         Raises:
             NotImplementedError: The method is not `action_masks`, the only one.

@@ -130,12 +130,12 @@ def test_the_title_states_missing_proofs():
     assert (comparison.proven, comparison.open) == (1, pytest.approx(0.1))
     title = evaluate.comparison_title(comparison)
     assert "is proven optimal for 1; no routes win more than 10.0 % above" in title
-    assert not evaluate.reference_warnings(comparison)
+    assert not evaluate.beaten_reference_warnings(comparison)
 
 
 def test_a_policy_that_beats_the_best_known_is_reported(monkeypatch, capsys):
     comparison = comparison_of({"mine": ([4.5, 6.0], 1.0), "other": ([4.0, 5.0], 1.0)}, KNOWN)
-    (warning,) = evaluate.reference_warnings(comparison)
+    (warning,) = evaluate.beaten_reference_warnings(comparison)
     assert "mine BEATS the best known routes of random-20-v1 on 1 of 2 instances" in warning
     assert "first 1000000: 4.50, known 4.00" in warning
     assert "mine BEATS" in evaluate.to_markdown(comparison)

@@ -9,7 +9,7 @@ torch = pytest.importorskip("torch")
 
 from argo_env.envs.route import RouteEnv  # noqa: E402
 from argo_env.envs.route_sources import RandomRoutes  # noqa: E402
-from baselines.learned.look_ahead import POWERS, look_ahead  # noqa: E402
+from baselines.learned.look_ahead import POWERS, rule_prizes_and_times_left  # noqa: E402
 from tests.conftest import examples  # noqa: E402
 
 
@@ -27,7 +27,7 @@ def test_the_look_ahead_wins_what_the_rules_win(number: int, size: int, moves: i
     tensors = {name: torch.from_numpy(np.asarray(a)[None]) for name, a in observation.items()}
     legal = tensors["mask"].bool()
     legal[:, 0] = False
-    won, spare = look_ahead(
+    won, spare = rule_prizes_and_times_left(
         legal,
         tensors["prize"] > 0,
         tensors["prize"],

@@ -39,7 +39,7 @@ def test_values_are_those_of_the_best_order(
     if not len(actions):
         assert all(score_route(instance, [k]).illegal for k in range(1, size + 1))
         return
-    prizes, times = oracle.action_values(0, 0, start, left, actions)
+    prizes, times = oracle.action_prizes_and_times(0, 0, start, left, actions)
     for action in range(1, size + 1):
         scores = [
             score

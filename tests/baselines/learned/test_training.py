@@ -126,7 +126,7 @@ def test_the_curve_is_drawn_from_the_logs(
     picture = tmp_path / "curve.png"
     assert curve.main([str(trained[0]), str(picture)]) == 0
     assert picture.stat().st_size > 10_000
-    logs = curve.read_logs(trained[0])
+    logs = curve.read_points_by_tag(trained[0])
     assert len(logs["validation/random-20"]) == 3
     assert "rollout/ep_rew_mean" in logs
 

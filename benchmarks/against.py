@@ -33,23 +33,23 @@ Work = Callable[[], object]
 """Function that is timed; each call does the same work, or the next piece of it."""
 
 
-def prepare_random_drive(*, turning: bool = False) -> Work:
+def prepare_random_drive(*, only_turning: bool = False) -> Work:
     """Return a function that makes 50 steps of Drive-v0 with random actions.
 
-    This is as at the start of training. With `turning` the robot only turns to and fro, where there
-    is room for it.
+    This is as at the start of training. With `only_turning` the robot only turns to and fro, where
+    there is room for it.
     """
     import numpy as np
 
     env = _drive_env(3)
     actions = np.random.default_rng(0).uniform(-1.0, 1.0, (50, 3)).astype(np.float32)
-    if turning:
+    if only_turning:
         actions[:, 0] = 0.0
 
     def work() -> None:
         for action in actions:
             *_, info = env.step(action)
-            assert not (turning and info["touched"])
+            assert not (only_turning and info["touched"])
 
     return work
 
@@ -76,12 +76,12 @@ def prepare_mission_run(
     file: str = "mission_1.txt",
     areas: Sequence[int] = (1, 2),
     *,
-    again: bool = False,
+    warmed_up: bool = False,
 ) -> Work:
     """Return a function that runs a shipped mission once with a drive.
 
-    The first run in a process also imports the simulator and plans the paths; with `again` such a
-    run is made beforehand, without being timed.
+    The site is opened here. The first run in a process also imports the simulator and plans the
+    paths; with `warmed_up` such a run is made beforehand, without being timed.
     """
     from argo_env.planning import open_site
     from argo_env.run.session import simulate
@@ -92,17 +92,17 @@ def prepare_mission_run(
     upload = Upload(file, (MISSIONS / file).read_bytes())
     mission = import_mission(upload, site, *areas).mission
     spec = RunSpec(mission=mission, drive=drive)
-    if again:
+    if warmed_up:
         simulate(spec, site)
     return lambda: simulate(spec, site)
 
 
-def prepare_episodes(seeds: Sequence[int], *, again: bool = False) -> Work:
+def prepare_episodes(seeds: Sequence[int], *, warmed_up: bool = False) -> Work:
     """Return a function that runs an episode of Inspect-v0 of at most 40 random legal actions.
 
-    Each call takes the next of the seeds. As at the start of training, most paths are planned for
-    the first time. With `again` an episode of each seed is run beforehand, so that the paths are
-    known, as later in training.
+    Each call takes the next of the seeds, after the last the first. As at the start of training,
+    most paths are planned for the first time. With `warmed_up` an episode of each seed is run
+    beforehand, so that the paths are known, as later in training.
     """
     import gymnasium as gym
     import numpy as np
@@ -123,7 +123,7 @@ def prepare_episodes(seeds: Sequence[int], *, again: bool = False) -> Work:
             if terminated or truncated:
                 return
 
-    for _ in seeds if again else ():
+    for _ in seeds if warmed_up else ():
         work()
     return work
 
@@ -174,16 +174,16 @@ def prepare_film() -> Work:
 
 
 CASES: dict[str, tuple[Callable[[], Work], int]] = {
-    "drive-free": (partial(prepare_random_drive, turning=True), 4),
+    "drive-free": (partial(prepare_random_drive, only_turning=True), 4),
     "drive-random": (prepare_random_drive, 4),
     "drive-contact": (prepare_contact_drive, 4),
-    "kinematic": (partial(prepare_mission_run, "kinematic", again=True), 3),
+    "kinematic": (partial(prepare_mission_run, "kinematic", warmed_up=True), 3),
     "kinematic-first": (partial(prepare_mission_run, "kinematic"), 1),
     "kinematic-rounds": (partial(prepare_mission_run, "kinematic", "protocol_3.txt", ()), 1),
     "tracked": (partial(prepare_mission_run, "tracked"), 1),
-    "route": (partial(prepare_mission_run, "route", again=True), 10),
+    "route": (partial(prepare_mission_run, "route", warmed_up=True), 10),
     "inspect": (partial(prepare_episodes, range(1_000_000)), 3),
-    "inspect-known": (partial(prepare_episodes, range(3), again=True), 3),
+    "inspect-known": (partial(prepare_episodes, range(3), warmed_up=True), 3),
     "import": (prepare_import, 1),
     "report": (prepare_report, 1),
     "film": (prepare_film, 1),
@@ -226,7 +226,7 @@ def compare_case(name: str, before: Path, caches: Path, repeats: int) -> str:
     """Time a case in both checkouts in turn, and return its line of the table."""
     times = [
         [
-            time_in_process(name, root, caches / cache)
+            wall_and_cpu_time_in_process(name, root, caches / cache)
             for root, cache in ((before, "before"), (ROOT, "today"))
         ]
         for _ in range(repeats + 1)
@@ -242,7 +242,7 @@ def compare_case(name: str, before: Path, caches: Path, repeats: int) -> str:
     )
 
 
-def time_in_process(name: str, root: Path, cache: Path) -> tuple[float, float]:
+def wall_and_cpu_time_in_process(name: str, root: Path, cache: Path) -> tuple[float, float]:
     """Time a case in a new process with the code of a checkout; return wall and CPU time (s)."""
     environment = os.environ | {"PYTHONPATH": str(root), "ARGO_CACHE_DIR": str(cache)}
     command = (sys.executable, __file__, "--time", name, str(root))
@@ -253,7 +253,7 @@ def time_in_process(name: str, root: Path, cache: Path) -> tuple[float, float]:
     return wall, cpu
 
 
-def time_in_this_process(name: str, root: str) -> None:
+def print_times_in_this_process(name: str, root: str) -> None:
     """Time a case in this process, and print wall and processor time (s) as JSON."""
     import argo_env
 
@@ -269,6 +269,6 @@ def time_in_this_process(name: str, root: str) -> None:
 
 if __name__ == "__main__":
     if sys.argv[1:2] == ["--time"]:
-        time_in_this_process(*sys.argv[2:])
+        print_times_in_this_process(*sys.argv[2:])
     else:
         main()

@@ -176,7 +176,7 @@ def time_stages(text: str, catalog: Catalog) -> dict[str, float]:
     return seconds
 
 
-def peak_memory(text: str, catalog: Catalog) -> float:
+def peak_memory_mb(text: str, catalog: Catalog) -> float:
     """Return the peak memory of Python objects from the text to an executor, in MB."""
     tracemalloc.start()
     mission = resolve_script(parse(text, *_parse_arguments(catalog)), catalog).mission
@@ -186,7 +186,7 @@ def peak_memory(text: str, catalog: Catalog) -> float:
     return peak / 1e6
 
 
-def time_flat_statemachine(states: int) -> float:
+def seconds_to_build_flat_statemachine(states: int) -> float:
     """Return the CPU seconds to declare and create a chain of states in python-statemachine."""
     from statemachine import State, StateMachine
 
@@ -233,12 +233,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
             growth = f"{each / before[stage]:.2f}" if stage in before else ""
             print(f"{size:>7} {stage:<9} {median:>9.3f} {each:>9.1f} {growth:>16}")
             before[stage] = each
-        memory = peak_memory(text, catalog)
+        memory = peak_memory_mb(text, catalog)
         print(f"{size:>7} {'memory':<9} {memory:>9.0f} MB for {len(text) / 1e6:.1f} MB of text\n")
     if importlib.util.find_spec("statemachine") is None:
         print("python-statemachine is not installed: no flat machine to compare with")
         return
-    seconds = time_flat_statemachine(options.states)
+    seconds = seconds_to_build_flat_statemachine(options.states)
     print(
         f"python-statemachine, {options.states} flat states: {seconds:.3f} s,"
         f" {seconds / options.states * 1e6:.1f} µs/state"

@@ -43,7 +43,7 @@ from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
 from argo_env.seeding import generator
 from argo_env.world.world import World
-from benchmarks.fitting import TimedDrive, fit_calibration, prediction_errors
+from benchmarks.fitting import TimedDrive, fit_calibration, measured_minus_predicted_seconds
 from benchmarks.options import parse_seed
 
 CHEAP = ("route", "kinematic")
@@ -111,7 +111,7 @@ class DriveWithMotion(Drive, Protocol):
     def motion(self) -> Motion | None: ...
 
 
-def time_motions(
+def time_motions_and_count_failed_paths(
     navigator: Navigator,
     seed: int,
     make: Callable[[World, RobotSpec], DriveWithMotion] = TrackedDrive,
@@ -186,7 +186,7 @@ def _run(job: tuple[int, str]) -> Run:
 
 def _time_motions(seed: int) -> tuple[list[TimedDrive], int]:
     assert _navigator
-    return time_motions(_navigator, seed)
+    return time_motions_and_count_failed_paths(_navigator, seed)
 
 
 def error_table(runs: list[Run]) -> Iterator[str]:
@@ -226,7 +226,7 @@ def describe_fit(drives: list[TimedDrive], robot: RobotSpec, source: str) -> lis
 
     `source` says on which missions the drives were timed.
     """
-    errors = prediction_errors(drives, robot)
+    errors = measured_minus_predicted_seconds(drives, robot)
     seconds = np.array([d.seconds for d in drives])
     lines = [
         "Made by `python -m benchmarks.drives --fit` from the motions of the tracked drive in",

@@ -285,7 +285,7 @@ def measure_inspect(options: argparse.Namespace) -> None:
     measure_pybullet_peers(options)
 
 
-def measure_resets(options: argparse.Namespace) -> None:
+def measure_memory_over_resets(options: argparse.Namespace) -> None:
     """Print the growth of memory over many resets of each environment."""
     count = options.count or 1000
     for id in ENVIRONMENTS:
@@ -310,7 +310,7 @@ def measure_resets(options: argparse.Namespace) -> None:
         env.close()
 
 
-def measure_expert(options: argparse.Namespace) -> None:
+def measure_expert_success(options: argparse.Namespace) -> None:
     """Print how often the expert reaches goals on UMAD: on the same floor, upwards, downwards."""
     wrapped = gym.make("argo/Drive-v0", max_way=options.max_way, disable_env_checker=True)
     env: Any = wrapped.unwrapped
@@ -338,7 +338,7 @@ def measure_expert(options: argparse.Namespace) -> None:
     env.close()
 
 
-def measure_batches(options: argparse.Namespace) -> None:
+def measure_batch_speedup(options: argparse.Namespace) -> None:
     """Print the speed-up of a batch by several processes, relative to one.
 
     One and several processes alternate. Each line states the processor time of other load in the
@@ -358,7 +358,11 @@ def batch_rate(id: str, count: int, processes: int, seed: int, steps: int) -> fl
     batch: Any = gym.make_vec(id, count, processes=processes).unwrapped
     rng = np.random.default_rng(seed)
     observation, _ = batch.reset(seed=100 * seed)
-    begun, all_before, own_before = time.perf_counter(), all_processor_time(), own_processor_time()
+    begun, all_before, own_before = (
+        time.perf_counter(),
+        machine_processor_time(),
+        own_and_children_processor_time(),
+    )
     for _ in range(steps):
         if "mask" in observation:
             mask = observation["mask"]
@@ -367,8 +371,8 @@ def batch_rate(id: str, count: int, processes: int, seed: int, steps: int) -> fl
             actions = rng.uniform(-1.0, 1.0, batch.action_space.shape).astype(np.float32)
         observation, *_ = batch.step(actions)
     wall = time.perf_counter() - begun
-    own = own_processor_time() - own_before
-    others = max(0.0, all_processor_time() - all_before - own)
+    own = own_and_children_processor_time() - own_before
+    others = max(0.0, machine_processor_time() - all_before - own)
     batch.close()
     rate = count * steps / wall
     print(
@@ -379,14 +383,14 @@ def batch_rate(id: str, count: int, processes: int, seed: int, steps: int) -> fl
     return rate
 
 
-def own_processor_time() -> float:
+def own_and_children_processor_time() -> float:
     """Return the processor time (s) of this process and its living children."""
     pids = Path(f"/proc/self/task/{os.getpid()}/children").read_text().split()
     stats = [Path(f"/proc/{pid}/stat").read_text() for pid in [str(os.getpid()), *pids]]
     return sum(sum(map(int, stat.rsplit(")", 1)[1].split()[11:13])) for stat in stats) / _TICK
 
 
-def all_processor_time() -> float:
+def machine_processor_time() -> float:
     """Return the processor time (s) of all processes on the machine."""
     fields = [int(field) for field in Path("/proc/stat").read_text().split("\n")[0].split()[1:9]]
     return (sum(fields) - fields[3] - fields[4]) / _TICK
@@ -419,9 +423,9 @@ PARTS: dict[str, Callable[[argparse.Namespace], None]] = {
     "route": measure_route,
     "drive": measure_drive,
     "inspect": measure_inspect,
-    "resets": measure_resets,
-    "expert": measure_expert,
-    "batches": measure_batches,
+    "resets": measure_memory_over_resets,
+    "expert": measure_expert_success,
+    "batches": measure_batch_speedup,
 }
 
 if __name__ == "__main__":

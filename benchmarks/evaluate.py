@@ -118,7 +118,7 @@ def measure_backend(name: str, drive: str, runs: int) -> None:
     )
 
 
-def show_power(comparisons: int) -> None:
+def show_comparison_power(comparisons: int) -> None:
     """Print the power of comparisons, and how often they find a difference where there is none."""
     rng = np.random.default_rng(0)
     for worlds in (100, 300, 1_000):
@@ -161,7 +161,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     )
     options = parser.parse_args(arguments)
     if options.power:
-        show_power(options.comparisons)
+        show_comparison_power(options.comparisons)
         return
     for name in options.backend:
         for drive, runs in (("route", options.runs), ("kinematic", options.kinematic)):

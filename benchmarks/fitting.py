@@ -59,13 +59,18 @@ def fit_calibration(drives: Iterable[TimedDrive], robot: RobotSpec) -> Calibrati
 
 
 def nominal_seconds(motion: Motion, robot: RobotSpec, velocity: float | None = None) -> float:
-    """Return the seconds that a motion would take at the commanded speed throughout."""
+    """Return the seconds that a motion would take at the commanded speed throughout.
+
+    `velocity` (m/s) applies as in `Motion.speed`, and has no effect on turns.
+    """
     if motion.turn:
         return abs(motion.turn) / robot.target_speed(motion.kind)
     return motion.length / motion.speed(robot, velocity)
 
 
-def prediction_errors(drives: Sequence[TimedDrive], robot: RobotSpec) -> NDArray[np.float64]:
+def measured_minus_predicted_seconds(
+    drives: Sequence[TimedDrive], robot: RobotSpec
+) -> NDArray[np.float64]:
     """Return measured minus predicted seconds of each drive, shape (n,)."""
     return np.array(
         [d.seconds - sum(m.duration(robot, d.velocity) for m in d.motions) for d in drives]

@@ -348,7 +348,7 @@ for name in MISSING:
     del MACHINES[name]
 
 
-def measure_rates(
+def measure_median_rates(
     count: int, repeats: int, machines: Mapping[str, tuple[Callable[[], Run], bool]] = MACHINES
 ) -> dict[str, float]:
     """Return the events per second of each machine, the medians of the repeats.
@@ -375,7 +375,7 @@ def measure_rates(
 
 def print_rates(count: int, repeats: int) -> None:
     """Print the table of events per second, the fastest machine first."""
-    rates = measure_rates(count, repeats)
+    rates = measure_median_rates(count, repeats)
     peers = [rates[name] for name, (_, nested) in MACHINES.items() if nested and name != "Argo"]
     fastest = max(peers, default=math.nan)
     print(f"{count} events, median of {repeats} repeats, CPU time\n")
@@ -386,7 +386,7 @@ def print_rates(count: int, repeats: int) -> None:
         print(f"not installed: {'; '.join(MISSING)}")
 
 
-def print_states() -> None:
+def print_state_counts() -> None:
     """Print the number of states of a mission with pause, stop, return home and recharging."""
     dock = Pose(x=0, y=0, z=0)
     mission = Mission(
@@ -416,7 +416,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--states", action="store_true", help="count states instead")
     options = parser.parse_args(arguments)
     if options.states:
-        print_states()
+        print_state_counts()
     else:
         print_rates(options.events, options.repeats)
 

@@ -277,10 +277,10 @@ class _Keywords:
 
 
 def _parse_keywords(file: _File) -> _Keywords:
-    """Return the keywords and sections of a file.
+    """Return the keywords and sections of a file; the lines of sections are not checked.
 
     Raises:
-        ArgoError: A line is neither keyword nor number, or repeats a keyword.
+        ArgoError: A line outside sections is no keyword, or one other than COMMENT is repeated.
     """
     values: dict[str, tuple[int, str]] = {}
     sections: dict[str, range] = {}

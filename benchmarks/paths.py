@@ -100,7 +100,7 @@ def measure_paths(name: str, count: int) -> Navigator:
         elapsed = cpu_seconds(lambda: navigator.turning_poses(1))
         print(f"  positions to turn at on the ground floor: {1e3 * elapsed:.1f} ms")
     dock, goal = site.docks[1], ids[min(7, len(ids) - 1)]
-    brick = brick_on_path(navigator.plan_to_view(dock, goal))
+    brick = brick_on_longest_motion(navigator.plan_to_view(dock, goal))
     elapsed = cpu_seconds(lambda: navigator.with_blockages([brick]).plan_to_view(dock, goal))
     print(f"  avoiding a blockage, and the first path round it: {1e3 * elapsed:.0f} ms")
     return navigator
@@ -136,15 +136,15 @@ def _range_text(values: np.ndarray) -> str:
     return f"{values.min():.3f} to {values.max():.3f}"
 
 
-def brick_on_path(path: Path) -> Blockage:
-    """Return a blockage of 0.8 m by 0.4 m in the middle of the longest motion of a path."""
+def brick_on_longest_motion(path: Path) -> Blockage:
+    """Return a brick, 0.8 m along x by 0.4 m along y, in the middle of a path's longest motion."""
     middle = max(path.motions, key=lambda motion: motion.length).pose_at(0.5)
     x, y = middle.x, middle.y
     return Blockage((x - 0.4, y - 0.2, x + 0.4, y + 0.2), middle.z, "a brick")
 
 
-def measure_matrices(navigator: Navigator, name: str) -> None:
-    """Print the times of travel-time matrices on the navigator's site and on the site `name`."""
+def measure_matrices(navigator: Navigator, generated_site: str) -> None:
+    """Print the times of travel-time matrices on the navigator's site and on a generated site."""
     fresh = Navigator(navigator.site, navigator.robot)
     fresh.prepare()
     ids = [c.id for c in fresh.site.checkpoints]
@@ -154,9 +154,9 @@ def measure_matrices(navigator: Navigator, name: str) -> None:
         f"Travel times of {len(ids)} checkpoints on {fresh.site.name}: {first:.2f} s, "
         f"again {again:.2f} s"
     )
-    print(f"{name}:")
+    print(f"{generated_site}:")
     started = time.process_time()
-    large = generate(parse_family(name))
+    large = generate(parse_family(generated_site))
     print(f"  generated and checked in {time.process_time() - started:.1f} s; {memory_text()}")
     ids = [c.id for c in large.site.checkpoints]
     print(f"  {large.lattice.size} states, {large.lattice.costs.nnz} moves")

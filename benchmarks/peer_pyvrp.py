@@ -109,7 +109,7 @@ def _times_with_service(problem: RouteProblem) -> NDArray[np.int64]:
 
 
 def _prize_value(problem: RouteProblem, times: NDArray[np.int64]) -> int:
-    """Return the value of one unit of prize in units of cost."""
+    """Return a cost that one unit of prize is worth, above that of any route; 1 without prizes."""
     if not problem.selective:
         return 1
     if problem.max_duration is not None:

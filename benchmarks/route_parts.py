@@ -34,7 +34,7 @@ class Gain:
     without: RouteSuggestion
 
     @property
-    def better(self) -> int:
+    def sign(self) -> int:
         """1 if the route is better with the part than without it, -1 if worse, 0 if as good.
 
         Any route is better than none, then a higher prize counts, then a lower cost.
@@ -43,14 +43,14 @@ class Gain:
         return (with_it > without) - (with_it < without)
 
     @property
-    def prize(self) -> float:
-        """Share of the prize with the part that is lost without it."""
+    def lost_prize_share(self) -> float:
+        """Share of the prize with the part that is lost without it; negative if more is won."""
         return (self.with_it.prize - self.without.prize) / max(1, self.with_it.prize)
 
     @property
-    def cost(self) -> float:
+    def relative_cost_increase(self) -> float:
         """Relative increase of the cost without the part; 0 without routes of equal prize."""
-        comparable = self.with_it.route and self.without.route and not self.prize
+        comparable = self.with_it.route and self.without.route and not self.lost_prize_share
         return (
             (self.without.cost - self.with_it.cost) / max(1, self.with_it.cost) * bool(comparable)
         )
@@ -66,9 +66,9 @@ def summary_line(part: str, gains: Sequence[Gain]) -> str:
     missing = sum(g.with_it.route is not None for g in gains) - sum(
         g.without.route is not None for g in gains
     )
-    prize, cost = np.mean([(g.prize, g.cost) for g in gains], axis=0)
+    prize, cost = np.mean([(g.lost_prize_share, g.relative_cost_increase) for g in gains], axis=0)
     return (
-        f"{part:<22}{sum(g.better > 0 for g in gains):>6}{sum(g.better < 0 for g in gains):>8}"
+        f"{part:<22}{sum(g.sign > 0 for g in gains):>6}{sum(g.sign < 0 for g in gains):>8}"
         f"{100 * prize:>9.2f} %{100 * cost:>9.2f} %{lost:>8}{missing:>9}"
     )
 
@@ -79,13 +79,13 @@ HEADER = (
 
 
 def random_problems(
-    kinds: Sequence[str], count: int, size: int, seed: int
+    kinds: Sequence[str], count: int, max_size: int, seed: int
 ) -> Iterator[RouteProblem]:
-    """Yield `count` random problems of each kind, the kinds in turn."""
+    """Yield `count` random problems of each kind, alternating; at most `max_size` visits each."""
     for number in range(count):
         for kind in kinds:
             rng = np.random.default_rng([seed, number, sum(kind.encode())])
-            problem = random_problem(max(4, int(rng.integers(size // 2, size + 1))), rng)
+            problem = random_problem(max(4, int(rng.integers(max_size // 2, max_size + 1))), rng)
             yield KINDS[kind](problem, rng)
 
 

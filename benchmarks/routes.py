@@ -48,18 +48,21 @@ class Peer:
     """function that returns the best route that it finds within a time (s) with a seed"""
 
 
-def find_files(folder: Path, only: str) -> list[Path]:
-    """Return the problem files in a folder and below, sorted; raises ArgoError if it has none."""
+def find_files(folder: Path, pattern: str) -> list[Path]:
+    """Return a folder's problem files, with those in subfolders, whose names match; sorted.
+
+    Raises ArgoError if there are none.
+    """
     if not folder.is_dir():
         raise ArgoError(f"{folder} is not a folder; name one with TSPLIB, OPLib or TSPTW files")
     paths = sorted(
         path
         for path in folder.rglob("*")
-        if path.suffix in ENDINGS and (path.match(only) or Path(path.stem).match(only))
+        if path.suffix in ENDINGS and (path.match(pattern) or Path(path.stem).match(pattern))
     )
     if not paths:
         raise ArgoError(
-            f"{folder}: no file in it matches `{only}` and ends in {', '.join(ENDINGS)}; "
+            f"{folder}: no file in it matches `{pattern}` and ends in {', '.join(ENDINGS)}; "
             "name others"
         )
     return paths

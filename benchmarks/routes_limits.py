@@ -90,7 +90,7 @@ def _add_battery(problem: RouteProblem, rng: np.random.Generator) -> RouteProble
 
 
 def _add_rounds(problem: RouteProblem, _rng: np.random.Generator) -> RouteProblem:
-    """Add rounds of five visits with a duration, over half of the visits."""
+    """Add rounds with a maximum duration, of five visits each, for the first half of the visits."""
     starts = range(0, problem.size // 2 - 4, 5)
     rounds = tuple(
         Round(f"round {k}", tuple(range(k, k + 5)), repeat=0, duration=600, soft=k % 2 == 0)
@@ -109,7 +109,7 @@ KINDS: dict[str, AddRules] = {
 }
 
 
-def measure_searches(
+def measure_excess_and_feasibility(
     sizes: list[int], limits: list[float], workers: int
 ) -> Iterator[tuple[int, str, float, float, bool]]:
     """Yield size, kind, limit (s), excess (s) and whether a feasible route was found."""
@@ -137,7 +137,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--workers", type=int, default=1, help="processes")
     options = parser.parse_args(arguments)
     print("| visits | kind | limit | beyond it | route | kept |\n|---|---|---|---|---|---|")
-    for size, name, limit, beyond, feasible in measure_searches(
+    for size, name, limit, beyond, feasible in measure_excess_and_feasibility(
         options.sizes, options.limits, options.workers
     ):
         kept = "yes" if beyond <= 0.1 * limit + 0.2 else "no"

@@ -131,7 +131,7 @@ def _random_rounds(rng: np.random.Generator, n: int, hop: int) -> tuple[Round, .
 
 
 def constraint_letters(problem: RouteProblem) -> str:
-    """Return a letter for each kind of constraint, five in all; `-` if the problem has no such."""
+    """Return five characters: for each kind of constraint its letter, or `-` if there is none."""
     return "".join(
         letter if present else "-"
         for letter, present in [

@@ -39,7 +39,7 @@ class Row:
     wrong: str | None
     """contradiction of the evaluation or of a known value, a defect of the solvers; None: none"""
 
-    def relative_loss(self, value: float | None) -> float | None:
+    def relative_loss_to_best(self, value: float | None) -> float | None:
         """Return the relative loss of a value to the best of all: known, Argo's and the peers'.
 
         None: there is no value. A loss within the rounding of the known value counts as 0.
@@ -60,7 +60,7 @@ def summary_lines(rows: Iterable[Row]) -> Iterator[str]:
     for kind, group in groupby(sorted(rows, key=lambda row: row.kind), key=lambda row: row.kind):
         rows_of_kind = list(group)
         small = [row for row in rows_of_kind if row.nodes <= SMALL]
-        best = sum(row.relative_loss(row.value) == 0.0 for row in rows_of_kind)
+        best = sum(row.relative_loss_to_best(row.value) == 0.0 for row in rows_of_kind)
         text = (
             f"{kind}: {len(rows_of_kind)} problems, "
             f"{sum(row.proven for row in rows_of_kind)} proven "
@@ -73,7 +73,7 @@ def summary_lines(rows: Iterable[Row]) -> Iterator[str]:
                 (row, peer) for row in rows_of_kind for peer in row.peers if peer.name == name
             ]
             valid = [(row, peer) for row, peer in results if peer.reason is None]
-            reached = sum(row.relative_loss(peer.value) == 0.0 for row, peer in valid)
+            reached = sum(row.relative_loss_to_best(peer.value) == 0.0 for row, peer in valid)
             text += f"; {name} " + (
                 f"best known value {reached} times of {len(valid)}"
                 if valid
@@ -93,7 +93,7 @@ def row_line(row: Row) -> str:
     """Return the line of the table for a problem."""
     cells = [
         f"{row.kind} {row.name}", str(row.nodes), _known_text(row.known), _number_text(row.value),
-        _share_text(row.relative_loss(row.value)), _number_text(row.bound),
+        _share_text(row.relative_loss_to_best(row.value)), _number_text(row.bound),
         "yes" if row.proven else "no",
         f"{row.seconds:.1f} s", row.method + (f" WRONG: {row.wrong}" if row.wrong else ""),
     ]  # fmt: skip
@@ -107,7 +107,7 @@ def _peer_names(rows: Iterable[Row]) -> list[str]:
 def _peer_text(row: Row, peer: PeerResult) -> str:
     if peer.value is None:
         return "" if peer.reason else "none"
-    return f"{_number_text(peer.value)}, {_share_text(row.relative_loss(peer.value))}"
+    return f"{_number_text(peer.value)}, {_share_text(row.relative_loss_to_best(peer.value))}"
 
 
 def _known_text(known: KnownValue | None) -> str:

@@ -326,7 +326,10 @@ def print_digests(only: str, groups: Sequence[str], with_prose: bool) -> None:
 def compute_digests(
     root: Path, only: str, groups: Sequence[str], cache: str, with_prose: bool
 ) -> list[str]:
-    """Run this file with the code of a checkout; print and return its lines `digest name`."""
+    """Run this file with the code of a checkout; print and return its lines `digest name`.
+
+    `cache` is the folder of its cache.
+    """
     environment = os.environ | {"PYTHONPATH": str(root), "ARGO_CACHE_DIR": cache}
     prose = "prose" if with_prose else ""
     command = (sys.executable, __file__, "--digests", only, prose, *groups)

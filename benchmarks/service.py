@@ -109,7 +109,7 @@ def receive_revisions(address: str, id: str, revisions: int, count: int, times: 
 
 
 def receive_poses(address: str, count: int, seconds: float, gaps: Connection) -> None:
-    """Follow the robot's poses `count` times for a number of seconds.
+    """Follow the robot's poses for a number of seconds over `count` connections at the same time.
 
     Runs in a process of its own. Sends through `gaps` a list of all times (s) between two
     successive poses that the same follower received.

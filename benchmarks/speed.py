@@ -56,7 +56,7 @@ class Figure:
     """whether it is measured with `--smallest`"""
 
     def relative_speed(self, now: float, stored: float) -> float:
-        """Return the present speed over that of the stored value."""
+        """Return the speed of the ratio `now` over that of `stored`; above 1: faster now."""
         return now / stored if self.more_is_faster else stored / now
 
 
@@ -74,7 +74,7 @@ def fixed_work() -> float:
     return sum(sums.values()) + float(grid.sum())
 
 
-def compare_with_fixed_work(
+def median_ratio_to_fixed_work(
     prepare: Callable[[], Work],
     repeats: int,
     *,
@@ -101,20 +101,20 @@ def compare_with_fixed_work(
     return median(ratios[repeats > 1 :])
 
 
-def compare_executor_with_py_trees(repeats: int) -> float | None:
+def executor_rate_over_py_trees(repeats: int) -> float | None:
     """Return the executor's events per second over those of py_trees; None: no py_trees."""
     if importlib.util.find_spec("py_trees") is None:
         return None
     machines = {name: hfsm.MACHINES[name] for name in ("Argo", "py_trees")}
-    rates = hfsm.measure_rates(hfsm.EVENTS, repeats, machines)
+    rates = hfsm.measure_median_rates(hfsm.EVENTS, repeats, machines)
     return rates["Argo"] / rates["py_trees"]
 
 
 def compare_command_with_numpy(name: str, repeats: int) -> float:
-    """Return the time of a command of `startup` over that of `import numpy`."""
+    """Return the median ratio of a command's time to that of `import numpy`; see `startup`."""
     with tempfile.TemporaryDirectory() as folder:
-        chosen = {name: startup.commands_to_time(Path(folder))[name]}
-        return startup.measure_commands(chosen, repeats)[name][0]
+        chosen = {name: startup.commands_and_max_ratios(Path(folder))[name]}
+        return startup.measure_ratios_to_numpy(chosen, repeats)[name][0]
 
 
 def prepare_import() -> Work:
@@ -203,7 +203,9 @@ def compare_edits_with_fixed_work(repeats: int) -> float:
                 file.flush()
                 os.fsync(file.fileno())
 
-        return compare_with_fixed_work(lambda: work, repeats, fixed=fixed, clock=time.perf_counter)
+        return median_ratio_to_fixed_work(
+            lambda: work, repeats, fixed=fixed, clock=time.perf_counter
+        )
 
 
 def _command_figure(name: str) -> Figure:
@@ -213,14 +215,12 @@ def _command_figure(name: str) -> Figure:
 def _work_figure(
     name: str, prepare: Callable[[], Work], repeats: int = 5, calls: int = 1, short: bool = True
 ) -> Figure:
-    measure = partial(compare_with_fixed_work, prepare, calls=calls)
+    measure = partial(median_ratio_to_fixed_work, prepare, calls=calls)
     return Figure(name, "x the fixed work", measure, repeats, short=short)
 
 
 FIGURES = (
-    Figure(
-        "executor", "x py_trees", compare_executor_with_py_trees, repeats=9, more_is_faster=True
-    ),
+    Figure("executor", "x py_trees", executor_rate_over_py_trees, repeats=9, more_is_faster=True),
     _command_figure("argo --help"),
     _command_figure("argo check, a script"),
     _command_figure("argo check, a mission"),
@@ -229,8 +229,12 @@ FIGURES = (
     _work_figure("check of 1,000 tasks", prepare_check, 3),
     _work_figure("100 steps of Route-v0", prepare_route_steps),
     _work_figure("50 steps of Drive-v0", against.prepare_random_drive),
-    _work_figure("run, route", partial(against.prepare_mission_run, "route", again=True), calls=5),
-    _work_figure("run, kinematic", partial(against.prepare_mission_run, "kinematic", again=True)),
+    _work_figure(
+        "run, route", partial(against.prepare_mission_run, "route", warmed_up=True), calls=5
+    ),
+    _work_figure(
+        "run, kinematic", partial(against.prepare_mission_run, "kinematic", warmed_up=True)
+    ),
     _work_figure("run, tracked", partial(against.prepare_mission_run, "tracked"), 2, short=False),
     _work_figure("8 routes proven", prepare_proofs),
     Figure("10 edits", "x 3 times the fixed work and 10 writes", compare_edits_with_fixed_work),

@@ -32,15 +32,17 @@ def main(arguments: Sequence[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     with tempfile.TemporaryDirectory() as folder:
         chosen = {
-            name: c for name, c in commands_to_time(Path(folder)).items() if options.only in name
+            name: c
+            for name, c in commands_and_max_ratios(Path(folder)).items()
+            if options.only in name
         }
-        measured = measure_commands(chosen, options.repeats)
+        measured = measure_ratios_to_numpy(chosen, options.repeats)
     for name, (paired, shortest, seconds, limit) in measured.items():
         requirement = f"at most {limit:g}" if limit else ""
         print(f"{name:24} {paired:6.2f} {shortest:6.2f}   {seconds:6.3f} s   {requirement}")
 
 
-def commands_to_time(folder: Path) -> dict[str, tuple[Sequence[str], float | None]]:
+def commands_and_max_ratios(folder: Path) -> dict[str, tuple[Sequence[str], float | None]]:
     """Return the commands by name, each with its largest allowed ratio, or None if it has none.
 
     First writes the mission that one of them checks to the folder.
@@ -60,7 +62,7 @@ def commands_to_time(folder: Path) -> dict[str, tuple[Sequence[str], float | Non
     }
 
 
-def measure_commands(
+def measure_ratios_to_numpy(
     commands: dict[str, tuple[Sequence[str], float | None]], repeats: int
 ) -> dict[str, tuple[float, float, float, float | None]]:
     """Time commands relative to `import numpy`.

@@ -35,7 +35,7 @@ def open_world() -> tuple[Navigator, World]:
 
 
 def plan_flight(navigator: Navigator, tower: str, storey: int, up: bool) -> Path:
-    """Return the path in a stair tower from floor `storey` to the next one, or back if not `up`."""
+    """Return the path in a stair tower from floor `storey` to the one above, or else back down."""
     floors = {f.number: f.z for f in navigator.site.spec.floors}
     (ax, ay), (bx, by) = LANDINGS[tower]
     low = Pose(x=ax, y=ay, z=floors[storey], yaw=0.0)

@@ -14,7 +14,7 @@ from argo_env.planning.catalog import make_catalog
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import Calibration, MotionPace
 from benchmarks.drives import Run, error_table, random_mission, run_seed, time_path
-from benchmarks.fitting import fit_calibration, prediction_errors
+from benchmarks.fitting import fit_calibration, measured_minus_predicted_seconds
 
 
 @pytest.fixture(scope="module")
@@ -115,7 +115,9 @@ def test_times_of_motions_add_up_and_reproduce_the_paces(navigator):
         update={"calibration": fit_calibration(timed, navigator.robot)}
     )
     # All flights have the same length, so that share and lost time can't be told apart there.
-    assert prediction_errors(timed, fitted) == pytest.approx(np.zeros(len(timed)), abs=0.03)
+    assert measured_minus_predicted_seconds(timed, fitted) == pytest.approx(
+        np.zeros(len(timed)), abs=0.03
+    )
     for kind in ("ahead", "turn"):
         fitted_pace, true = getattr(fitted.calibration, kind), getattr(PACES, kind)
         assert fitted_pace.share == pytest.approx(true.share, abs=0.01)

@@ -13,7 +13,7 @@ from argo_env.files import resources
 from argo_env.navigation import Path
 from argo_env.navigation.path import Motion, wrap
 from argo_env.robot.spec import Calibration, MotionKind, MotionPace, load_robot
-from benchmarks.fitting import TimedDrive, fit_calibration, prediction_errors
+from benchmarks.fitting import TimedDrive, fit_calibration, measured_minus_predicted_seconds
 from tests.conftest import examples
 
 ROBOT = load_robot().model_copy(update={"calibration": Calibration()})
@@ -74,8 +74,8 @@ def test_errors_are_measured_minus_predicted_times():
     rng = np.random.default_rng(5)
     timed = list(drives(Calibration(), rng, 10))
     late = [TimedDrive(d.motions, d.seconds + 2.0) for d in timed]
-    assert prediction_errors(timed, ROBOT) == pytest.approx(np.zeros(10), abs=1e-9)
-    assert prediction_errors(late, ROBOT) == pytest.approx(np.full(10, 2.0))
+    assert measured_minus_predicted_seconds(timed, ROBOT) == pytest.approx(np.zeros(10), abs=1e-9)
+    assert measured_minus_predicted_seconds(late, ROBOT) == pytest.approx(np.full(10, 2.0))
 
 
 def test_a_fit_without_drives_is_refused():

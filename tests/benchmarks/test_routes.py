@@ -95,10 +95,16 @@ def test_losses_are_relative_to_the_best_value():
         return Row("x", kind, 5, known, value, 1.0, False, 1.0, "y", peers, None)
 
     cost, score = row(Kind.ATSP, 12.0, 8.0, KnownValue(10)), row(Kind.OP, 8.0, None, KnownValue(10))
-    assert (cost.relative_loss(12.0), cost.relative_loss(8.0)) == (0.5, 0.0)
-    assert (score.relative_loss(8.0), score.relative_loss(None)) == (pytest.approx(0.2), None)
+    assert (cost.relative_loss_to_best(12.0), cost.relative_loss_to_best(8.0)) == (0.5, 0.0)
+    assert (score.relative_loss_to_best(8.0), score.relative_loss_to_best(None)) == (
+        pytest.approx(0.2),
+        None,
+    )
     rounded = row(Kind.TSPTW, 9.9967, 10.0041, KnownValue(10.0, 10.0, 0.005))
-    assert (rounded.relative_loss(9.9967), rounded.relative_loss(10.0)) == (0.0, 0.0)
+    assert (rounded.relative_loss_to_best(9.9967), rounded.relative_loss_to_best(10.0)) == (
+        0.0,
+        0.0,
+    )
     lines = list(summary_lines([cost, score]))
     assert "P best known value 1 times of 1; L left out: precedence" in lines[0]
     assert len(lines) == 2

@@ -11,7 +11,7 @@ from argo_compiler.base.errors import ArgoError
 from argo_compiler.base.garbage_collector import enable_garbage_collector
 from argo_compiler.base.version import __version__
 from argo_planner.lazy_group import LazyCommand, LazyGroup
-from argo_planner.terminal.output import guard_output
+from argo_planner.terminal.output import guard_stdout_and_stderr
 from argo_planner.terminal.signals import SignalWatch, ignore_signals, raise_on_signals
 from argo_planner.terminal.verbosity import set_verbosity
 
@@ -144,7 +144,7 @@ def argo(
 
 def main() -> None:
     """Run the command; an error becomes one message and exit status 2."""
-    output = guard_output()
+    output = guard_stdout_and_stderr()
     try:
         status = _carry_out()
         if output.failure is not None and status in {0, 1, 2}:

@@ -12,7 +12,7 @@ from typer.main import get_command
 
 from argo_compiler.base.errors import Invalid
 from argo_compiler.base.garbage_collector import collector_held
-from argo_planner.terminal.verbosity import common_options
+from argo_planner.terminal.verbosity import declare_common_options
 
 
 class _Command(TyperCommand):
@@ -106,5 +106,5 @@ def load_command(command: LazyCommand) -> Any:
 def _common_parameters() -> list[Any]:
     """Return the parameters of the options that all commands have."""
     app = typer.Typer(add_completion=False)
-    app.command()(common_options)
+    app.command()(declare_common_options)
     return [parameter for parameter in get_command(app).params if parameter.name != "help"]

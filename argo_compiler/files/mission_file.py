@@ -53,9 +53,11 @@ class MissionFile:
     mission: Mission
     text: str
     changes: tuple[Diagnostic, ...] = ()
-    """warnings about meanings that changed since the file's version; `placed` adds places"""
+    """warnings about meanings that changed since the file's version, without positions"""
 
-    def placed(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+    def diagnostics_with_positions(
+        self, diagnostics: Iterable[Diagnostic]
+    ) -> tuple[Diagnostic, ...]:
         """Return the diagnostics with their places in the file, found by their subjects.
 
         The new places replace those in the script from which the mission was imported.

@@ -47,7 +47,7 @@ from argo_planner.terminal.evaluation_tables import show_comparison, show_means,
 from argo_planner.terminal.files import check_outputs, read_upload
 from argo_planner.terminal.options import EndArea, Force, SiteOption, StartArea
 from argo_planner.terminal.signals import Interrupted
-from argo_planner.use_cases.evaluating import input_contents, make_workers, plan_evaluation
+from argo_planner.use_cases.evaluating import contents_for_digest, make_workers, plan_evaluation
 
 
 def evaluate_command(
@@ -190,7 +190,7 @@ def evaluate_command(
         sources or [], folders=[(target, [REPORT] if report else [])], force=continues or force
     )
     check_folder(target / FAILING)
-    digest = digest_contents(*input_contents(file, folder), content)
+    digest = digest_contents(*contents_for_digest(file, folder), content)
     plan = read_plan(target, digest) or plan_evaluation(file, folder, read_upload)
     helper = None if file.control is None else with_drive(plan, file.control)
     with open_rows(target, plan, digest, replace=force, helper=helper) as store:

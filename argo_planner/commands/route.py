@@ -21,7 +21,7 @@ from argo_planner.terminal.certificate_lines import show_certificate
 from argo_planner.terminal.files import check_outputs, read_upload, require_mission_output
 from argo_planner.terminal.importing import import_and_warn
 from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea
-from argo_planner.terminal.order_tables import reordering_lines, show_order, show_risk
+from argo_planner.terminal.order_tables import reordered_mission_lines, show_order, show_risk
 from argo_planner.terminal.words import add_keep_order_option, error_text
 from argo_planner.use_cases.importing import SourceKind, require_no_areas, source_kind
 from argo_planner.use_cases.no_order import require_order
@@ -30,7 +30,7 @@ from argo_planner.use_cases.routing import (
     TIME_LIMIT,
     SuggestedOrder,
     parse_requirements,
-    require_time_limit,
+    require_mission_time_limit,
     suggest_order,
     suggest_robust_order,
     verify_order,
@@ -110,7 +110,7 @@ def route_command(
         _check_pictures(pictures, opened, force)
     imported = import_and_warn(upload, opened, start_area, end_area)
     if robust:
-        require_time_limit(imported.mission, wanted)
+        require_mission_time_limit(imported.mission, wanted)
     found = suggest_order(imported, opened, wanted, time_limit=time_limit, seed=seed)
     console = Console(highlight=False)
     spread = SPREADS[risk or Spread.CAUTIOUS]
@@ -127,7 +127,7 @@ def route_command(
         show_risk(found, spread, seed, console)
     if output and reordered:
         write_mission(reordered, output)
-        for line in reordering_lines(found, reordered, opened, output):
+        for line in reordered_mission_lines(found, reordered, opened, output):
             console.print(line, soft_wrap=True, markup=False)
     if pictures:
         _draw(found, opened, pictures, console)

@@ -23,7 +23,7 @@ from argo_env.run.spec import RunSpec, logged_events
 from argo_env.run.validation import check_run
 from argo_planner.terminal.completion import offer_names
 from argo_planner.terminal.conclusion import Conclusion
-from argo_planner.terminal.events import KINDS, READING_FORM, parse_events, parse_values
+from argo_planner.terminal.events import KINDS, READING_FORM, parse_checkpoint_values, parse_events
 from argo_planner.terminal.files import check_outputs, read_upload
 from argo_planner.terminal.importing import import_and_warn
 from argo_planner.terminal.options import (
@@ -38,7 +38,7 @@ from argo_planner.terminal.options import (
     given_options,
     option_name,
 )
-from argo_planner.terminal.run_display import run_with_display
+from argo_planner.terminal.run_display import run_with_display_and_recording
 from argo_planner.terminal.run_storage import JOURNAL, RunStorage, require_no_unfinished_run
 from argo_planner.terminal.signals import defer_first_signal
 from argo_planner.use_cases.reporting import REPORT_FILES
@@ -187,7 +187,7 @@ def run_command(
         drive=drive,
         sensor=sensor,
         seed=seed,
-        values=parse_values(value or []),
+        values=parse_checkpoint_values(value or []),
         events=logged_events(*parse_events(event or [])),
         faults=fault_text.faults if fault_text else (),
     )
@@ -217,8 +217,8 @@ def run_command(
         conclusion = Conclusion(
             report, render, RunStorage(outputs.journal_path, recording, force), interruption
         )
-        with conclusion.hint_on_interruption():
-            record, recorded = run_with_display(
+        with conclusion.exit_with_hint_on_interruption():
+            record, recorded = run_with_display_and_recording(
                 checked.spec.mission.max_duration,
                 recording,
                 source,

@@ -12,11 +12,11 @@ from argo_planner.terminal import completion
 from argo_planner.terminal.files import check_outputs, print_written, write_content
 from argo_planner.terminal.options import Force
 from argo_planner.use_cases.sites import (
-    describe_site,
     draw_site_report,
     list_sites,
     make_site_report,
     require_free_name,
+    site_yaml_with_name,
 )
 
 
@@ -86,6 +86,6 @@ def _check_name(output: Path) -> None:
 
 
 def _write_description(opened: OpenedSite, output: Path) -> None:
-    write_content(output, describe_site(opened, output.stem))
+    write_content(output, site_yaml_with_name(opened, output.stem))
     use = f"argo check MISSION --site {shlex.quote(str(output))}"
     print(f"{output}: written, site `{output.stem}`; use it with `{use}`")

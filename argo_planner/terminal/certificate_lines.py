@@ -35,8 +35,8 @@ def _lines(found: SuggestedOrder, certificate: Certificate) -> Iterator[str]:
 def _adds_nothing(found: SuggestedOrder, one: CheckedClaim) -> bool:
     """Return True if a claim is about a bound that tells nothing about this mission.
 
-    The proof of the best order includes both bounds, and without an order they have no meaning. The
-    bound on the prize has no meaning either if no task is optional.
+    The bounds on the cost and on the prize tell nothing if the order is proven to be the best, or
+    if there is none. The bound on the prize tells nothing either if no task is optional.
     """
     if one.claim is Claim.PRIZE_BOUND and not found.planned.problem.selective:
         return True

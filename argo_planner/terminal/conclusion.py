@@ -37,12 +37,12 @@ class Conclusion:
     """signals of the process; the first one lets the run stop in good order"""
 
     def write_and_show_results(
-        self, record: RunRecord, site: Site, robot: RobotSpec, timing: str
+        self, record: RunRecord, site: Site, robot: RobotSpec, duration_text: str
     ) -> None:
         """Write report and film, if asked for, then show the results.
 
-        In this order, a reader who closes the output early loses nothing. `timing` is the
-        text that says how long the run took.
+        In this order, a reader who closes the output early loses nothing. `duration_text`
+        says how long the run took.
 
         Raises:
             Exit: Status 1: the run was no success. Status 2: a result could not be written. The
@@ -68,14 +68,14 @@ class Conclusion:
         console = Console()
         show_record(record, console)
         if not is_quiet():
-            console.print(timing, soft_wrap=True)
+            console.print(duration_text, soft_wrap=True)
         for line in lines:
             console.print(escape(line), soft_wrap=True)
         for failure in errors:
             print(error_text(failure, "argo: "), file=sys.stderr)
         received = received or self.interruption.received
         if received and not record.result.ended:
-            hint = self.stored.continuation_hint(self.report, self.render)
+            hint = self.stored.continuation_or_loss_text(self.report, self.render)
             print(f"argo: interrupted at {record.result.duration:.0f} s; {hint}", file=sys.stderr)
         elif unwritten:
             self._print_unwritten(unwritten)
@@ -87,12 +87,12 @@ class Conclusion:
             raise typer.Exit(1)
 
     @contextmanager
-    def hint_on_interruption(self) -> Iterator[None]:
-        """Print how to continue the run, and exit, if Interrupted is raised within this context."""
+    def exit_with_hint_on_interruption(self) -> Iterator[None]:
+        """Turn Interrupted in this context into an exit with its status; print how to continue."""
         try:
             yield
         except Interrupted as interrupted:
-            hint = self.stored.continuation_hint(self.report, self.render)
+            hint = self.stored.continuation_or_loss_text(self.report, self.render)
             print(f"argo: interrupted; {hint}", file=sys.stderr)
             raise typer.Exit(interrupted.status) from None
 
@@ -127,7 +127,7 @@ class Conclusion:
 
     def _print_unwritten(self, unwritten: list[Path]) -> None:
         names = " and ".join(map(str, unwritten))
-        command = self.stored.continuation_command(
+        command = self.stored.continue_or_replay_command(
             self.report if self.report in unwritten else None,
             self.render if self.render in unwritten else None,
         )

@@ -27,7 +27,7 @@ _MAX_LISTED = 10  # failed runs that are listed
 
 def show_results(
     results: EvaluationResults,
-    failing: Mapping[str, Path],
+    failed_spec_files: Mapping[str, Path],
     console: Console,
     scoring: ScoringRules,
 ) -> None:
@@ -35,7 +35,7 @@ def show_results(
 
     Args:
         results: results of the evaluation
-        failing: files with the specs of failed runs, by the keys of their rows
+        failed_spec_files: files with the specs of failed runs, by the keys of their rows
         console: where to print
         scoring: rules by which the runs get points
     """
@@ -62,7 +62,7 @@ def show_results(
         blocks = results.by_seeds(plan)
         if len(blocks) > 1 and results.failing:
             console.print(_groups(_titled("by seeds", plan, results), "seeds", blocks))
-    for line in _failing(results, failing):
+    for line in _failing(results, failed_spec_files):
         console.print(escape(line), soft_wrap=True)
     worlds, planned = len({row.seed for row in results.rows}), len(results.plan.seeds)
     if worlds < planned and not results.plan.strata:
@@ -81,7 +81,7 @@ def show_results(
 
 
 def show_means(means: Sequence[ControlledMean], drive: str | None, console: Console) -> None:
-    """Print means that were estimated with the help of runs with the cheap drive, if any was."""
+    """Print means estimated with the help of runs with the cheap `drive`; None: there is none."""
     if drive is not None and not means:
         console.print(f"Too few worlds could be run to use the drive {drive} for the estimates.")
     for mean in means:

@@ -34,7 +34,7 @@ def parse_events(options: list[str]) -> list[tuple[float, Event]]:
     return sorted(events, key=lambda event: event[0])
 
 
-def parse_values(options: list[str]) -> dict[int, float]:
+def parse_checkpoint_values(options: list[str]) -> dict[int, float]:
     """Return the values of options `ID=VALUE`, by checkpoint.
 
     Raises:

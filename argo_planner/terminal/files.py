@@ -101,7 +101,7 @@ def require_mission_output(output: Path) -> None:
 
 
 def write_content(path: Path, content: str | bytes | Mapping[str, bytes]) -> None:
-    """Write a file, a folder of files, or to standard output.
+    """Write a file, or a folder of files; the path `-` is standard output.
 
     Text is written as UTF-8 with Unix line ends.
 

@@ -44,7 +44,7 @@ def show_order(found: SuggestedOrder, console: Console) -> None:
         console.print(escape(line), soft_wrap=True)
 
 
-def reordering_lines(
+def reordered_mission_lines(
     found: SuggestedOrder, mission: Mission, site: OpenedSite, output: Path
 ) -> Iterator[str]:
     """Yield lines that name the file of the reordered mission and notes on its duration."""
@@ -128,9 +128,9 @@ def _lines(found: SuggestedOrder) -> Iterator[str]:
 
 
 def _unreached(found: SuggestedOrder) -> Iterator[tuple[str, list[int]]]:
-    """Yield groups whose time is over before each of their tasks was reached once.
+    """Yield groups whose time is over before all of their tasks have been reached once.
 
-    Each comes with the visits of the tasks that are not reached.
+    Each comes with the indices of the visits that are not reached in time, of one task or more.
     """
     planned, route = found.planned, found.route
     problem, order = planned.problem, found.route.order

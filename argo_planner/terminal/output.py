@@ -27,7 +27,7 @@ class Output(io.FileIO):
         return memoryview(data).nbytes
 
 
-def guard_output() -> Output:
+def guard_stdout_and_stderr() -> Output:
     """Replace standard output and error by streams that never fail; return the one for output."""
     output, sys.stdout = _guarded(sys.stdout)
     _, sys.stderr = _guarded(sys.stderr)

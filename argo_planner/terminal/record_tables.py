@@ -40,7 +40,7 @@ def show_record(record: RunRecord, console: Console) -> None:
 
 
 def _problem_lines(record: RunRecord) -> Iterator[str]:
-    """Yield a line for all that the headline counts, and for faults that did not happen."""
+    """Yield a line for each item that the headline counts, and each fault that did not happen."""
     for finding in record.findings:
         detail = "" if finding.is_reading or not finding.detail else f": {finding.detail}"
         yield ", ".join(filter(None, (finding.in_words, finding.whereabouts))) + detail
@@ -116,7 +116,7 @@ def _task_rows(record: RunRecord) -> Iterator[tuple[float, tuple[str, ...]]]:
 
 
 def _missed(record: RunRecord) -> list[tuple[str, float]]:
-    """Return the tasks whose window was over when they were reached, with these times in s.
+    """Return the tasks that were reached after their window, with the times (s) of reaching them.
 
     In such a visit no action ran.
     """

@@ -9,7 +9,7 @@ from argo_compiler.base.errors import Conflict
 from argo_env.formatting import clock
 from argo_env.planning.opening import OpenedSite
 from argo_env.run.record import Reordering
-from argo_planner.terminal.words import order_error_text
+from argo_planner.terminal.words import error_text_with_route_commands
 from argo_planner.use_cases.importing import ImportedMission
 from argo_planner.use_cases.no_order import require_order
 from argo_planner.use_cases.routing import suggest_order
@@ -27,7 +27,7 @@ def optimise_and_show(
     try:
         require_order(found, imported.source_name)
     except Conflict as error:
-        raise Conflict(order_error_text(error, imported.source_name)) from None
+        raise Conflict(error_text_with_route_commands(error, imported.source_name)) from None
     reordering = found.reordering
     order = ", ".join(reordering.order)
     text = (

@@ -67,7 +67,7 @@ class RunDisplay(Observer, Closing):
             self._progress.console.print(escape(text), soft_wrap=True, highlight=False)
 
     def warn(self, text: str) -> None:
-        """Print a warning as a line above the bar, even with `--quiet`."""
+        """Print a warning as a line above the bar, unlike other warnings even with `--quiet`."""
         self._progress.console.print(
             f"[bold yellow]Warning[/]: {escape(text)}", soft_wrap=True, highlight=False
         )
@@ -81,7 +81,7 @@ class RunDisplay(Observer, Closing):
         self._progress.stop()
 
 
-def run_with_display(
+def run_with_display_and_recording(
     total: float | None,
     recording: Path | None,
     source: Path | None,

@@ -26,7 +26,7 @@ class RunStorage:
     force: bool = False
     """whether the run may replace existing files; a command that continues it may then, too"""
 
-    def continuation_command(
+    def continue_or_replay_command(
         self, report: Path | None = None, render: Path | None = None
     ) -> str | None:
         """Return the `argo` command that continues the run, or shows its recording again.
@@ -55,9 +55,9 @@ class RunStorage:
     def _has_journal(self) -> bool:
         return self.journal is not None and os.path.exists(self.journal)
 
-    def continuation_hint(self, report: Path | None, render: Path | None) -> str:
-        """Return a clause that says how to continue a run that has not ended."""
-        command = self.continuation_command(report, render)
+    def continuation_or_loss_text(self, report: Path | None, render: Path | None) -> str:
+        """Return a clause that says how to continue a run, or that it can't be continued."""
+        command = self.continue_or_replay_command(report, render)
         if self._has_journal:
             return f"continue with: {command}"
         lost = "the run can't be continued, as no journal (--report or --journal) stores it"
@@ -75,7 +75,8 @@ def require_no_unfinished_run(report: Path | None, journal: Path | None = None) 
         if path and os.path.isfile(path) and _is_unfinished(path):
             raise Conflict(
                 f"{path} holds a run that has not ended: choose another path, replace the run "
-                f"(--force), or continue it with: {RunStorage(path).continuation_command(report)}"
+                "(--force), or continue it with: "
+                f"{RunStorage(path).continue_or_replay_command(report)}"
             )
 
 
@@ -90,7 +91,7 @@ def _is_unfinished(path: Path) -> bool:
 def is_report_of(book: Journal, folder: Path) -> bool:
     """Return True if the report in a folder is of the journal's run.
 
-    It must not contain more than the journal does, so that a new report of the run loses nothing.
+    The result is False if the report has more than the journal, so that a new report loses nothing.
     """
     try:
         record = RunRecord.model_validate_json((folder / RECORD).read_bytes())

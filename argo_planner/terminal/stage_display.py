@@ -50,7 +50,8 @@ class StageDisplay:
         Args:
             console: where to show the stages; None: on standard error
             clock: function that returns the time in s
-            watched: whether a thread calls `refresh`; otherwise the caller has to
+            watched: whether the display starts a thread that calls `refresh`; otherwise the caller
+                has to call it
         """
         self._console = console
         self._clock = clock

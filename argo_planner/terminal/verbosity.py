@@ -30,7 +30,7 @@ def set_verbosity(verbose: int = 0, quiet: bool = False) -> None:
     Args:
         verbose: 0: results, warnings and errors; 1: also each stage of the work; 2 or more: also
             its details
-        quiet: only results and errors; overrides `verbose`
+        quiet: only results and errors, no usual warnings; overrides `verbose`
     """
     level = logging.ERROR if quiet else logging.WARNING
     if verbose and not quiet:
@@ -83,5 +83,5 @@ Quiet = Annotated[
 ]
 
 
-def common_options(verbose: Verbose = 0, quiet: Quiet = False) -> None:
+def declare_common_options(verbose: Verbose = 0, quiet: Quiet = False) -> None:
     """Do nothing; the parameters declare the options that all commands have."""

@@ -44,7 +44,7 @@ def error_text(error: ArgoError, prefix: str = "") -> str:
     return f"{prefix}{error}{_remedies_text(error.remedies, error.about)}"
 
 
-def order_error_text(error: ArgoError, source: str) -> str:
+def error_text_with_route_commands(error: ArgoError, source: str) -> str:
     """Return the message of an error, followed by `argo route` commands with its remedies.
 
     It is for commands that search for an order without having these options themselves. `source`
@@ -64,7 +64,7 @@ def add_keep_order_option(text: str) -> str:
 
 
 def add_options_to_hints(diagnostics: Iterable["Diagnostic"]) -> tuple["Diagnostic", ...]:
-    """Return copies of the diagnostics whose hints name the options that are the remedy."""
+    """Return all diagnostics, with the options that are the remedy added to their hints."""
     return tuple(d.model_copy(update={"hint": _hint(d)}) if d.remedies else d for d in diagnostics)
 
 

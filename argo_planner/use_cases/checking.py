@@ -24,7 +24,7 @@ from argo_env.planning.site_warnings import speed_warnings, view_warnings
 from argo_planner.use_cases.importing import (
     SourceKind,
     Upload,
-    load_upload,
+    load_unchecked_mission,
     require_no_areas,
     source_kind,
 )
@@ -67,7 +67,7 @@ def check_source(
     if source_kind(upload) is not SourceKind.SCRIPT:
         require_no_areas(upload.name, start_area, end_area)
     try:
-        loaded = load_upload(upload, catalog, start_area, end_area)
+        loaded = load_unchecked_mission(upload, catalog, start_area, end_area)
     except ArgoError as error:
         return error_diagnostics(error)
     found = check(loaded.mission, catalog)
@@ -81,7 +81,7 @@ def check_source(
         if site is not None:
             found += tuple(view_warnings(loaded.mission, site))
             found += tuple(speed_warnings(loaded.mission, site.robot))
-    return by_position((*loaded.diagnostics, *loaded.placed(found)))
+    return by_position((*loaded.diagnostics, *loaded.diagnostics_with_positions(found)))
 
 
 def _too_many_poses(poses: int) -> Diagnostic:

@@ -91,7 +91,7 @@ def plan_evaluation(
     return plan
 
 
-def input_contents(file: EvaluationFile, folder: Path) -> Iterator[bytes]:
+def contents_for_digest(file: EvaluationFile, folder: Path) -> Iterator[bytes]:
     """Yield the contents of all that an evaluation depends on, from which a digest is computed.
 
     Equal contents mean equal evaluations: the version of Argo, the evaluation file, and the files
@@ -259,7 +259,7 @@ def _distribution(drawn: DrawnFaults, folder: Path) -> FaultDistribution:
 
 
 def _site(name: str, folder: Path) -> str:
-    """Return the path of a site's file relative to the evaluation file, or the site's name."""
+    """Return the path of the site's file `name` in a folder; `name` itself without such a file."""
     path = folder / name
     return str(path) if name.endswith(_YAML) and os.path.isfile(path) else name
 

@@ -67,13 +67,15 @@ class LoadedMission:
     file: MissionFile | Script | None
     """the file; None: a bag or another tool's file, whose lines mean nothing to people"""
 
-    def placed(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-        """Return copies of the diagnostics with positions in the file; without one, with none."""
+    def diagnostics_with_positions(
+        self, diagnostics: Iterable[Diagnostic]
+    ) -> tuple[Diagnostic, ...]:
+        """Return copies of diagnostics with positions in `file`; if that is None, without any."""
         if self.file is None:
             return tuple(f.model_copy(update={"span": None}) for f in diagnostics)
         if isinstance(self.file, Script):
             return with_excerpts(diagnostics, self.file.lines)
-        return self.file.placed(diagnostics)
+        return self.file.diagnostics_with_positions(diagnostics)
 
 
 @dataclass(frozen=True)
@@ -99,7 +101,7 @@ def source_kind(upload: Upload) -> SourceKind:
 
 
 @stage("reading the mission")
-def load_upload(
+def load_unchecked_mission(
     upload: Upload, catalog: Catalog, start_area: int | None = None, end_area: int | None = None
 ) -> LoadedMission:
     """Read the mission in an upload, without checking it.
@@ -123,7 +125,7 @@ def load_upload(
             return _load_isar(upload.content, name, catalog)
         case SourceKind.MISSION:
             file = decode_mission(upload.content, name)
-            return LoadedMission(file.mission, file.placed(file.changes), file)
+            return LoadedMission(file.mission, file.diagnostics_with_positions(file.changes), file)
         case SourceKind.SCRIPT:
             return _load_script(upload.content, name, catalog, start_area, end_area)
 
@@ -193,10 +195,10 @@ def import_mission(
         DiagnosticError: The upload can't be read as a mission, or `check` finds errors.
         Invalid: It is of a run, or areas are given for a mission that has its own.
     """
-    loaded = load_upload(upload, site.catalog, start_area, end_area)
+    loaded = load_unchecked_mission(upload, site.catalog, start_area, end_area)
     found = check(loaded.mission, site.catalog)
     found += tuple(speed_warnings(loaded.mission, site.robot))
-    found = by_position((*loaded.diagnostics, *loaded.placed(found)))
+    found = by_position((*loaded.diagnostics, *loaded.diagnostics_with_positions(found)))
     if has_errors(found):
         raise DiagnosticError(upload.name, found)
     return ImportedMission(loaded.mission, upload.name, loaded.diagnostics, found)

@@ -59,7 +59,7 @@ class SuggestedOrder:
 
     @property
     def route(self) -> Tour:
-        """The suggested order; raises Conflict if there is none (see `explain_no_order`)."""
+        """The suggested order; raises Conflict if there is none (see `find_no_order_error`)."""
         if self.suggestion.route is None:
             raise Conflict("no order meets all requirements")
         return self.suggestion.route
@@ -169,7 +169,7 @@ def _progress_text(progress: SearchProgress, unit: float) -> str:
     return f"{best} so far, none takes less than {bound}"
 
 
-def require_time_limit(mission: Mission, requirements: Requirements) -> None:
+def require_mission_time_limit(mission: Mission, requirements: Requirements) -> None:
     """Raise Invalid if neither the mission nor the requirements have any time limit."""
     limits = [mission.max_duration, requirements.budget, *(w.latest for w in requirements.windows)]
     limits += [t.window.latest for t in mission.tasks if t.window and t.window.hard]

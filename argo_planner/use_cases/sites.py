@@ -63,7 +63,7 @@ def draw_site_report(site: OpenedSite, report: SiteReport) -> bytes:
     return draw_site_plan(site.site, report.flaws, report.safe_states)
 
 
-def describe_site(site: OpenedSite, name: str) -> str:
+def site_yaml_with_name(site: OpenedSite, name: str) -> str:
     """Return the site's description as YAML, with `name` in place of the site's own name.
 
     The copy is meant to be changed, and the old name stands for the site itself.

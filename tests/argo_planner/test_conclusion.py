@@ -129,6 +129,6 @@ def test_a_run_without_its_journal_can_be_replayed_but_not_continued(tmp_path):
     recording = tmp_path / "run.mcap"
     recording.touch()
     storage = RunStorage(journal=tmp_path / "run.journal", recording=recording)
-    hint = storage.continuation_hint(None, None)
+    hint = storage.continuation_or_loss_text(None, None)
     assert hint.startswith("the run can't be continued")
     assert hint.endswith(f"to see the results so far: argo replay {recording}")

@@ -14,7 +14,7 @@ from argo_compiler.isar import InspectionView, to_isar
 from argo_compiler.ros import Storage, to_ros1_bag, to_ros2_bag
 from argo_planner.terminal.files import read_upload
 from argo_planner.use_cases.exporting import exporters
-from argo_planner.use_cases.importing import SourceKind, load_upload, source_kind
+from argo_planner.use_cases.importing import SourceKind, load_unchecked_mission, source_kind
 from tests.argo_compiler.script.conftest import CATALOG
 from tests.mission_writing import measure
 
@@ -24,7 +24,7 @@ VIEWS = {id: InspectionView(pose=Pose(x=1, y=2, z=0), target=(0, 2, 1)) for id i
 
 
 def load(path):
-    return load_upload(read_upload(path), CATALOG)
+    return load_unchecked_mission(read_upload(path), CATALOG)
 
 
 @pytest.fixture
@@ -61,14 +61,14 @@ def test_findings_about_them_are_shown_without_a_place(sources):
     findings = check(PLAN.model_copy(update={"tasks": (PLAN.tasks[0], lost)}), CATALOG)
     assert findings
     for source in sources[1:]:
-        placed = load(source).placed(findings)
+        placed = load(source).diagnostics_with_positions(findings)
         assert [(f.code, f.span) for f in placed] == [(f.code, None) for f in findings]
 
 
 def test_areas_are_not_chosen_for_them(sources):
     for source in sources:
         with pytest.raises(ArgoError, match="has its areas already"):
-            load_upload(read_upload(source), CATALOG, 1)
+            load_unchecked_mission(read_upload(source), CATALOG, 1)
 
 
 def test_warnings_of_the_import_are_returned(tmp_path):

@@ -122,8 +122,10 @@ class _DocumentParts:
             "material": self._material(mesh),
         }
 
-    def _accessor(self, content: bytes, count: int, form: str, kind: int, target: int) -> int:
-        """Add data with an accessor of `count` elements, and return the accessor's index."""
+    def _accessor(
+        self, content: bytes, count: int, element_type: str, component_type: int, target: int
+    ) -> int:
+        """Add data for a buffer target, with an accessor of `count` elements; return its index."""
         self.content += b"\0" * (-len(self.content) % 4)
         self.views.append(
             {
@@ -136,7 +138,12 @@ class _DocumentParts:
         self.content += content + b"\0" * (-len(content) % 4)
         view = len(self.views) - 1
         self.accessors.append(
-            {"bufferView": view, "componentType": kind, "count": count, "type": form}
+            {
+                "bufferView": view,
+                "componentType": component_type,
+                "count": count,
+                "type": element_type,
+            }
         )
         return len(self.accessors) - 1
 

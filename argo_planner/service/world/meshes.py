@@ -124,7 +124,7 @@ def _unit_shape(solid: Solid, role: Role, detail: Detail) -> UnitShape | None:
 def _merge(parts: list[tuple[UnitShape, Solid]], colour: Colour, widening: float) -> Mesh:
     """Return one mesh of solids, each with the shape that it is drawn with.
 
-    Open bars are thicker by the factor `widening`.
+    The width and depth of bars without end faces are multiplied by `widening`.
     """
     corners, triangles, count = [], [], 0
     for shape, solid in parts:

@@ -26,7 +26,7 @@ class ObstacleStore:
     """The obstacles in a folder, in memory and on disk; one thread at a time may change them."""
 
     def __init__(self, folder: Path) -> None:
-        """Read the obstacles in a folder; raises Unavailable if that fails."""
+        """Read a folder's obstacles, none without a file; raises Unavailable for a bad file."""
         self._path = folder / _FILE
         self.present = ObstacleList()
         if not os.path.lexists(self._path):

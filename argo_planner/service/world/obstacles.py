@@ -55,7 +55,7 @@ class Obstacle(Model):
     @field_validator("pose")
     @classmethod
     def _check_pose(cls, pose: Pose) -> Pose:
-        _raise_as_value_error(require_on_site, pose, "the obstacle")
+        _raise_as_value_error(require_pose_within_limits, pose, "the obstacle")
         return pose
 
     def to_solid(self) -> Box:
@@ -72,7 +72,7 @@ def _raise_as_value_error(require: Callable[[T, str], None], value: T, what: str
         raise ValueError(str(error)) from None
 
 
-def require_on_site(pose: Pose, what: str) -> None:
+def require_pose_within_limits(pose: Pose, what: str) -> None:
     """Raise Invalid if a coordinate or the yaw of a pose is too large for any site.
 
     `what` names the subject of the error message.

@@ -21,7 +21,11 @@ from argo_env.navigation import Path
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.travel import SiteTravel
 from argo_env.robot.spec import RobotSpec
-from argo_planner.service.world.obstacles import Obstacle, require_on_site, with_obstacles
+from argo_planner.service.world.obstacles import (
+    Obstacle,
+    require_pose_within_limits,
+    with_obstacles,
+)
 
 MOST_WAYS = 20_000
 """maximum number of paths in the preview of a mission"""
@@ -108,11 +112,11 @@ def preview_way(
         Invalid: A pose is too far away for any site, or the task is one to which no path can lead.
         DiagnosticError: The task itself has an error.
     """
-    require_on_site(start, "the start")
+    require_pose_within_limits(start, "the start")
     if isinstance(goal, Task):
         _require_sound(goal, site.catalog)
     else:
-        require_on_site(goal, "the goal")
+        require_pose_within_limits(goal, "the goal")
     return _PathPreviewer(site, obstacles).preview_path(start, goal)
 
 
@@ -120,6 +124,8 @@ def preview_mission(
     site: OpenedSite, mission: Mission, obstacles: Sequence[Obstacle] = ()
 ) -> PreviewedMission:
     """Return the paths between the tasks of a mission that has no errors, with times and energy.
+
+    If a task can't be reached, this is one of the result's `problems`, not an error.
 
     Raises:
         Unreachable: The robot can't stand where the mission starts.
@@ -182,7 +188,7 @@ class _PathPreviewer:
             return PreviewedWay(time=0.0, points=(point,), end=start)
         try:
             if task.pose is not None:
-                require_on_site(task.pose, "its pose")
+                require_pose_within_limits(task.pose, "its pose")
             leg = self.travel.leg(start, task, task.velocity)
             if isinstance(leg, NoPath):
                 return PreviewedWay(problem=_problem_text(goal, leg.reason))
@@ -223,7 +229,7 @@ def _require_sound(task: Task, catalog: Catalog) -> None:
             f"task '{task.name}' only states where a mission begins: no path can lead there"
         )
     if task.pose is not None:
-        require_on_site(task.pose, f"the pose of task '{task.name}'")
+        require_pose_within_limits(task.pose, f"the pose of task '{task.name}'")
     no_successors = {"transitions": (), "on_failure": OnFailure.CONTINUE, "failure_target": None}
     alone = task.model_copy(update={**no_successors, "group": ""})
     if has_errors(diagnostics := check(Mission(tasks=(alone,)), catalog)):
@@ -235,7 +241,7 @@ def _problem_text(goal: Task | Pose, reason: str) -> str:
 
 
 def _default_order(tasks: dict[str, Task], first: str) -> list[str]:
-    """Return the tasks in the order of their unconditional transitions, each of them once."""
+    """Return `first` and the tasks that unconditional transitions lead to, up to a repetition."""
     order: dict[str, None] = {}
     name: str | None = first
     while name is not None and name not in order:
@@ -291,7 +297,7 @@ def _other_transitions(
 
 
 def _wait_duration(task: Task) -> float | None:
-    """Return the time that a task waits, in s; None: it is not known."""
+    """Return the time in s that a task waits; 0 if it does not wait; None: it is not known."""
     if task.action is not Action.WAIT or task.wait is None:
         return 0.0
     return task.wait.duration

@@ -137,11 +137,11 @@ def read_standing_map(content: bytes) -> StandingMap:
 def standing_map(
     site: OpenedSite, floor: int, heading: int, obstacles: Sequence[Obstacle] = ()
 ) -> StandingMap:
-    """Return a map of where on a floor the robot can stand with a heading, and what it can reach.
+    """Return a map of where on a floor the robot can stand with a heading.
 
-    `heading` is a number of equal steps counter-clockwise from the x axis. A floor without any
-    surface gives a map without cells. Raises NotFound if there is no such floor, Invalid if there
-    is no such heading.
+    It also states where the robot can get from the docks and back. `heading` is a number of equal
+    steps counter-clockwise from the x axis. A floor without any surface gives a map without cells.
+    Raises NotFound if there is no such floor, Invalid if there is no such heading.
     """
     z = site.site.floor(floor).z
     if not 0 <= heading < HEADINGS:

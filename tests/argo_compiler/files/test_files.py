@@ -157,7 +157,7 @@ def test_diagnostics_of_a_mission_point_into_its_file(tmp_path):
     path = tmp_path / "plan.json"
     write_mission(mission, path)
     file = decode_mission(path.read_bytes(), str(path))
-    diagnostics = file.placed(check(file.mission))
+    diagnostics = file.diagnostics_with_positions(check(file.mission))
     assert [f.excerpt.strip() for f in diagnostics] == ['"target": "Z"', '"end": "Y",']
     lines = path.read_text(encoding="utf-8").split("\n")
     assert all(lines[f.span.line - 1] == f.excerpt for f in diagnostics)

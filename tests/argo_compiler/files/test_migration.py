@@ -55,7 +55,7 @@ def test_the_lowest_of_different_velocities_is_used_and_reported():
     (change,) = file.changes
     assert change.code == "file.meaning-changed"
     assert "'C'" in change.message
-    (placed,) = file.placed(file.changes)
+    (placed,) = file.diagnostics_with_positions(file.changes)
     assert placed.span is not None
 
 

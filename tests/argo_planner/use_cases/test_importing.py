@@ -13,7 +13,7 @@ from argo_planner.use_cases.importing import (
     SourceKind,
     Upload,
     import_mission,
-    load_upload,
+    load_unchecked_mission,
     source_kind,
 )
 from tests.yard import measure, mission
@@ -106,7 +106,7 @@ def test_no_option_is_named(site):
     """A service has no options; the command line finds them by the remedies."""
     mission_file = Upload("plan.json", mission_text(PLAN).encode())
     with pytest.raises(Invalid, match="has its areas already") as caught:
-        load_upload(mission_file, site.catalog, start_area=1)
+        load_unchecked_mission(mission_file, site.catalog, start_area=1)
     assert caught.value.remedies == (Remedy.CHOOSE_AREAS,)
     assert "--" not in str(caught.value)
     open_start = Upload("a.txt", b"Mission Protocol: one\n1. Check checkpoint #1.\n")

@@ -23,14 +23,18 @@ from argo_planner.use_cases.exporting import FORMATS, export_mission, to_script
 from argo_planner.use_cases.importing import Upload, import_mission
 from argo_planner.use_cases.no_order import require_order
 from argo_planner.use_cases.reporting import report_files
-from argo_planner.use_cases.routing import parse_requirements, require_time_limit, suggest_order
+from argo_planner.use_cases.routing import (
+    parse_requirements,
+    require_mission_time_limit,
+    suggest_order,
+)
 from argo_planner.use_cases.running import (
     NO_MISSION,
     parse_event,
     with_mission,
 )
 from argo_planner.use_cases.schemas import FileKind, schema
-from argo_planner.use_cases.sites import describe_site, list_sites, make_site_report
+from argo_planner.use_cases.sites import list_sites, make_site_report, site_yaml_with_name
 from tests.yard import measure, mission, waypoint
 
 DOCK = Pose(x=1.05, y=1.05, z=0.02)
@@ -98,7 +102,7 @@ def test_no_order_is_a_conflict_that_names_no_option(imported, site):
     with pytest.raises(DiagnosticError, match=r"wanted:1:1.*route\.wrong-field"):
         parse_requirements(b"budgets: 3 s\n", "wanted")
     with pytest.raises(Invalid, match="nothing limits") as unlimited:
-        require_time_limit(PLAN, parse_requirements(b"mandatory: [1]\n", "wanted"))
+        require_mission_time_limit(PLAN, parse_requirements(b"mandatory: [1]\n", "wanted"))
     assert unlimited.value.remedies == (Remedy.GIVE_BUDGET,)
 
 
@@ -136,7 +140,7 @@ def test_sites(site, tmp_path):
     assert {one.name for one in list_sites()} >= {"umad", "darmstadt"}
     report = make_site_report(site)
     assert report.errors == ()
-    mine = describe_site(site, "mine")
+    mine = site_yaml_with_name(site, "mine")
     again = uploaded(mine.encode())
     assert again.name == "mine"
     assert uploaded(mine.encode("utf-16")).site == again.site
@@ -146,7 +150,7 @@ def test_sites(site, tmp_path):
     with pytest.raises(Invalid, match=r"mine.yaml is not UTF-8"):
         uploaded(b"\xff")
     with pytest.raises(Conflict, match="would be called umad"):
-        describe_site(site, "umad")
+        site_yaml_with_name(site, "umad")
 
 
 @pytest.mark.parametrize("kind", FileKind)

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from argo_compiler.analysis.bound_verification import AT_LEAST, least_steps, unproved_claims
-from argo_compiler.analysis.bound_witness_search import make_least_witness
-from argo_compiler.analysis.duration_with_failures import longest_duration_with_failures
+from argo_compiler.analysis.bound_witness_search import find_least_witness
+from argo_compiler.analysis.duration_with_failures import duration_bound_with_failures_if_computable
 from argo_compiler.analysis.endings import diagnose_endings
 from argo_compiler.analysis.flow import Flow
-from argo_compiler.analysis.limits import diagnose_limits, diagnose_stale_values
+from argo_compiler.analysis.limits import diagnose_always_stale_values, diagnose_limits
 from argo_compiler.analysis.non_terminating_loops import find_non_terminating_loops
 from argo_compiler.analysis.reachability import compute_reachability, make_fields
 from argo_compiler.analysis.results import (
@@ -95,17 +95,21 @@ def _analyse(mission: Mission, catalog: Catalog | None, travel: Travel | None) -
         *diagnose_transitions(study),
         *diagnose_endings(study, loops),
     ]
-    longest = None if study.bounds is None else longest_duration_with_failures(study)
-    if study.bounds is None:
+    longest = (
+        None
+        if study.bounds_if_computable is None
+        else duration_bound_with_failures_if_computable(study)
+    )
+    if study.bounds_if_computable is None:
         unjudged.append("loops and durations")
     elif travel is not None:
         diagnostics += diagnose_limits(study, travel, longest)
-        stale = diagnose_stale_values(study)
+        stale = diagnose_always_stale_values(study)
         if stale is None:
             unjudged.append("ages of values")
         else:
             diagnostics += stale
-    bounds = study.bounds
+    bounds = study.bounds_if_computable
     analysis = Analysis(
         diagnostics=tuple(diagnostics),
         tasks=tuple(
@@ -121,7 +125,7 @@ def _analyse(mission: Mission, catalog: Catalog | None, travel: Travel | None) -
     )
     wrong = unproved(mission, catalog, analysis)
     if wrong:
-        analysis = without_verdicts(analysis, wrong)
+        analysis = with_all_verdicts_possible(analysis, wrong)
     return analysis if travel is None else _with_proved_bounds(mission, catalog, travel, analysis)
 
 
@@ -131,40 +135,40 @@ def _with_proved_bounds(
     """Return the analysis with a witness of its lower bounds, and without those it does not prove.
 
     Left out are the diagnostics that claim a lower bound on time or energy which the witness does
-    not prove (see `without_bounds`).
+    not prove (see `without_unproved_diagnostics`).
     """
     if not any(d.code in AT_LEAST for d in analysis.diagnostics):
         return analysis
     witnesses, steps = analysis.witnesses, None
     if witnesses is not None:
         steps = least_steps(mission, catalog, travel, witnesses.nominal)
-        least = None if steps is None else make_least_witness(steps)
+        least = None if steps is None else find_least_witness(steps)
         witnesses = replace(witnesses, least=least)
         analysis = analysis.model_copy(update={"witnesses": witnesses})
-    return without_bounds(analysis, unproved_claims(steps, analysis))
+    return without_unproved_diagnostics(analysis, unproved_claims(steps, analysis))
 
 
-def without_bounds(analysis: Analysis, wrong: Sequence[Diagnostic]) -> Analysis:
-    """Return the analysis without the diagnostics `wrong`, whose lower bounds no witness proves.
+def without_unproved_diagnostics(analysis: Analysis, rejected: Sequence[Diagnostic]) -> Analysis:
+    """Return the analysis without the diagnostics `rejected`, whose lower bounds no witness proves.
 
     `unjudged` of the result says what is therefore not known.
     """
-    if not wrong:
+    if not rejected:
         return analysis
-    subjects = ", ".join(dict.fromkeys(_SUBJECTS[d.code] for d in wrong))
+    subjects = ", ".join(dict.fromkeys(_SUBJECTS[d.code] for d in rejected))
     return analysis.model_copy(
         update={
-            "diagnostics": tuple(d for d in analysis.diagnostics if d not in wrong),
+            "diagnostics": tuple(d for d in analysis.diagnostics if d not in rejected),
             "unjudged": (*analysis.unjudged, subjects),
         }
     )
 
 
-def without_verdicts(analysis: Analysis, wrong: Sequence[str]) -> Analysis:
+def with_all_verdicts_possible(analysis: Analysis, rejected_claims: Sequence[str]) -> Analysis:
     """Return the analysis without all results that rest on its witnesses, as some are wrong.
 
-    Every verdict becomes POSSIBLE, and `unjudged` gets the texts in `wrong`, which name the results
-    that a witness should prove and does not.
+    Every verdict becomes POSSIBLE, and `unjudged` gets the texts in `rejected_claims`, which name
+    the results that a witness should prove and does not.
     """
     tasks = tuple(
         TaskFacts(
@@ -187,7 +191,7 @@ def without_verdicts(analysis: Analysis, wrong: Sequence[str]) -> Analysis:
             "tasks": tasks,
             "groups": groups,
             "ends": Verdict.POSSIBLE,
-            "unjudged": (*analysis.unjudged, *wrong),
+            "unjudged": (*analysis.unjudged, *rejected_claims),
             "witnesses": None,
         }
     )
@@ -252,7 +256,7 @@ def _unconditional_verdict(study: Study, leaf: int) -> Verdict:
             for g in _hard_groups_ending_with(study, leaf)
         ):
             return verdict
-        while group is not None and flow.groups[group].may_end:
+        while group is not None and flow.groups[group].has_limit_or_until:
             group = flow.group_of_round_end(flow.groups[group].successor)
         if group is None:
             return verdict
@@ -271,7 +275,7 @@ def _hard_groups_ending_with(study: Study, leaf: int) -> list[int]:
     while group >= 0 and flow.groups[group].last == leaf:
         if flow.groups[group].hard:
             groups.append(group)
-        elif not flow.groups[group].may_end:
+        elif not flow.groups[group].has_limit_or_until:
             groups.clear()
         group = flow.groups[group].parent
     return groups
@@ -285,5 +289,5 @@ def _group_facts(study: Study, number: int) -> GroupFacts:
     if group.hard:
         ends = _reach_verdict(study, flow.time_up_node(number))
     else:
-        ends = ended if group.may_end else Verdict.NEVER
+        ends = ended if group.has_limit_or_until else Verdict.NEVER
     return GroupFacts(group=group.name, repeats=repeats, ends=ends)

@@ -29,7 +29,7 @@ list of tasks or groups, as in `LeastSpent`; or BEGIN or END"""
 BEGIN: ProgramPoint = ("begin", 0)
 END: ProgramPoint = ("end", 0)
 
-Spent = Mapping[ProgramPoint, float]
+SpentByPoint = Mapping[ProgramPoint, float]
 """least time (s) or energy (Wh) from the mission's start to each point"""
 
 _TOLERANCE = 1e-6  # s, as sums of floats are not exact
@@ -121,21 +121,21 @@ class LeastSteps:
             return self._chains[at]
         return self._chains[at][:-1] if kind in ("left", "entered") else ()
 
-    def is_always_missed(self, point: ProgramPoint, time: Spent) -> bool:
+    def is_always_missed(self, point: ProgramPoint, least_times: SpentByPoint) -> bool:
         """Return True if a task can't end before its hard window closes, by lower bounds on time.
 
-        `point` is the end of the task; `time` has the least s from the mission's start to each
-        point.
+        `point` is the end of the task; `least_times` has the least s from the mission's start to
+        each point.
         """
         deadline = self._deadline(point[1])
-        return deadline is not None and time.get(point, 0.0) > deadline + _TOLERANCE
+        return deadline is not None and least_times.get(point, 0.0) > deadline + _TOLERANCE
 
-    def always_missed_tasks(self, time: Spent) -> frozenset[int]:
+    def always_missed_tasks(self, least_times: SpentByPoint) -> frozenset[int]:
         tasks = range(len(self.mission.tasks))
-        return frozenset(i for i in tasks if self.is_always_missed(("task", i), time))
+        return frozenset(i for i in tasks if self.is_always_missed(("task", i), least_times))
 
-    def successors(
-        self, point: ProgramPoint, spent: Spent, periods: tuple[float, ...], *, of_time: bool
+    def successors_with_least_totals(
+        self, point: ProgramPoint, spent: SpentByPoint, periods: tuple[float, ...], *, of_time: bool
     ) -> Iterator[tuple[ProgramPoint, float]]:
         """Yield the points that can follow a point, with the least time or energy until each.
 
@@ -166,7 +166,7 @@ class LeastSteps:
         self,
         cost: _VisitCost,
         here: float,
-        spent: Spent,
+        spent: SpentByPoint,
         periods: tuple[float, ...],
         of_time: bool,
     ) -> Iterator[tuple[ProgramPoint, float]]:
@@ -196,7 +196,7 @@ class LeastSteps:
             yield ("missed", i), max(missed, deadline) if of_time and not shared else missed
 
     def _earliest_end(
-        self, g: int, here: float, spent: Spent, periods: tuple[float, ...], of_time: bool
+        self, g: int, here: float, spent: SpentByPoint, periods: tuple[float, ...], of_time: bool
     ) -> float | None:
         """Return the least time (s) or energy (Wh) at which a group's last round can end (G8).
 
@@ -370,7 +370,7 @@ class LeastSteps:
         return task.on_failure in (OnFailure.RETURN, OnFailure.ABORT)
 
     def _continues(self, task: Task) -> bool:
-        """Return True if the mission goes on after a task's failure as after its success (T8)."""
+        """Return True if a task's failure is followed by the transitions of its success (T8)."""
         branches = task.on_failure is OnFailure.BRANCH and task.failure_target is not None
         return not branches and not self._ends_mission(task)
 
@@ -456,7 +456,9 @@ def _is_consistent(
     for point in spent:
         if point[0] == "task" and point[1] in late:
             continue
-        for other, least in steps.successors(point, spent, witness.periods, of_time=of_time):
+        for other, least in steps.successors_with_least_totals(
+            point, spent, witness.periods, of_time=of_time
+        ):
             # This also rejects NaN.
             if other not in spent or not spent[other] <= least:
                 return False
@@ -476,10 +478,10 @@ def unproved_bounds(
 def least_steps(
     mission: Mission, catalog: Catalog | None, travel: Travel, nominal: Invariant
 ) -> LeastSteps | None:
-    """Return the steps of a mission with their least costs, if an invariant leaves them possible.
+    """Return the steps that an invariant of the mission allows, with their least costs; or None.
 
-    Returns None if the invariant is wrong or includes failures, or if there are too many positions
-    of the robot or nested groups.
+    Returns None if the invariant `nominal` is wrong or includes failures, or if there are too many
+    positions of the robot or nested groups.
     """
     proved = Verifier(mission, catalog).check_invariant(nominal)
     if proved is None or nominal.failures:
@@ -511,8 +513,8 @@ class _ProvedBounds:
 
     steps: LeastSteps
     analysis: Analysis
-    time: Spent
-    energy: Spent
+    time: SpentByPoint
+    energy: SpentByPoint
 
     def proves(self, claim: Diagnostic) -> bool:
         mission = self.steps.mission
@@ -523,10 +525,11 @@ class _ProvedBounds:
         return _too_late(mission, claim, self.time)
 
 
-def _exceeds(spent: Spent, claimed: Bounds | None, limit: float | None) -> bool:
-    """Return True if the proved least cost of the mission confirms the claim and exceeds a limit.
+def _exceeds(spent: SpentByPoint, claimed: Bounds | None, limit: float | None) -> bool:
+    """Return True if the mission's proved least cost is the claimed one or more, and above a limit.
 
-    `spent` has the proved lower bounds; all are times in s or energies in Wh.
+    False if there is no claim, limit or proof. `spent` has the proved lower bounds; all are times
+    in s or energies in Wh.
     """
     least = None if claimed is None else claimed.least.value
     if least is None or limit is None or END not in spent:
@@ -534,7 +537,7 @@ def _exceeds(spent: Spent, claimed: Bounds | None, limit: float | None) -> bool:
     return spent[END] > limit and spent[END] >= least - _TOLERANCE - _ROUND_TOLERANCE * least * 10
 
 
-def _too_late(mission: Mission, claim: Diagnostic, time: Spent) -> bool:
+def _too_late(mission: Mission, claim: Diagnostic, time: SpentByPoint) -> bool:
     for i, task in enumerate(mission.tasks):
         if subject_of("tasks", task.name) == claim.subject:
             latest = None if task.window is None else task.window.latest

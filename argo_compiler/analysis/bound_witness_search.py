@@ -8,7 +8,7 @@ from argo_compiler.analysis.bound_verification import (
     END,
     LeastSteps,
     ProgramPoint,
-    Spent,
+    SpentByPoint,
 )
 from argo_compiler.analysis.witness import LeastSpent, LeastWitness
 
@@ -16,7 +16,7 @@ _MOST_STEPS = 100  # greatest number of steps for each task and group
 _ROUNDING = 1e-9  # share of a round, so that rounding makes no round cheaper than nothing
 
 
-def make_least_witness(steps: LeastSteps) -> LeastWitness | None:
+def find_least_witness(steps: LeastSteps) -> LeastWitness | None:
     """Return a witness with the least time and energy from the mission's start to each point.
 
     Returns None if the search would take too many steps.
@@ -94,7 +94,9 @@ class _Search:
                 continue
             if of_time and point[0] == "task" and steps.is_always_missed(point, spent):
                 continue
-            for other, least in steps.successors(point, spent, periods, of_time=of_time):
+            for other, least in steps.successors_with_least_totals(
+                point, spent, periods, of_time=of_time
+            ):
                 around = steps.groups_around(other)
                 self._steps_left -= 1 + len(around)
                 if self._steps_left < 0:
@@ -111,7 +113,7 @@ class _Search:
         return spent, again
 
 
-def _witness(steps: LeastSteps, spent: Spent, periods: tuple[float, ...]) -> LeastSpent:
+def _witness(steps: LeastSteps, spent: SpentByPoint, periods: tuple[float, ...]) -> LeastSpent:
     tasks, groups = range(len(steps.mission.tasks)), range(len(steps.mission.groups))
     return LeastSpent(
         tasks=tuple(spent.get(("task", i)) for i in tasks),

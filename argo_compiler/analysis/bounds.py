@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
-from argo_compiler.analysis.completion_times import TaskEnd, completion_times
+from argo_compiler.analysis.completion_times import TaskEnd, task_end_bounds
 from argo_compiler.analysis.flow import Flow
 from argo_compiler.analysis.path_lengths import LevelGraph, Loop, PathLengths
 from argo_compiler.analysis.reachability import Reachability
@@ -28,9 +28,12 @@ class MissionBounds:
     """graph of the level of the mission"""
 
     @cached_property
-    def completion_times(self) -> tuple[TaskEnd, ...]:
-        """Bounds on the end of each leaf over all its visits; for known durations only."""
-        return completion_times(self.lengths, self.mission_level)
+    def task_end_bounds(self) -> tuple[TaskEnd, ...]:
+        """Bounds on the time and energy at the end of each leaf, over all its visits.
+
+        They say little if `duration` is None, as then, for example, travel times are unknown.
+        """
+        return task_end_bounds(self.lengths, self.mission_level)
 
 
 def has_too_many_cancellations(flow: Flow) -> bool:
@@ -97,7 +100,7 @@ def _bounds(
     """Return the bounds on the `time` (s) or `energy` (Wh) of a mission, over all paths to its end.
 
     `level` is the graph of the whole mission; if `endless`, there is no upper bound. Returns None
-    if no path reaches the end: rounds that take no time never use up a group's time limit.
+    if no path reaches the end because rounds that take no time never use up a group's time limit.
     """
     least = min(
         (level.least[quantity][node] + getattr(cost, quantity).least, k)

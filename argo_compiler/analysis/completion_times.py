@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from argo_compiler.analysis.path_lengths import LevelGraph, PathLengths, is_entry
+from argo_compiler.analysis.path_lengths import LevelGraph, PathLengths, is_group_entry
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +25,7 @@ class TaskEnd:
         )
 
 
-def completion_times(lengths: PathLengths, mission: LevelGraph) -> tuple[TaskEnd, ...]:
+def task_end_bounds(lengths: PathLengths, mission: LevelGraph) -> tuple[TaskEnd, ...]:
     """Return for each leaf the bounds on the time of its end and on the energy used until then.
 
     `mission` is the graph of the mission's level. For a leaf in a group, the upper bounds are those
@@ -45,12 +45,12 @@ def completion_times(lengths: PathLengths, mission: LevelGraph) -> tuple[TaskEnd
         for node, key in enumerate(graph.keys):
             least = soonest + graph.least["time"][node]
             here = inside or TaskEnd(least, graph.most["time"][node], graph.most["energy"][node])
-            if is_entry(key):
+            if is_group_entry(key):
                 rounds = lengths.rounds[key]
                 all_rounds = inside or TaskEnd(
                     least, here.latest + rounds.time, here.energy + rounds.energy
                 )
-                pending += [(g, least, all_rounds) for g in lengths.graphs_for(key)]
+                pending += [(g, least, all_rounds) for g in lengths.round_graphs(key)]
             elif isinstance(key, int):
                 if lengths.flow.is_leaf(key):
                     ends[key] |= TaskEnd(least, here.latest, here.energy)

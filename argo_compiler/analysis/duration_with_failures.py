@@ -20,7 +20,7 @@ _MOST_LEAVES = 2_000
 """greatest number of leaves of a mission for which the bound is computed"""
 
 
-def longest_duration_with_failures(study: Study) -> Bound | None:
+def duration_bound_with_failures_if_computable(study: Study) -> Bound | None:
     """Return an upper bound on the duration (s) of a mission, failures and reactions included.
 
     Its value is None if there is no limit. Returns None if it can't be computed: without travel
@@ -35,8 +35,8 @@ def longest_duration_with_failures(study: Study) -> Bound | None:
         within = longest_duration(study.flow, study.with_failures, costs)
     except BoundsTooLargeError:
         return None
-    if study.bounds is not None and study.bounds.duration is not None:
-        within = max(within, study.bounds.duration.most.value or 0.0)
+    if study.bounds_if_computable is not None and study.bounds_if_computable.duration is not None:
+        within = max(within, study.bounds_if_computable.duration.most.value or 0.0)
     reactions = _ReactionTimes(study, costs)
     return Bound(value=_finite(min(within + reactions.time_added(), reactions.end_by_time_up())))
 
@@ -133,7 +133,7 @@ class _ReactionTimes:
         longest = self._leg_time(self._start, target)
         for leaf, positions in enumerate(self.costs.positions):
             if positions:
-                cost = self.costs.retreat_cost(leaf, target)
+                cost = self.costs.drive_and_action_cost_if_interrupted(leaf, target)
                 longest = max(longest, math.inf if isinstance(cost, NoPath) else cost.time.most)
         return longest
 

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 
 from argo_compiler.analysis.non_terminating_loops import NonTerminatingLoop
 from argo_compiler.analysis.study import Study
-from argo_compiler.base.listing import quoted
+from argo_compiler.base.listing import quoted_list_text
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Task
@@ -25,7 +25,7 @@ def diagnose_endings(
     """
     if not study.mission.tasks:
         return
-    traps = study.traps
+    traps = study.trap_leaves
     yield from _endless_loops(study, traps)
     yield from _non_terminating_loops(study, loops)
     yield from _unbounded_loops(study, {leaf for trap in traps for leaf in trap})
@@ -33,8 +33,8 @@ def diagnose_endings(
 
 
 def _endless_loops(study: Study, traps: tuple[tuple[int, ...], ...]) -> Iterator[Diagnostic]:
-    severity = Severity.WARNING if study.ended_by_reaction else Severity.ERROR
-    but = "nothing but a reaction" if study.ended_by_reaction else "nothing but a failure"
+    severity = Severity.WARNING if study.may_end_by_reaction else Severity.ERROR
+    but = "nothing but a reaction" if study.may_end_by_reaction else "nothing but a failure"
     can_end = study.nominal.is_reached(study.flow.end_node)
     for trap in traps:
         if not trap:
@@ -68,10 +68,10 @@ def _endless_loops(study: Study, traps: tuple[tuple[int, ...], ...]) -> Iterator
 def _non_terminating_loops(
     study: Study, loops: Iterable[NonTerminatingLoop]
 ) -> Iterator[Diagnostic]:
-    but = "nothing but a reaction" if study.ended_by_reaction else "nothing but a failure"
+    but = "nothing but a reaction" if study.may_end_by_reaction else "nothing but a failure"
     for loop in loops:
         leaves = tuple(sorted(filter(study.flow.is_leaf, loop.nodes)))
-        name = study.object_name(loop.object_id)
+        name = study.object_text(loop.object_id)
         values = loop.readings & (loop.scale.missing_bit - 1)
         shown = [
             *([f"shows {loop.scale.regions_text(values)}"] if values else []),
@@ -93,7 +93,9 @@ def _follow(leaves: tuple[int, ...]) -> str:
 
 
 def _tasks(study: Study, leaves: tuple[int, ...]) -> str:
-    return f"task{'s' if len(leaves) > 1 else ''} {quoted([study.name(i) for i in leaves])}"
+    return (
+        f"task{'s' if len(leaves) > 1 else ''} {quoted_list_text([study.name(i) for i in leaves])}"
+    )
 
 
 def _unbounded_loops(study: Study, trapped: set[int]) -> Iterator[Diagnostic]:
@@ -102,7 +104,7 @@ def _unbounded_loops(study: Study, trapped: set[int]) -> Iterator[Diagnostic]:
     Loops that begin with one of the leaves `trapped` are left out: these can't be left at all and
     have a diagnostic already.
     """
-    bounds = study.bounds
+    bounds = study.bounds_if_computable
     if bounds is None:
         return
     for loop in bounds.loops:
@@ -112,7 +114,11 @@ def _unbounded_loops(study: Study, trapped: set[int]) -> Iterator[Diagnostic]:
         groups = [study.flow.groups[g].name for g in loop.groups]
         parts = [
             *([_tasks(study, loop.leaves)] if loop.leaves else []),
-            *([f"group{'s' if len(groups) > 1 else ''} {quoted(groups)}"] if groups else []),
+            *(
+                [f"group{'s' if len(groups) > 1 else ''} {quoted_list_text(groups)}"]
+                if groups
+                else []
+            ),
         ]
         single = len(loop.leaves) + len(loop.groups) == 1
         they = "it" if single else "they"
@@ -181,7 +187,7 @@ def _leads_to_end(study: Study, node: int) -> bool:
     flow = study.flow
     group = flow.group_of_round_end(node)
     while group is not None:
-        if not flow.groups[group].may_end:
+        if not flow.groups[group].has_limit_or_until:
             return False
         node = flow.groups[group].successor
         group = flow.group_of_round_end(node)

@@ -46,13 +46,13 @@ class GroupFlow:
         return self.count != 1
 
     @property
-    def limited(self) -> bool:
+    def has_round_or_time_limit(self) -> bool:
         """True if a count or a time limit ends the group, whatever is measured."""
         return self.count > 0 or self.duration > 0
 
     @property
-    def may_end(self) -> bool:
-        return self.limited or bool(self.until)
+    def has_limit_or_until(self) -> bool:
+        return self.has_round_or_time_limit or bool(self.until)
 
     def contains(self, leaf: int) -> bool:
         return self.first <= leaf <= self.last
@@ -116,7 +116,7 @@ class Flow:
         return len(self.leaves) + group
 
     def time_up_node(self, group: int) -> int:
-        """Return the node at which the time of the group, or of an enclosing group, may be up."""
+        """Return the node for the moment when the time of the group, or of one around it, is up."""
         return len(self.leaves) + len(self.groups) + group
 
     def is_leaf(self, node: int) -> bool:

@@ -10,8 +10,8 @@ from argo_compiler.analysis.reachability import externally_reported_objects
 from argo_compiler.analysis.results import Bound, Bounds, Stretch
 from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.travel import NoPath, Travel
-from argo_compiler.analysis.windows import diagnose_time_limits, diagnose_windows
-from argo_compiler.base.listing import quoted
+from argo_compiler.analysis.windows import diagnose_task_time_limits, diagnose_windows
+from argo_compiler.base.listing import quoted_list_text
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.diagnostics.subject import subject_of
@@ -43,8 +43,8 @@ def diagnose_limits(
     """
     yield from _blocked_tasks(study)
     yield from _blocked_retreats(study, travel)
-    yield from diagnose_time_limits(study)
-    bounds = study.bounds
+    yield from diagnose_task_time_limits(study)
+    bounds = study.bounds_if_computable
     if bounds is None or bounds.duration is None or bounds.energy is None:
         return
     if study.mission.max_duration is not None:
@@ -146,11 +146,11 @@ def _cut_short(
         for i in range(len(study.flow.leaves))
         if study.is_mission_task(i) and study.nominal.is_reached(i)
     ]
-    lost = [study.name(i) for i in own if limit < bounds.completion_times[i].soonest < math.inf]
+    lost = [study.name(i) for i in own if limit < bounds.task_end_bounds[i].soonest < math.inf]
     unsure = [
         study.name(i)
         for i in own
-        if bounds.completion_times[i].soonest <= limit < bounds.completion_times[i].latest
+        if bounds.task_end_bounds[i].soonest <= limit < bounds.task_end_bounds[i].latest
     ]
     up_to = "without limit" if most is None else f"up to {time_words(most)}"
     ends = "the reaction to time_up then ends it"
@@ -160,8 +160,8 @@ def _cut_short(
         "cut-short",
         f"the mission may take {up_to}, longer than its maximum duration of "
         f"{time_words(limit)}: {ends}"
-        + (f"; if nothing fails, {quoted(lost)} will not be done in time" if lost else "")
-        + (f"; {quoted(unsure)} may not be done, or not in all rounds" if unsure else ""),
+        + (f"; if nothing fails, {quoted_list_text(lost)} will not be done in time" if lost else "")
+        + (f"; {quoted_list_text(unsure)} may not be done, or not in all rounds" if unsure else ""),
         "leave out tasks, shorten groups, or allow more time",
         subject="max_duration",
     )
@@ -223,7 +223,7 @@ def _no_way_back(study: Study, energy: Bounds, travel: Travel) -> Iterator[Diagn
         after = [leaves[stretch.task]] if stretch.task is not None else members[stretch.group or ""]
         back = 0.0
         for leaf in after:
-            cost = study.costs.cost_to(leaf, home)
+            cost = study.costs.drive_and_action_cost(leaf, home)
             if not isinstance(cost, NoPath):
                 back = max(back, cost.energy.most)
         if stretch.until + back + RESERVE_SHARE * battery > battery:
@@ -240,7 +240,7 @@ def _no_way_back(study: Study, energy: Bounds, travel: Travel) -> Iterator[Diagn
 
 
 def ends_mission(reaction: Reaction) -> bool:
-    """Return True if a reaction always ends the mission, unless it holds the robot for ever."""
+    """Return True if a reaction always ends the mission or else holds the robot for ever."""
     limited = reaction.hold_limit is not None
     match reaction.response:
         case Response.ABORT:
@@ -253,7 +253,7 @@ def ends_mission(reaction: Reaction) -> bool:
     return False
 
 
-def diagnose_stale_values(study: Study) -> Iterator[Diagnostic] | None:
+def diagnose_always_stale_values(study: Study) -> Iterator[Diagnostic] | None:
     """Return diagnostics on conditions whose value is always older than their `max_age`.
 
     Returns None if the search would take too long.
@@ -270,7 +270,7 @@ def diagnose_stale_values(study: Study) -> Iterator[Diagnostic] | None:
                     continue
                 if aged and study.nominal.is_reached(i):
                     comparisons.setdefault(o, []).append((i, k, c))
-    steps = study.costs.successor_times()
+    steps = study.costs.least_times_to_successors()
     if len(comparisons) * sum(len(s) for s in steps.values()) > AGE_WORK:
         return None
     return _stale_conditions(study, comparisons, steps)

@@ -38,7 +38,7 @@ def find_non_terminating_loops(study: Study) -> Iterator[NonTerminatingLoop]:
 
     They come in the order of the leaves that compare the checkpoint. A loop is left out if it
     contains another one that the same readings keep going, or if no reading leaves it (see
-    `Study.traps`). Some loops are missing if the search takes too long.
+    `Study.trap_leaves`). Some loops are missing if the search takes too long.
     """
     trapped = {node for nodes in study.trap_nodes for node in nodes}
     search = _Search(study)

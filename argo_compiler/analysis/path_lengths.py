@@ -34,10 +34,10 @@ MOST_STEPS = 400_000
 _TOLERANCE = 1e-9  # s, as sums of floats are not exact
 _MOST_SOURCES = 8  # sources distinguished for one entry of a group
 
-Entry = tuple[int, int, Source]
+GroupEntry = tuple[int, int, Source]
 """group, leaf at which it is entered, and source of that step"""
 
-Key = int | tuple[str, int] | Entry
+Key = int | tuple[str, int] | GroupEntry
 """node of a level: a leaf that has ended, ("missed", leaf) if its window closed, or a group"""
 
 
@@ -104,9 +104,9 @@ class PathLengths:
         self.costs = costs
         self.loops: dict[tuple[tuple[int, ...], tuple[int, ...]], Loop] = {}
         self._steps_left = work
-        self.rounds: dict[Entry, Rounds] = {}
+        self.rounds: dict[GroupEntry, Rounds] = {}
         self._later: dict[int, GroupRound] = {}
-        self._graphs: dict[Entry, LevelGraph] = {}
+        self._graphs: dict[GroupEntry, LevelGraph] = {}
         self._later_graphs: dict[int, LevelGraph] = {}
         self._sources: dict[tuple[int, int], set[Source]] = {}
         self._children: list[list[int]] = [[] for _ in range(len(flow.groups) + 1)]
@@ -121,9 +121,9 @@ class PathLengths:
         """
         # A level needs the levels of its groups. Generators on a stack replace recursive calls, as
         # groups may nest deeper than calls can.
-        stack: list[Generator[Entry, Rounds, LevelGraph | Rounds]]
+        stack: list[Generator[GroupEntry, Rounds, LevelGraph | Rounds]]
         stack = [self._build_level(NOWHERE, self.flow.initial, BEGIN)]
-        keys: list[Entry | None] = [None]
+        keys: list[GroupEntry | None] = [None]
         answer: Rounds | None = None
         while True:
             try:
@@ -140,7 +140,7 @@ class PathLengths:
                 stack.append(self._group_rounds(*wanted))
                 keys.append(wanted)
 
-    def graphs_for(self, entry: Entry) -> Iterator[LevelGraph]:
+    def round_graphs(self, entry: GroupEntry) -> Iterator[LevelGraph]:
         """Yield the graph of a group's first round for one entry, and that of its later rounds.
 
         An entry is the group, the leaf at which it is entered, and what ended before.
@@ -151,7 +151,7 @@ class PathLengths:
 
     def _group_rounds(
         self, group: int, entry: int, source: Source
-    ) -> Generator[Entry, Rounds, Rounds]:
+    ) -> Generator[GroupEntry, Rounds, Rounds]:
         """Return the cost of all rounds of a group that is entered at a leaf from a source.
 
         The generator yields the entries of inner groups, and is sent the costs of all their rounds.
@@ -188,14 +188,14 @@ class PathLengths:
                 exits[source, target] = total if at is None else at | total
         energy = time = 0.0
         for node, key in enumerate(level.keys):
-            inside = self.rounds[key] if is_entry(key) else None
+            inside = self.rounds[key] if is_group_entry(key) else None
             energy = max(energy, level.most["energy"][node] + (inside.energy if inside else 0.0))
             time = max(time, level.most["time"][node] + (inside.time if inside else 0.0))
         return GroupRound(ends, exits, energy, time)
 
     def _build_level(
         self, level: int, entry: int, source: Source
-    ) -> Generator[Entry, Rounds, LevelGraph]:
+    ) -> Generator[GroupEntry, Rounds, LevelGraph]:
         """Return the graph of a level that is entered at a leaf from a source, with distances.
 
         The generator yields the entries of inner groups, and is sent the costs of all their rounds.
@@ -224,7 +224,7 @@ class PathLengths:
             )
             yield Hop(node(following), cost + step, group_exit, cost, without_wait)
             if self.flow.leaves[target].deadline is not None and self.costs.travel is not None:
-                missed = cost + self.costs.cost_until_missed(last, target)
+                missed = cost + self.costs.cost_until_window_closes(last, target)
                 yield Hop(node(("missed", target)), missed, group_exit, cost, without_wait)
 
         if not self.flow.is_leaf(entry):
@@ -241,7 +241,7 @@ class PathLengths:
                 continuations = [
                     ((key, t), FREE, None) for t in self.reachability.targets(self.flow, key)
                 ]
-            elif is_entry(key):
+            elif is_group_entry(key):
                 rounds = yield key
                 continuations = [
                     (exit_key, group_exit.cost, group_exit)
@@ -301,7 +301,7 @@ class PathLengths:
                     inside = set(part)
                     self._record_loop(
                         tuple(sorted(k for k in keys if isinstance(k, int))),
-                        tuple(sorted({k[0] for k in keys if is_entry(k)})),
+                        tuple(sorted({k[0] for k in keys if is_group_entry(k)})),
                         has_exit=any(exit[0] in inside for exit in graph.exits)
                         or any(t not in inside for node in part for t in successors[node]),
                     )
@@ -381,7 +381,7 @@ class _Clock:
 
         Returns None for other nodes, and for all nodes if travel times are unknown.
         """
-        if is_entry(key):
+        if is_group_entry(key):
             return None
         leaf = key if isinstance(key, int) else key[1]
         flow = self.costs.flow
@@ -389,7 +389,7 @@ class _Clock:
         return leaf if windowed and self.costs.travel is not None else None
 
 
-def is_entry(key: Key) -> TypeGuard[Entry]:
+def is_group_entry(key: Key) -> TypeGuard[GroupEntry]:
     """Return True if a node is a group."""
     return isinstance(key, tuple) and len(key) == 3
 

@@ -12,6 +12,6 @@ def time_words(seconds: float) -> str:
     return f"{hours} h {minutes} min" if minutes else f"{hours} h"
 
 
-def energy_words(energy: float) -> str:
+def energy_words(energy_wh: float) -> str:
     """Format an energy in Wh, such as `120 Wh`."""
-    return f"{energy:.3g} Wh" if energy < 1000 else f"{energy:.0f} Wh"
+    return f"{energy_wh:.3g} Wh" if energy_wh < 1000 else f"{energy_wh:.0f} Wh"

@@ -312,7 +312,7 @@ class ReachabilitySearch:
         changing = self.late[self.flow.round_end_node(number)] | self.reported
         if group.may_repeat and not (by_value and guard.certain):
             yield group.start, repeated | changing if by_value else state
-        if group.limited:
+        if group.has_round_or_time_limit:
             yield group.successor, state
         elif by_value and guard.possible:
             yield group.successor, ended | changing
@@ -322,7 +322,7 @@ class ReachabilitySearch:
         return leaf.has_wait_limit or (leaf.deadline is not None and leaf.missed is None)
 
     def _values(self, object_id: str) -> int:
-        """Return the state bits of the values that an object can show; 0 if it is not tracked."""
+        """Return the state bits of all values in an object's range; 0 if it is not tracked."""
         shift = self.fields.shift.get(object_id)
         return 0 if shift is None else self.fields.scales[object_id].possible << shift
 
@@ -364,9 +364,10 @@ class ReachabilitySearch:
         return scale.without_value_bits if self.failures else scale.failed_bit
 
     def _effect_of(self, leaf: LeafFlow) -> _Effect | None:
-        """Return the change of the possible readings when a leaf has ended; None if there is none.
+        """Return the change of the possible readings by a leaf's end; None if there is none.
 
-        A value is missing only if failures or a missed window allow it.
+        The end may be a success or a failure. Readings without a value are possible only if
+        failures are, or if a missed window is followed by the transitions of a success.
         """
         object_id = leaf.measures
         if object_id is None or object_id not in self.fields.scales:
@@ -388,11 +389,11 @@ class ReachabilitySearch:
         return state if effect is None else state & effect.mask | effect.added
 
     def _may_go_on_unmeasured(self, leaf: LeafFlow) -> bool:
-        """Return True if the mission goes on after a leaf's missed window as after its success."""
+        """Return True if a leaf's missed window is followed by the transitions of its success."""
         return leaf.deadline is not None and leaf.missed is None and leaf.failure is None
 
     def _evaluate_guards(self, node: int, state: int) -> list[_GuardResult]:
-        """Return status, target and readings of each transition of a leaf that may be evaluated.
+        """Return status, target and readings, if taken, of each transition that may be evaluated.
 
         `state` has the readings that are possible before the leaf's action. The order is that of
         the transitions; the unconditional one comes last, if it can be taken. Other nodes have no

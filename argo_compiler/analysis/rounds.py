@@ -47,7 +47,7 @@ class GroupRound:
     """greatest duration in s, also if the round does not reach its end"""
 
     @property
-    def end_cost(self) -> Cost | None:
+    def cost_until_end(self) -> Cost | None:
         return union(self.ends.values())
 
 
@@ -77,7 +77,7 @@ def combine_rounds(
     group: GroupFlow,
     first: GroupRound,
     later: GroupRound | None,
-    standing_power: float = 0.0,
+    power_between_rounds: float = 0.0,
 ) -> Rounds:
     """Return the cost of all rounds of a group.
 
@@ -86,9 +86,9 @@ def combine_rounds(
         group: The group.
         first: Cost of its first round.
         later: Cost of each later round; None if there is none.
-        standing_power: Power in W that the robot draws while the next round is not yet due.
+        power_between_rounds: Power in W that the robot draws until the next round is due.
     """
-    return _Combination(group_number, group, first, later, standing_power).rounds()
+    return _Combination(group_number, group, first, later, power_between_rounds).rounds()
 
 
 class _Combination:
@@ -105,8 +105,8 @@ class _Combination:
         self.first = first
         self.later = later
         self.standing_power = standing_power
-        self.first_end = first.end_cost
-        self.period = None if later is None else later.end_cost
+        self.first_end = first.cost_until_end
+        self.period = None if later is None else later.cost_until_end
         self.every = group.every
         self.limit = group.duration or math.inf
         self.count = min(group.count or math.inf, _due_before(self.limit, self.every))
@@ -123,11 +123,14 @@ class _Combination:
             exits=self.exits,
             energy=self._energy_inside(),
             time=self._time_inside(),
-            unlimited=repeats and not self.group.limited,
+            unlimited=repeats and not self.group.has_round_or_time_limit,
         )
 
     def _range(self) -> tuple[float, float]:
-        """Return the fewest rounds until a round's end ends the group, and the most that start."""
+        """Return the fewest rounds after which the group may end, and the most that may start.
+
+        Both may be infinite. They are 0 and 1 if the first round never reaches its end.
+        """
         end, period = self.first_end, self.period
         if end is None:
             return 0, 1
@@ -176,10 +179,11 @@ class _Combination:
         return Cost(time, cost.energy + self._idle_energy(rounds))
 
     def _end_if_waited(self, rounds: float, period: float) -> float:
-        """Return the time in s until `rounds` rounds have ended, if the robot waited before one.
+        """Return the latest time in s at which `rounds` rounds have ended, with a wait for one.
 
-        Rounds are due each `every` s. The robot waited for the second round or for the last one,
-        whichever gives the later end. `period` is the duration of a later round in s.
+        Rounds are due each `every` s. There are two cases: the second round starts when it is due
+        and the others follow without a wait, or the last round starts when it is due. `period` is
+        the duration of a later round in s.
         """
         if math.isinf(rounds):
             return math.inf
@@ -188,7 +192,7 @@ class _Combination:
     def _last_start(self, rounds: float) -> Cost:
         """Return the cost until the last of `rounds` rounds starts.
 
-        `rounds` is at least two, and two if only the first round reaches its end.
+        `rounds` must be at least two, and must be two if only the first round reaches its end.
         """
         previous_end = self._end_after(rounds - 1)
         assert previous_end is not None
@@ -239,7 +243,7 @@ class _Combination:
             self._add((source, self.group.successor), exact or cost, fewest, most)
 
     def _end_of_last(self) -> tuple[Cost | None, float, float]:
-        if self.first_end is None or not self.group.may_end:
+        if self.first_end is None or not self.group.has_limit_or_until:
             return None, 0, 0
         by_count = None if math.isinf(self.count) else self._end_after(self.count)
         if self.group.until:
@@ -336,9 +340,9 @@ class _Combination:
 
 
 def _due_before(limit: float, every: float) -> float:
-    """Return how many rounds are due before `limit` (s) if one is due each `every` seconds.
+    """Return how many rounds are due before `limit` s: the first at 0, then one each `every` s.
 
-    It is infinite if `every` is 0.
+    A round that is due at the limit does not count. Infinite if `every` is 0.
     """
     if not every or limit / every > _MOST_COUNTED:
         return math.inf
@@ -351,7 +355,7 @@ def _due_before(limit: float, every: float) -> float:
 
 
 def _periods_started(time: float, period: float, side: int) -> float:
-    """Return how many periods start within a time, one that starts at its very end included.
+    """Return how many periods start from 0 to `time`, both included; the first starts at 0.
 
     If rounding leaves doubt, `side` decides: 1 for the greater number, -1 for the smaller one.
     """

@@ -143,14 +143,14 @@ class StepCosts:
         return Cost(QuantityRange(cost.time.least, most), cost.energy + waiting)
 
     def cost_without_wait(self, source: Source, target: int) -> Cost:
-        """Return the cost of a step if the robot does not have to wait for the `earliest` time."""
+        """Return the cost of a step, without any wait for the leaf's `earliest` time."""
         if not self.flow.is_leaf(target):
             return FREE
         if self.travel is None:
             return _UNLIMITED
         return self._steps.get((source, target), FREE)
 
-    def cost_until_missed(self, source: Source, target: int) -> Cost:
+    def cost_until_window_closes(self, source: Source, target: int) -> Cost:
         """Return the cost of a step to a leaf that is cancelled as the leaf's hard window closes.
 
         It may have closed before the step begins, so the least is 0.
@@ -166,7 +166,7 @@ class StepCosts:
         """Return the range of the cost of a leaf's action, without the drive to it."""
         return self._action_costs.get(leaf, FREE)
 
-    def successor_times(self) -> dict[object, list[tuple[object, float]]]:
+    def least_times_to_successors(self) -> dict[object, list[tuple[object, float]]]:
         """Return what can follow each leaf or time-out, with the least s between their ends."""
         following: dict[object, list[tuple[object, float]]] = {}
         for (source, target), cost in self._steps.items():
@@ -221,7 +221,7 @@ class StepCosts:
         while group is not None:
             if flow.groups[group].may_repeat:
                 leaves.append(flow.groups[group].start)
-            if not flow.groups[group].may_end:
+            if not flow.groups[group].has_limit_or_until:
                 return tuple(leaves)
             node = flow.groups[group].successor
             group = flow.group_of_round_end(node)
@@ -358,9 +358,9 @@ class StepCosts:
                 self.too_slow[target] = counted
 
     def _include_retries(self, clean_up: float) -> None:
-        """Replace the costs of the steps by upper bounds that include all attempts and clean-ups.
+        """Replace the costs of steps by ranges from 0 to the most that all attempts cost.
 
-        No attempt takes longer than the first one.
+        They include the clean-up after each attempt. No attempt takes longer than the first one.
         """
         longest: dict[int, Cost] = {}
         for (source, target), cost in self._steps.items():
@@ -380,7 +380,7 @@ class StepCosts:
             longest[target] = longest.get(target, FREE) | spent
         self._action_costs |= longest
 
-    def cost_to(self, leaf: int, target: Task) -> Cost | NoPath:
+    def drive_and_action_cost(self, leaf: int, target: Task) -> Cost | NoPath:
         """Return the cost of the drive to a task and of its action, from the end of a leaf.
 
         The task need not be one of the mission: it may be the drive back to the dock. The most is
@@ -396,15 +396,15 @@ class StepCosts:
             cost = cost | _cost(leg)
         return cost
 
-    def retreat_cost(self, leaf: int, target: Task) -> Cost | NoPath:
-        """Return the cost of the drive to a task and of its action, from the drive to a leaf on.
+    def drive_and_action_cost_if_interrupted(self, leaf: int, target: Task) -> Cost | NoPath:
+        """Return the cost of the drive to a task and of its action, from a leaf or the drive to it.
 
         The robot may be anywhere on its drive to the leaf, or the leaf may have ended. The task
         need not be one of the mission: it may be the drive of a reaction. Returns NoPath if the
-        robot can't execute the task from one of its positions after the leaf.
+        robot can't execute the task from one of its positions when the leaf has ended.
         """
         assert self.travel is not None
-        direct = self.cost_to(leaf, target)
+        direct = self.drive_and_action_cost(leaf, target)
         if isinstance(direct, NoPath) or self.flow.leaves[leaf].wait is not None:
             return direct
         cut_costs = _CutCosts(self.flow, self.travel, self._origins, self.positions)

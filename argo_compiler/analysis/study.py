@@ -65,7 +65,7 @@ class Study:
         return tuple(map(tuple, before))
 
     @cached_property
-    def traps(self) -> tuple[tuple[int, ...], ...]:
+    def trap_leaves(self) -> tuple[tuple[int, ...], ...]:
         """Leaves of each loop in `trap_nodes`, in the same order."""
         return tuple(tuple(filter(self.flow.is_leaf, nodes)) for nodes in self.trap_nodes)
 
@@ -74,21 +74,23 @@ class Study:
         return StepCosts(self.flow, self.nominal, self.travel, self.mission)
 
     @cached_property
-    def bounds(self) -> MissionBounds | None:
+    def bounds_if_computable(self) -> MissionBounds | None:
         """Bounds on duration and energy; None if the mission is too large or too deeply nested."""
         if has_too_many_cancellations(self.flow):
             return None
         if self.costs.too_many:
             return None
         try:
-            return compute_bounds(self.flow, self.nominal, self.costs, endless=bool(self.traps))
+            return compute_bounds(
+                self.flow, self.nominal, self.costs, endless=bool(self.trap_leaves)
+            )
         except BoundsTooLargeError:
             return None
 
     def name(self, leaf: int) -> str:
         return self.flow.leaves[leaf].name
 
-    def object_name(self, object_id: str) -> str:
+    def object_text(self, object_id: str) -> str:
         """Return the text that messages use for a checkpoint."""
         if self.catalog is not None and object_id.isdecimal():
             info = self.catalog.checkpoint(int(object_id))
@@ -108,7 +110,7 @@ class Study:
         return [k for k, t in enumerate(self.leaf_task(leaf).transitions) if t.conditions]
 
     @cached_property
-    def ended_by_reaction(self) -> bool:
+    def may_end_by_reaction(self) -> bool:
         """True if the reaction to some event can end the mission."""
         return any(
             r.response is Response.ABORT
@@ -126,7 +128,7 @@ class Study:
         return "" if path is None else self.path_text(path)
 
     def path_text(self, path: tuple[int, ...]) -> str:
-        """Return the tasks on a path of nodes as text, `A > B`; a long path lacks its middle."""
+        """Return the tasks on a path of nodes as text, `A > (3 more) > B` if they are many."""
         leaves = [n for n in path if n < len(self.flow.leaves)]
         if len(leaves) <= _MOST_NAMES + 1:
             return " > ".join(map(self.name, leaves))
@@ -153,7 +155,7 @@ class Study:
         if ended is not None:
             if flow.groups[ended].may_repeat:
                 yield flow.groups[ended].start
-            if flow.groups[ended].may_end:
+            if flow.groups[ended].has_limit_or_until:
                 yield flow.groups[ended].successor
             return
         group = flow.groups[node - len(flow.leaves) - len(flow.groups)]

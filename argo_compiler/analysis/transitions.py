@@ -66,7 +66,7 @@ def _why_not(study: Study, condition: Condition, taken: int, before: int) -> str
     satisfying = scale.satisfying_bits(condition)
     if readings & satisfying:
         return None
-    name = study.object_name(condition.object_id)
+    name = study.object_text(condition.object_id)
     if condition.type.compares and not scale.possible & satisfying:
         return (
             f"{name} shows {scale.regions_text(scale.possible)}, so {condition_text(condition)} "
@@ -116,7 +116,7 @@ def _never_taken(study: Study, leaf: int, k: int, index: int) -> Diagnostic:
     start = f"the transition from task '{task.name}' to '{target}' is never taken: "
     for condition in task.transitions[index].conditions:
         if _is_never_measured(study, leaf, condition.object_id):
-            name = study.object_name(condition.object_id)
+            name = study.object_text(condition.object_id)
             return study.diagnostic(
                 "never-measured",
                 f"{start}no path to '{task.name}' measures {name} before",
@@ -134,10 +134,10 @@ def _never_taken(study: Study, leaf: int, k: int, index: int) -> Diagnostic:
 
 
 def _is_always_taken(study: Study, leaf: int, k: int) -> bool:
-    """Return True if a transition is taken whatever was measured.
+    """Return True if conditional transition `k` of a leaf is taken whatever was measured.
 
-    A transition that is always taken only because earlier ones leave no other values does not
-    count.
+    `k` counts the leaf's conditional transitions from 0. A transition that is always taken only
+    because earlier ones leave no other values does not count.
     """
     guards = study.nominal.conditional_guards(study.flow, leaf)
     if not study.nominal.is_reached(leaf) or k >= len(guards) or not guards[k].certain:
@@ -194,7 +194,7 @@ class _UnmeasuredPaths:
         if not readings & fields.scales[object_id].missing_bit:
             return None
         task = study.leaf_task(leaf)
-        name = study.object_name(object_id)
+        name = study.object_text(object_id)
         path = self._path(leaf, object_id)
         return study.diagnostic(
             "maybe-unmeasured",

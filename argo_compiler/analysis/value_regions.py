@@ -30,17 +30,17 @@ class Scale:
 
     @cached_property
     def missing_bit(self) -> int:
-        """Bit that says: there may be no reading."""
+        """Mask of the bit that says: there may be no reading."""
         return 1 << (2 * len(self.bounds) + 1)
 
     @cached_property
     def unreadable_bit(self) -> int:
-        """Bit that says: the reading may be unreadable."""
+        """Mask of the bit that says: the reading may be unreadable."""
         return self.missing_bit << 1
 
     @cached_property
     def failed_bit(self) -> int:
-        """Bit that says: the reading may have failed for another reason."""
+        """Mask of the bit that says: the reading may have failed for another reason."""
         return self.missing_bit << 2
 
     @cached_property
@@ -58,7 +58,7 @@ class Scale:
         return (1 << self.width) - 1
 
     def satisfying_bits(self, condition: Condition) -> int:
-        """Return the bits of the readings that satisfy a condition on this object at any age."""
+        """Return the bits of the readings that satisfy a condition on this object at some age."""
         match condition.type:
             case ConditionType.UNREADABLE:
                 return self.unreadable_bit

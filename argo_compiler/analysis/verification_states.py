@@ -48,8 +48,8 @@ class ClaimedScale:
     def all_bits(self) -> int:
         return (1 << self.width) - 1
 
-    def region_bits_between(self, low: float, high: float) -> int:
-        """Return the bits of the regions with values from `low` to `high`, both included."""
+    def region_bits_overlapping(self, low: float, high: float) -> int:
+        """Return the bits of the regions with at least one value from `low` to `high`, or equal."""
         first, last = bisect_left(self.bounds, low), bisect_left(self.bounds, high)
         first_bit = 2 * first + (low in self.bounds[first : first + 1])
         last_bit = 2 * last + (high in self.bounds[last : last + 1])
@@ -66,7 +66,7 @@ class ClaimedScale:
         return (1 << (2 * k + 1 + inclusive)) - 1
 
     def satisfying_bits(self, condition: Condition) -> int:
-        """Return the bits of the readings that may satisfy a condition, whatever their age."""
+        """Return the bits of the readings that may satisfy a condition at some age."""
         all_values = self.missing_bit - 1
         match condition.type:
             case ConditionType.UNREADABLE:
@@ -116,10 +116,10 @@ class ClaimedStates:
     def add_scale(
         self, object_id: str, bounds: tuple[float, ...], shift: int, ranges: Mapping[str, Ranges]
     ) -> bool:
-        """Add the scale of a checkpoint; return True if its bits lie above those of the others.
+        """Add the scale of a checkpoint, with its bits from `shift` on; return True if added.
 
-        Returns False, without a change, if the checkpoint has a scale already, or if the bounds do
-        not ascend.
+        Returns False, without a change, if the checkpoint has a scale already, if its bits do not
+        lie above those of the others, or if the bounds do not ascend.
         """
         if object_id in self.scales or shift < self.width:
             return False
@@ -129,16 +129,16 @@ class ClaimedStates:
         values = abnormal = scale.missing_bit - 1
         if object_id in ranges:
             low, high, normal_low, normal_high = ranges[object_id]
-            values = scale.region_bits_between(low, high)
+            values = scale.region_bits_overlapping(low, high)
             # A region has only nominal values if it lies within their bounds.
             first, last = bisect_left(bounds, normal_low), bisect_left(bounds, normal_high)
             if normal_low in bounds[first : first + 1] and normal_high in bounds[last : last + 1]:
-                abnormal &= ~scale.region_bits_between(normal_low, normal_high)
+                abnormal &= ~scale.region_bits_overlapping(normal_low, normal_high)
         self.scales[object_id] = ClaimedScale(bounds, shift, values, abnormal)
         self.width = shift + scale.width
         return True
 
-    def late_readings(self, object_id: str, failures: bool) -> int:
+    def cancelled_measurement_readings(self, object_id: str, failures: bool) -> int:
         """Return the bits of the readings that a cancelled measurement may still report.
 
         It may succeed before it is cancelled; with failures, also without a value.
@@ -158,7 +158,11 @@ class ClaimedStates:
         return not (state | late) & ~known
 
     def stays_in_trap(self, point: ProgramPoint, state: int, kept: KeptReading | None) -> bool:
-        """Return True if a step to a point does not end the mission and keeps a trap's readings."""
+        """Return True if a step to a point does not end the mission and keeps a trap's readings.
+
+        With `kept` None, the readings may be any. Whether the point is one of the trap's is not
+        checked.
+        """
         if point == END or kept is None:
             return point != END
         return not self.get(state, kept.object_id) & ~kept.readings

@@ -141,7 +141,7 @@ class MissionWalk:
         """Return the readings that the task's action may still report while it is cancelled."""
         if task.action is not _MEASURE or task.object_id not in self.states.scales:
             return 0
-        return self.states.late_readings(task.object_id, self.failures)
+        return self.states.cancelled_measurement_readings(task.object_id, self.failures)
 
     def _after_success(self, task: Task, state: int) -> int:
         """Return the readings when the robot (C3) or a person (H3) has done a task."""
@@ -194,7 +194,7 @@ class MissionWalk:
         return continues and (self._may_fail_otherwise(task) or self._missed_target(task) is None)
 
     def _failure_points(self, task: Task) -> Iterator[ProgramPoint]:
-        """Yield the points that a task's final failure leads to, but not its success (T8, W5)."""
+        """Yield where a final failure leads, except onwards as after a success (T8, W5)."""
         missed = self._missed_target(task)
         if self._can_miss_window(task) and missed is not None:
             yield self.layout.task_point(missed)
@@ -239,7 +239,7 @@ class MissionWalk:
     def _evaluate(
         self, conditions: tuple[Condition, ...], state: int, fresh: str | None
     ) -> tuple[int | None, int, bool]:
-        """Return the readings if all conditions hold, those if not, and whether they always hold.
+        """Return the readings if all conditions hold, those if not, and if `state` makes them hold.
 
         The first result is None if the conditions can't hold.
         """
@@ -280,7 +280,10 @@ class MissionWalk:
         if known is None or not condition.type.compares:
             return True, False
         scale = ClaimedScale(tuple(sorted({*known[:2], *compared_bounds(condition)})), 0, 0, 0)
-        values, holding = scale.region_bits_between(*known[:2]), scale.satisfying_bits(condition)
+        values, holding = (
+            scale.region_bits_overlapping(*known[:2]),
+            scale.satisfying_bits(condition),
+        )
         return values & holding != 0, not values & ~holding
 
     def _exact(self, condition: Condition, fresh: str | None) -> bool:

@@ -12,12 +12,15 @@ _TOLERANCE = 1e-6  # s, as sums of floats are not exact
 
 
 def diagnose_windows(study: Study, bounds: MissionBounds) -> Iterator[Diagnostic]:
-    """Yield diagnostics on tasks that end too late for their window, at the planned times."""
+    """Yield diagnostics on tasks that end too late for their window on some or all paths.
+
+    The times are those of `bounds`: planned travel times and actions, without failures.
+    """
     for leaf, flow in enumerate(study.flow.leaves):
         window = flow.leaf.task.window
         if window is None or window.latest is None or not study.nominal.is_reached(leaf):
             continue
-        end = bounds.completion_times[leaf]
+        end = bounds.task_end_bounds[leaf]
         name, latest = study.name(leaf), time_words(window.latest)
         if end.soonest > window.latest + _TOLERANCE:
             soonest = ""
@@ -41,8 +44,8 @@ def diagnose_windows(study: Study, bounds: MissionBounds) -> Iterator[Diagnostic
             )
 
 
-def diagnose_time_limits(study: Study) -> Iterator[Diagnostic]:
-    """Yield diagnostics on tasks that take longer than their time limit, at the planned times."""
+def diagnose_task_time_limits(study: Study) -> Iterator[Diagnostic]:
+    """Yield diagnostics on tasks that always take longer than their time limit if nothing fails."""
     for leaf, taken in sorted(study.costs.too_slow.items()):
         limit = study.leaf_task(leaf).time_limit
         assert limit is not None

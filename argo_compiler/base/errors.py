@@ -99,11 +99,11 @@ class Unavailable(ArgoError):
     code = "unavailable"
 
 
-def located(error: ArgoError, name: str) -> ArgoError:
-    """Return an error of the same kind whose message begins with `name` and a colon.
+def with_message_prefix(error: ArgoError, prefix: str) -> ArgoError:
+    """Return a new error of the same kind whose message begins with `prefix` and a colon.
 
-    `name` is the thing that the error is about, such as a file.
+    `prefix` is the thing that the error is about, such as a file.
     """
     kinds = (NotFound, Invalid, Unreachable, Conflict, Unavailable)
     kind = next((kind for kind in kinds if isinstance(error, kind)), ArgoError)
-    return kind(f"{name}: {error}", remedies=error.remedies, about=error.about)
+    return kind(f"{prefix}: {error}", remedies=error.remedies, about=error.about)

@@ -38,7 +38,7 @@ def collector_held() -> Iterator[None]:
 
 
 def enable_garbage_collector(seldom: bool = False) -> None:
-    """Turn the collector on if it was turned off; it skips objects that exist already.
+    """Turn the collector on to skip the objects that exist already; do nothing if it is on.
 
     With `seldom`, which is for commands that end soon, the collector hardly ever runs: the tables
     for parsing scripts are 150,000 containers that stay, and examining them takes a twentieth of

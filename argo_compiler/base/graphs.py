@@ -58,7 +58,7 @@ def is_loop(component: Sequence[int], successors: Successors) -> bool:
 
 
 def can_reach(successors: Successors, goals: Iterable[int]) -> list[bool]:
-    """Return, for each node, whether a goal can be reached from it."""
+    """Return, for each node, whether a goal can be reached from it; True for the goals."""
     before: list[list[int]] = [[] for _ in successors]
     for node, following in enumerate(successors):
         for other in following:
@@ -67,7 +67,7 @@ def can_reach(successors: Successors, goals: Iterable[int]) -> list[bool]:
 
 
 def reachable_from(successors: Successors, sources: Iterable[int]) -> list[bool]:
-    """Return, for each node, whether it can be reached from a source."""
+    """Return, for each node, whether it can be reached from a source; True for the sources."""
     reached = [False] * len(successors)
     pending = list(sources)
     for node in pending:

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from argo_compiler.base.nearest_name import nearest_name
 from argo_compiler.checks.checked_item import CheckedItem
 from argo_compiler.checks.instant_loops import MIN_TIME_S
-from argo_compiler.checks.timing import has_timing_or_branch
+from argo_compiler.checks.timing import has_timing_or_failure_branch
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Action, Group, Mission, Stop, Task
 from argo_compiler.il.grouping import (
@@ -34,7 +34,7 @@ _MOST_HINTS = 20
 def check_groups(mission: Mission) -> tuple[Diagnostic, ...]:
     """Return the diagnostics of a mission's groups.
 
-    Whether an endless group is ever left is checked only if there are no other errors.
+    Whether an endless group is ever left is checked only if its other checks give no diagnostics.
     """
     if not mission.groups:
         return ()
@@ -228,7 +228,7 @@ def _stays_inside(task: Task, around: GroupRange, position: Mapping[str, int]) -
 
     This is a quick test: it returns False for any task with more than one transition.
     """
-    if len(task.transitions) != 1 or has_timing_or_branch(task):
+    if len(task.transitions) != 1 or has_timing_or_failure_branch(task):
         return False
     to = position.get(task.transitions[0].target)
     return to is not None and around.contains(to)

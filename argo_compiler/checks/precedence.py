@@ -105,10 +105,10 @@ class _TaskGraph:
                 self.component_of[node] = number
 
     def violated(self, pairs: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
-        """Yield the pairs whose second task can be reached before the first one.
+        """Yield the pairs whose first task can follow the second one.
 
-        A pair is violated if the first task can follow the second one, unless both lie on a cycle
-        and the second one can be reached only through the first.
+        A pair is left out if both lie on a cycle and the second one can be reached only through the
+        first, or if one of them can't be reached.
         """
         nodes = [(self.position[first], self.position[second]) for first, second in pairs]
         nodes = [(a, b) for a, b in nodes if self.reached[a] and self.reached[b]]

@@ -27,7 +27,10 @@ _fill = object.__setattr__
 
 
 def span_at(line: int, column: int, length: int) -> Span:
-    """Return a span without checking the numbers: much faster, as a script has very many spans."""
+    """Return a span at a line and column, both from 1, without checking the numbers.
+
+    This is much faster, as a script has very many spans.
+    """
     new = object.__new__(Span)
     _fill(new, "__dict__", {"line": line, "column": column, "length": length})
     _fill(new, "__pydantic_fields_set__", _CHECKED.__pydantic_fields_set__)
@@ -127,7 +130,10 @@ def count(diagnostics: Iterable[Diagnostic], severity: Severity) -> int:
 
 
 def severity_counts_text(diagnostics: Iterable[Diagnostic]) -> str:
-    """Return the numbers of diagnostics by severity as text, such as `2 errors, 5 warnings`."""
+    """Return the numbers of diagnostics by severity as text, such as `2 errors, 5 warnings`.
+
+    Severities without diagnostics are left out; without any, the text is `no findings`.
+    """
     diagnostics = tuple(diagnostics)
     counts = ((count(diagnostics, severity), severity) for severity in Severity)
     parts = (f"{number} {severity}{'' if number == 1 else 's'}" for number, severity in counts)

@@ -33,8 +33,8 @@ def subject_of(field: str, name: str, rest: str = "") -> str:
     return f"{field}['{_CONTROL.sub(_escaped, name)}']{rest}"
 
 
-def parse_subject(text: str) -> SubjectPath:
-    """Parse a path that `subject_of` or `format_path` wrote."""
+def split_subject(text: str) -> SubjectPath:
+    """Return the steps of a path that `subject_of` or `format_path` wrote; it is not checked."""
     return tuple(_step(match) for match in _STEP.finditer(text))
 
 

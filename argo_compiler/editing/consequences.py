@@ -55,7 +55,7 @@ class Edited(Model):
     """further changes that the edit required, in the mission's order"""
 
 
-def edit_result(
+def checked_edit_result(
     before: Mission,
     after: Mission,
     *,

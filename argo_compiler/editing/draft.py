@@ -102,7 +102,7 @@ class MissionDraft:
             raise unknown("group", name, [g.group.name for g in self.groups])
         return group
 
-    def entry_positions(self) -> dict[int, int]:
+    def positions_by_entry_id(self) -> dict[int, int]:
         """Return the position of each task in the list, by the `id()` of its DraftTask."""
         return {id(entry): i for i, entry in enumerate(self.tasks)}
 
@@ -127,11 +127,11 @@ class MissionDraft:
     def move(self, entry: DraftTask, anchor: DraftTask | None, into: str | None) -> None:
         """Move a task behind another one, the anchor; to the start of the list if that is None.
 
-        The effects on groups are those of `remove` and `insert`; `into` is as there. If the task
-        was the last one of a group, the group's new last task takes over the target of its
-        unconditional transition; but if the task then follows the group directly, the task keeps
-        that target. Raises EditNotFound, or EditConflict if the task can't be inserted there or a
-        group that it ends can't end with its neighbour.
+        The effects on groups are those of `remove` and `insert`; `into` is as there. If the moved
+        task was the last one of a group, the group's new last task takes over the target of the
+        moved task's unconditional transition; but if the moved task then follows the group
+        directly, it keeps that target. Raises EditNotFound, or EditConflict if the task can't be
+        inserted there or a group that it ends can't end with its neighbour.
         """
         if into is not None and _is_only_task(entry, self.find_group(into)):
             raise conflict(
@@ -162,9 +162,9 @@ class MissionDraft:
 
         At a group's border the task is outside of the group, or inside if `into` names it. If it
         becomes the group's last task, it takes over the target of the former last task, unless it
-        leads elsewhere itself; in both cases the former last task then leads to the new one. Raises
-        EditNotFound if there is no such group, EditConflict if the group does not extend to this
-        position.
+        already leads to another task than the next one; in both cases the former last task then
+        leads to the new one. Raises EditNotFound if there is no such group, EditConflict if the
+        group does not extend to this position.
         """
         self.tasks.insert_after(anchor, entry)
         if into is not None:
@@ -177,7 +177,7 @@ class MissionDraft:
 
     def _add_to_groups(self, entry: DraftTask, into: str) -> None:
         self.find_group(into)
-        position = self.entry_positions()
+        position = self.positions_by_entry_id()
         at = position[id(entry)]
         for g in self.groups:
             if g.first is None or g.last is None:

@@ -62,7 +62,7 @@ def ambiguous(name: str) -> EditConflict:
     return conflict("edit.ambiguous-task", message, hint, subject_of("tasks", name))
 
 
-def require_unique(name: str, positions: Sequence[int], known: Collection[str]) -> int:
+def require_single_position(name: str, positions: Sequence[int], known: Collection[str]) -> int:
     """Return the position of the only task with a name.
 
     `positions` are those of the tasks with this name; `known` are the names of all tasks.

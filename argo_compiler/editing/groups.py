@@ -10,7 +10,7 @@ from typing import TypedDict, Unpack
 from pydantic import ValidationError
 
 from argo_compiler.diagnostics.subject import subject_of
-from argo_compiler.editing.consequences import Edited, edit_result
+from argo_compiler.editing.consequences import Edited, checked_edit_result
 from argo_compiler.editing.draft import DraftGroup, DraftTask, MissionDraft
 from argo_compiler.editing.errors import (
     EditInvalid,
@@ -113,7 +113,7 @@ def rename_group(mission: Mission, name: str, own_name: str) -> Edited:
     _require_own_name(own)
     full = prefix + own
     if full == name:
-        return edit_result(mission, mission)
+        return checked_edit_result(mission, mission)
     renamed = {
         old: full + old.removeprefix(name)
         for g in draft.groups
@@ -152,7 +152,9 @@ def change_group(mission: Mission, name: str, **fields: Unpack[GroupFields]) -> 
         for g in draft.groups:
             if g is not changed:
                 _require_nesting_stays(g, changed, ranges.relation(g, changed))
-    return edit_result(mission, draft.mission(), requested=frozenset([subject_of("groups", name)]))
+    return checked_edit_result(
+        mission, draft.mission(), requested=frozenset([subject_of("groups", name)])
+    )
 
 
 # ---- ranges
@@ -163,7 +165,7 @@ class _TaskRanges:
 
     def __init__(self, draft: MissionDraft) -> None:
         self.names = [entry.task.name for entry in draft.tasks]
-        self.position = draft.entry_positions()
+        self.position = draft.positions_by_entry_id()
 
     def relation(self, g: DraftGroup, new: DraftGroup) -> str:
         """Return how group `g` lies to `new`: "inside", "around", "apart" or "same" (same tasks).
@@ -292,4 +294,4 @@ def _with_renamed_groups(draft: MissionDraft, renamed: Mapping[str, str], reques
             entry.task = entry.task.model_copy(update={"group": new_name})
     after = draft.mission()
     subjects = frozenset([subject_of("groups", requested)])
-    return edit_result(draft.original, after, requested=subjects, renamed_groups=renamed)
+    return checked_edit_result(draft.original, after, requested=subjects, renamed_groups=renamed)

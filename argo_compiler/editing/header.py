@@ -7,7 +7,7 @@ from pydantic import ValidationError
 
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Diagnostic, diagnostic_of
-from argo_compiler.editing.consequences import Edited, edit_result
+from argo_compiler.editing.consequences import Edited, checked_edit_result
 from argo_compiler.editing.errors import EditInvalid, unknown
 from argo_compiler.il import Mission, Mode, Order
 
@@ -48,7 +48,9 @@ def set_header(mission: Mission, **fields: Unpack[HeaderFields]) -> Edited:
     current = values.get("current")
     if current is not None and mission.task(current) is None:
         raise unknown("task", current, [task.name for task in mission.tasks])
-    return edit_result(mission, mission.model_copy(update=values), requested=frozenset(fields))
+    return checked_edit_result(
+        mission, mission.model_copy(update=values), requested=frozenset(fields)
+    )
 
 
 def require_known_fields(given: Iterable[str], known: Collection[str], owner: str) -> None:

@@ -2,7 +2,7 @@
 
 from argo_compiler.diagnostics import diagnostic_of
 from argo_compiler.diagnostics.subject import subject_of
-from argo_compiler.editing.consequences import Edited, edit_result
+from argo_compiler.editing.consequences import Edited, checked_edit_result
 from argo_compiler.editing.errors import EditNotFound, conflict, require_kind
 from argo_compiler.il import EventKind, Mission, Reaction
 
@@ -16,13 +16,13 @@ def add_reaction(mission: Mission, reaction: Reaction) -> Edited:
     """
     require_kind(reaction, Reaction, "the reaction")
     _require_free(mission, reaction.event)
-    return edit_result(
+    return checked_edit_result(
         mission, mission.model_copy(update={"reactions": (*mission.reactions, reaction)})
     )
 
 
 def change_reaction(mission: Mission, event: EventKind, reaction: Reaction) -> Edited:
-    """Replace the reaction to an event.
+    """Replace the reaction to `event`, in its place; the new one may be to another event.
 
     Raises EditNotFound if the event has no reaction, and the errors of `add_reaction`.
     """
@@ -32,14 +32,14 @@ def change_reaction(mission: Mission, event: EventKind, reaction: Reaction) -> E
         _require_free(mission, reaction.event)
     others = mission.reactions
     changed = mission.model_copy(update={"reactions": (*others[:at], reaction, *others[at + 1 :])})
-    return edit_result(mission, changed)
+    return checked_edit_result(mission, changed)
 
 
 def remove_reaction(mission: Mission, event: EventKind) -> Edited:
     """Remove the reaction to an event. Raises EditNotFound if there is none."""
     at = _reaction_index(mission, event)
     others = mission.reactions
-    return edit_result(
+    return checked_edit_result(
         mission, mission.model_copy(update={"reactions": (*others[:at], *others[at + 1 :])})
     )
 

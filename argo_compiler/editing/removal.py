@@ -6,7 +6,7 @@ conditional transition or branch can end a round.
 """
 
 from argo_compiler.diagnostics.subject import subject_of
-from argo_compiler.editing.consequences import Consequence, Edited, edit_result
+from argo_compiler.editing.consequences import Consequence, Edited, checked_edit_result
 from argo_compiler.editing.draft import DraftGroup, DraftTask, MissionDraft
 from argo_compiler.editing.errors import EditConflict, conflict
 from argo_compiler.editing.targets import default_targets, retargeted
@@ -48,7 +48,7 @@ def remove_task(mission: Mission, name: str) -> Edited:
     draft.remove(entry)
     after = draft.mission()
     _require_beginning(name, successor, mission, after)
-    result = edit_result(mission, after)
+    result = checked_edit_result(mission, after)
     if default_target(entry.task) != name or entry.task.action is Action.START:
         return result
     consequence = Consequence(
@@ -83,7 +83,7 @@ class _Removal:
         self.draft = draft
         self.entry = entry
         self.name = entry.task.name
-        self.position = draft.entry_positions()
+        self.position = draft.positions_by_entry_id()
         self.successor = self._successor()
         self.leading = [
             other for other in draft.tasks if other is not entry and self._leads_to_it(other.task)

@@ -7,7 +7,7 @@ from pydantic import ValidationError
 
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics.subject import subject_of
-from argo_compiler.editing.consequences import Edited, edit_result
+from argo_compiler.editing.consequences import Edited, checked_edit_result
 from argo_compiler.editing.draft import DraftTask, MissionDraft
 from argo_compiler.editing.errors import (
     EditInvalid,
@@ -15,7 +15,7 @@ from argo_compiler.editing.errors import (
     name_taken,
     require_kind,
     require_name,
-    require_unique,
+    require_single_position,
     unknown,
 )
 from argo_compiler.editing.header import invalid_value_diagnostics, require_known_fields
@@ -73,7 +73,7 @@ def add_task(
         shown_in_group=draft.names_match_nesting and not task.group,
     )
     draft.insert(entry, _anchor(draft, before, after, first), into)
-    return edit_result(mission, draft.mission())
+    return checked_edit_result(mission, draft.mission())
 
 
 def replace_task(mission: Mission, name: str, task: Task) -> Edited:
@@ -102,7 +102,9 @@ def replace_task(mission: Mission, name: str, task: Task) -> Edited:
         entry.shown_in_group = False
     entry.task = task
     requested = frozenset([subject_of("tasks", task.name)])
-    return edit_result(mission, draft.mission(), requested=requested, renamed_tasks=draft.new_names)
+    return checked_edit_result(
+        mission, draft.mission(), requested=requested, renamed_tasks=draft.new_names
+    )
 
 
 def change_task(mission: Mission, name: str, **fields: Unpack[TaskFields]) -> Edited:
@@ -116,7 +118,7 @@ def change_task(mission: Mission, name: str, **fields: Unpack[TaskFields]) -> Ed
     # No draft: none of these fields changes the order of tasks or a transition.
     known = dict.fromkeys(task.name for task in mission.tasks)
     positions = [i for i, task in enumerate(mission.tasks) if task.name == name]
-    at = require_unique(name, positions, known)
+    at = require_single_position(name, positions, known)
     task = mission.tasks[at]
     require_known_fields(fields, TaskFields.__annotations__, "a task")
     try:
@@ -127,7 +129,7 @@ def change_task(mission: Mission, name: str, **fields: Unpack[TaskFields]) -> Ed
     changed = task.model_copy(update={field: getattr(values, field) for field in fields})
     tasks = (*mission.tasks[:at], changed, *mission.tasks[at + 1 :])
     after = mission.model_copy(update={"tasks": tasks})
-    return edit_result(mission, after, requested=frozenset([subject_of("tasks", name)]))
+    return checked_edit_result(mission, after, requested=frozenset([subject_of("tasks", name)]))
 
 
 def move_task(
@@ -154,7 +156,7 @@ def move_task(
         message = f"task '{name}' can't be moved before or after itself"
         raise invalid("edit.place", message, "name another task")
     draft.move(entry, _anchor(draft, before, after, first), into)
-    return edit_result(mission, draft.mission())
+    return checked_edit_result(mission, draft.mission())
 
 
 def rename_task(mission: Mission, name: str, new_name: str) -> Edited:
@@ -169,7 +171,7 @@ def rename_task(mission: Mission, name: str, new_name: str) -> Edited:
         if draft.has_task(new_name):
             raise name_taken("task", new_name, subject_of("tasks", new_name))
         draft.rename(entry, new_name)
-    return edit_result(mission, draft.mission(), renamed_tasks=draft.new_names)
+    return checked_edit_result(mission, draft.mission(), renamed_tasks=draft.new_names)
 
 
 def _anchor(

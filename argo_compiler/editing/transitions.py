@@ -4,12 +4,12 @@ from collections.abc import Sequence
 
 from argo_compiler.diagnostics import diagnostic_of
 from argo_compiler.diagnostics.subject import subject_of
-from argo_compiler.editing.consequences import Edited, edit_result
+from argo_compiler.editing.consequences import Edited, checked_edit_result
 from argo_compiler.editing.errors import (
     EditNotFound,
     conflict,
     require_kind,
-    require_unique,
+    require_single_position,
     unknown,
 )
 from argo_compiler.il import Condition, Mission, Task, Transition
@@ -42,7 +42,7 @@ def set_transitions(mission: Mission, task: str, transitions: Sequence[Transitio
     after = mission.model_copy(
         update={"tasks": (*mission.tasks[:at], changed, *mission.tasks[at + 1 :])}
     )
-    return edit_result(mission, after, requested=frozenset([subject_of("tasks", task)]))
+    return checked_edit_result(mission, after, requested=frozenset([subject_of("tasks", task)]))
 
 
 def add_transition(
@@ -50,7 +50,8 @@ def add_transition(
 ) -> Edited:
     """Add a transition to a task, before the one at a position; as the last one if `at` is None.
 
-    Raises as `set_transitions` does.
+    Positions count from 0. Raises as `set_transitions` does, and EditNotFound for a position that
+    the task does not have.
     """
     old_transitions = _find_task(mission, task).transitions
     at = len(old_transitions) if at is None else at
@@ -63,10 +64,10 @@ def add_transition(
 
 
 def remove_transition(mission: Mission, task: str, at: int) -> Edited:
-    """Remove one transition of a task.
+    """Remove the transition of a task at a position, counted from 0.
 
     A task without an unconditional transition ends the mission if no condition is true.
-    Raises as `set_transitions` does.
+    Raises as `add_transition` does.
     """
     old_transitions = _find_task(mission, task).transitions
     _transition_at(task, old_transitions, at)
@@ -74,14 +75,14 @@ def remove_transition(mission: Mission, task: str, at: int) -> Edited:
 
 
 def set_target(mission: Mission, task: str, at: int, target: str) -> Edited:
-    """Set the target of one transition. Raises as `set_transitions` does."""
+    """Set the target of the transition at a position. Raises as `add_transition` does."""
     return _change_transition(mission, task, at, {"target": target})
 
 
 def set_conditions(mission: Mission, task: str, at: int, conditions: Sequence[Condition]) -> Edited:
     """Replace the conditions of a transition; without conditions it is unconditional.
 
-    Raises as `set_transitions` does.
+    Raises as `add_transition` does.
     """
     for condition in conditions:
         require_kind(condition, Condition, f"a condition of task '{task}'")
@@ -91,14 +92,17 @@ def set_conditions(mission: Mission, task: str, at: int, conditions: Sequence[Co
 def add_condition(mission: Mission, task: str, at: int, condition: Condition) -> Edited:
     """Add a condition to a transition; it must be true in addition to the others.
 
-    Raises as `set_transitions` does.
+    Raises as `add_transition` does.
     """
     transition = _transition_at(task, _find_task(mission, task).transitions, at)
     return set_conditions(mission, task, at, (*transition.conditions, condition))
 
 
 def remove_condition(mission: Mission, task: str, at: int, condition: int) -> Edited:
-    """Remove one condition of a transition. Raises as `set_transitions` does."""
+    """Remove the condition at a position, counted from 0, of a transition.
+
+    A transition without conditions is unconditional. Raises as `add_transition` does.
+    """
     require_kind(condition, int, "the position of the condition")
     conditions = _transition_at(task, _find_task(mission, task).transitions, at).conditions
     if not 0 <= condition < len(conditions):
@@ -138,4 +142,4 @@ def _find_task(mission: Mission, name: str) -> Task:
 
 def _task_index(mission: Mission, name: str) -> int:
     positions = [i for i, task in enumerate(mission.tasks) if task.name == name]
-    return require_unique(name, positions, {task.name for task in mission.tasks})
+    return require_single_position(name, positions, {task.name for task in mission.tasks})

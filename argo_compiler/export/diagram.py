@@ -53,11 +53,11 @@ class Diagram:
         """
         return self.ids[id].replace("g", "r")
 
-    def target_id(self, id: str) -> str | None:
+    def id_unless_mission_end(self, id: str) -> str | None:
         """Return the diagram's id of the machine's state `id`, or None for the mission's end."""
         return None if id == DONE else self.ids[id]
 
-    def nested(self) -> Iterator[tuple[int, Leaf | Composite | None]]:
+    def elements_and_group_ends(self) -> Iterator[tuple[int, Leaf | Composite | None]]:
         """Yield all leaves and groups in order, each with the number of groups that contain it.
 
         None instead of a leaf or group marks the end of a group. This is not recursive, as groups
@@ -96,7 +96,7 @@ class Diagram:
         if transition.completes is not None:
             target: str | None = self.choice_id(transition.completes)
         else:
-            target = self.target_id(transition.target or DONE)
+            target = self.id_unless_mission_end(transition.target or DONE)
         return Arrow(source, target, transition_label(transition, group))
 
     def first_leaf_id(self, group: Composite) -> str:
@@ -108,7 +108,7 @@ class Diagram:
 
 
 def transition_label(transition: StateTransition, group: Composite | None = None) -> str:
-    """Return the label of a transition's arrow: why it is taken; empty for the usual one.
+    """Return the label of a transition's arrow: why it is taken; empty for an unconditional one.
 
     `group` is the group that the transition belongs to; None if it belongs to a task.
     """
@@ -136,7 +136,7 @@ def transition_label(transition: StateTransition, group: Composite | None = None
     return ", ".join(["repeat", *limits])
 
 
-def task_label(task: Task) -> str:
+def task_label_with_limits(task: Task) -> str:
     """Return the task's name, followed in brackets by its durations, times, speed and limits."""
     parts = [] if task.wait is None else [_wait_label(task.wait)]
     if task.velocity is not None:

@@ -148,8 +148,9 @@ class _Behavior:
     def _outcome(self, machine: str, target: int | str) -> str:
         """Return the outcome with which a state inside a FlexBE machine leads towards the target.
 
-        `machine` is the id of the composite. `target` is as in the memory that the states share: a
-        task's number, minus a group's depth for the end of its round, or `end` or `aborted`. The
+        `machine` is the id of the composite. `target` is as in the memory that the states share:
+        the number of a task, the negative of a group's depth for the end of the group's round, or
+        `end` or `aborted`. The
         outcome is the label of the machine's child with the target, `round` or `left`.
         """
         if isinstance(target, str):
@@ -359,6 +360,6 @@ def _pose(task: Task) -> list[float]:
 
 
 def _identifier(name: str) -> str:
-    """Return the name as an identifier of at most 42 ASCII characters; it may be empty."""
+    """Return the name as an identifier of at most 42 ASCII characters; the result may be empty."""
     plain = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")[:40]
     return f"m_{plain}" if plain[:1].isdigit() else plain

@@ -1,6 +1,6 @@
 """Export of the machine as a DOT graph for Graphviz, with a cluster for each group."""
 
-from argo_compiler.export.diagram import Arrow, Diagram, reaction_label, task_label
+from argo_compiler.export.diagram import Arrow, Diagram, reaction_label, task_label_with_limits
 from argo_compiler.export.xml import printable
 from argo_compiler.hfsm import Hfsm, Leaf
 
@@ -25,14 +25,13 @@ def _lines(hfsm: Hfsm) -> list[str]:
         '  start [shape=point, width=0.15, label=""];',
         '  done [shape=doublecircle, width=0.15, label=""];',
     ]
-    for depth, item in diagram.nested():
+    for depth, item in diagram.elements_and_group_ends():
         indent = "  " * min(1 + depth, 20)
         if item is None:
             lines.append(f"{indent}}}")
         elif isinstance(item, Leaf):
-            lines.append(
-                f"{indent}{diagram.ids[item.id]} [label={_quoted(task_label(item.task))}];"
-            )
+            label = _quoted(task_label_with_limits(item.task))
+            lines.append(f"{indent}{diagram.ids[item.id]} [label={label}];")
         else:
             # Outside of the cluster, as an edge from a cluster's border can't end inside it.
             lines.append(f'{indent}{diagram.choice_id(item.id)} [shape=diamond, label=""];')
@@ -43,7 +42,7 @@ def _lines(hfsm: Hfsm) -> list[str]:
         for i, state in enumerate(hfsm.reactions, 1):
             lines.append(f"    e{i} [shape=note, label={_quoted(reaction_label(state.reaction))}];")
         lines.append("  }")
-    lines.append(f"  start -> {diagram.target_id(hfsm.mission.initial) or 'done'};")
+    lines.append(f"  start -> {diagram.id_unless_mission_end(hfsm.mission.initial) or 'done'};")
     lines += (f"  {_edge(diagram, arrow)}" for arrow in diagram.transition_arrows())
     return [*lines, "}"]
 

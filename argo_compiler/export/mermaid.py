@@ -2,7 +2,7 @@
 
 import re
 
-from argo_compiler.export.diagram import Diagram, reaction_label, task_label
+from argo_compiler.export.diagram import Diagram, reaction_label, task_label_with_limits
 from argo_compiler.hfsm import Hfsm, Leaf
 
 _END = "[*]"
@@ -22,7 +22,7 @@ def to_mermaid(hfsm: Hfsm) -> str:
 
 
 def _lines(diagram: Diagram) -> list[str]:
-    initial = diagram.target_id(diagram.hfsm.mission.initial) or _END
+    initial = diagram.id_unless_mission_end(diagram.hfsm.mission.initial) or _END
     lines = ["stateDiagram-v2", *_states(diagram), *_reactions(diagram)]
     lines.append(f"    [*] --> {initial}")
     # Mermaid accepts transitions between states of different groups only if all states come first
@@ -35,14 +35,13 @@ def _lines(diagram: Diagram) -> list[str]:
 
 def _states(diagram: Diagram) -> list[str]:
     lines: list[str] = []
-    for depth, item in diagram.nested():
+    for depth, item in diagram.elements_and_group_ends():
         indent = "    " * min(1 + depth, 20)
         if item is None:
             lines.append(f"{indent}}}")
         elif isinstance(item, Leaf):
-            lines.append(
-                f'{indent}state "{_escape(task_label(item.task))}" as {diagram.ids[item.id]}'
-            )
+            label = _escape(task_label_with_limits(item.task))
+            lines.append(f'{indent}state "{label}" as {diagram.ids[item.id]}')
         else:
             lines.append(f"{indent}state {diagram.choice_id(item.id)} <<choice>>")
             lines.append(f'{indent}state "{_escape(item.name)}" as {diagram.ids[item.id]} {{')

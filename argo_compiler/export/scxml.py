@@ -13,7 +13,7 @@ from argo_compiler.base.number_text import number_text
 from argo_compiler.export.scxml_control import (
     ControlRegion,
     outcome_code,
-    round_deadline,
+    round_due_time,
     write_outcome_states,
 )
 from argo_compiler.export.scxml_data import (
@@ -206,7 +206,7 @@ class _Document:
             if repeat.every:
                 due = f"entered_{n} + (round_{n} - 1) * {number_text(repeat.every)}"
                 with self.xml.nest_in("if", {"cond": f"{due} > {clock}"}):
-                    self._assign([("awaits", str(n)), ("due_round", round_deadline(n, repeat))])
+                    self._assign([("awaits", str(n)), ("due_round", round_due_time(n, repeat))])
 
     # Tasks
 

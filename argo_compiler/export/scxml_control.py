@@ -144,7 +144,7 @@ class ControlRegion:
                 self._assign([("mode", 0), ("lost", "now - clock"), ("look", 1)])
                 for n, repeat in self.rounds:
                     with self.xml.nest_in("if", {"cond": f"awaits == {n}"}):
-                        self._assign([("due_round", round_deadline(n, repeat))])
+                        self._assign([("due_round", round_due_time(n, repeat))])
                 for n, counted in self.timed.items():
                     with self.xml.nest_in("if", {"cond": f"In('g{n}') && until_{n} < {NEVER}"}):
                         start_group_timer(self.xml, n, counted)
@@ -406,8 +406,8 @@ def _events(own: Reaction | None, active: Reaction | None) -> dict[str, str]:
     }
 
 
-def round_deadline(n: int, repeat: RepeatRule) -> str:
-    """Return the expression for the time at which the present round of group `n` is due.
+def round_due_time(n: int, repeat: RepeatRule) -> str:
+    """Return the expression for the time at which the present round of group `n` is due to begin.
 
     The time is in s since the mission's start.
     """

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from functools import cached_property
 
-from argo_compiler.diagnostics.subject import NamedItem, parse_subject, subject_of
+from argo_compiler.diagnostics.subject import NamedItem, split_subject, subject_of
 from argo_compiler.il.mission import Mission
 
 
@@ -36,7 +36,7 @@ class Subjects:
         in which that was looked for.
         """
         steps: list[str | int] = []
-        for step in parse_subject(text):
+        for step in split_subject(text):
             if not isinstance(step, NamedItem):
                 steps.append(step)
                 continue

@@ -154,7 +154,7 @@ class BranchCosts:
         node, extra = flow.leaves[leaf].unconditional, 0.0
         group = flow.group_of_round_end(node)
         while group is not None and group != level:
-            if not flow.groups[group].may_end:
+            if not flow.groups[group].has_limit_or_until:
                 return None, 0.0
             extra += self._further_rounds(group, costs)
             node = flow.groups[group].successor

@@ -119,7 +119,7 @@ class TaskGraph:
                 following[i].append(flow.time_up_node(leaf.parent))
         for g, group in enumerate(flow.groups):
             following[flow.round_end_node(g)].append(group.start)
-            if group.may_end:
+            if group.has_limit_or_until:
                 following[flow.round_end_node(g)].append(group.successor)
             if group.hard:
                 following[flow.time_up_node(g)].append(group.successor)
@@ -161,7 +161,7 @@ class TaskGraph:
                 self._add_edges(level, group, leaf)
         for inner, within in enumerate(flow.groups):
             # Outer groups have smaller numbers than their inner groups.
-            if inner > group and within.may_end and within.last in child_of:
+            if inner > group and within.has_limit_or_until and within.last in child_of:
                 direct = inner if within.parent == group else None
                 number = child_of[within.last]
                 self._add_edge(level, group, number, within.last, within.successor, True, direct)

@@ -247,7 +247,7 @@ class _Finder:
     def _group_unit(self, group: int, around: Level, child: int, entry: int) -> GroupUnit | str:
         """Return the group as a group unit, or the reason why it is none."""
         flow = self.flow.groups[group]
-        if not flow.limited:
+        if not flow.has_round_or_time_limit:
             return "only a condition or the time of a group around it ends it"
         if self.graph.is_wait(flow.start):
             return f"it starts with '{self.flow.leaves[flow.start].name}', which is done anywhere"

@@ -8,7 +8,7 @@ from typing import Any
 from loky import ProcessPoolExecutor
 from loky.process_executor import BrokenProcessPool
 
-from argo_compiler.base.errors import ArgoError, Unavailable, located
+from argo_compiler.base.errors import ArgoError, Unavailable, with_message_prefix
 from argo_compiler.route.problem import RouteProblem
 from argo_compiler.route.suggested import RouteSuggestion
 from argo_compiler.route.suggestion import suggest_route
@@ -37,7 +37,7 @@ def suggest_routes(
             try:
                 suggestion = future.result()
             except ArgoError as error:
-                raise located(error, f"problem {number}") from error
+                raise with_message_prefix(error, f"problem {number}") from error
             for next_number, problem in islice(numbered, 1):
                 next_future = pool.submit(partial(suggest_route, **arguments), problem)
                 pending.append((next_number, next_future))

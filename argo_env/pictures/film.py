@@ -21,7 +21,7 @@ from loky import ProcessPoolExecutor
 from loky.process_executor import BrokenProcessPool
 from PIL import GifImagePlugin, Image
 
-from argo_compiler.base.errors import Invalid, Unavailable, located
+from argo_compiler.base.errors import Invalid, Unavailable, with_message_prefix
 from argo_compiler.base.extras import install_line
 from argo_compiler.files.atomic_write import atomic_draft, check_writable
 from argo_env.files.folders import CHOOSE_ANOTHER_PLACE, reporting_write_errors
@@ -332,7 +332,7 @@ def write_film(
             try:
                 write_mp4(frames, draft, (width, height), fps)
             except Unavailable as error:
-                raise located(error, str(file)) from None
+                raise with_message_prefix(error, str(file)) from None
 
 
 def _spread_times(times: list[float]) -> list[float]:

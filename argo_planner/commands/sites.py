@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from argo_compiler.base.errors import ArgoError, Invalid, located
+from argo_compiler.base.errors import ArgoError, Invalid, with_message_prefix
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_planner.terminal import completion
 from argo_planner.terminal.files import check_outputs, print_written, write_content
@@ -82,7 +82,7 @@ def _check_name(output: Path) -> None:
         require_free_name(str(output))
         require_free_name(output.stem)
     except ArgoError as error:
-        raise located(error, str(output)) from None
+        raise with_message_prefix(error, str(output)) from None
 
 
 def _write_description(opened: OpenedSite, output: Path) -> None:

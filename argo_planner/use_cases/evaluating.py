@@ -7,7 +7,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import cast
 
-from argo_compiler.base.errors import ArgoError, Conflict, Invalid, NotFound, located
+from argo_compiler.base.errors import ArgoError, Conflict, Invalid, NotFound, with_message_prefix
 from argo_compiler.base.version import __version__
 from argo_compiler.files.loading import read_bytes
 from argo_compiler.il import Mission
@@ -273,4 +273,4 @@ def _require_drawn(cases: list[EvaluationCase], drawn: FaultDistribution, file: 
             try:
                 check_spec(case.spec.model_copy(update={"faults": faults}), site)
             except ArgoError as error:
-                raise located(error, f"{file}: {chance.name}") from None
+                raise with_message_prefix(error, f"{file}: {chance.name}") from None

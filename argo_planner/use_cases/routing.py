@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from argo_compiler.analysis import analyse
-from argo_compiler.base.errors import ArgoError, Conflict, Invalid, Remedy, located
+from argo_compiler.base.errors import ArgoError, Conflict, Invalid, Remedy, with_message_prefix
 from argo_compiler.base.stages import stage
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.files.loading import decode_text, require_size
@@ -144,7 +144,7 @@ def suggest_order(
     except DiagnosticError as error:
         raise DiagnosticError(name, error.diagnostics) from None
     except ArgoError as error:
-        raise located(error, name) from None
+        raise with_message_prefix(error, name) from None
     with stage("searching for the best order") as report:
 
         def report_progress(progress: SearchProgress, *_: object) -> None:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from argo_compiler.analysis import analyse, unproved_bounds
 from argo_compiler.analysis.bound_verification import is_valid, least_steps
-from argo_compiler.analysis.bound_witness_search import make_least_witness
+from argo_compiler.analysis.bound_witness_search import find_least_witness
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import has_errors
 from argo_compiler.hfsm import Cause, lower
@@ -29,7 +29,7 @@ def witnessed(plan, catalog, travel):
     if witnesses is None:
         return None, None
     steps = least_steps(plan, catalog, travel, witnesses.nominal)
-    return make_least_witness(steps), steps
+    return find_least_witness(steps), steps
 
 
 @settings(max_examples=examples(30), suppress_health_check=SLOW)

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.diagnostics.subject import parse_subject
+from argo_compiler.diagnostics.subject import split_subject
 from argo_compiler.files.json_places import (
     JsonText,
     find_duplicate_keys,
@@ -87,7 +87,7 @@ def test_duplicate_keys_are_found_at_any_depth_and_in_any_spelling():
 
 @pytest.mark.parametrize("path", ["tasks[3].transitions[0].target", "tasks", "groups[10].name"])
 def test_a_parsed_path_is_formatted_as_before(path):
-    assert format_path(parse_subject(path)) == path
+    assert format_path(split_subject(path)) == path
 
 
 def test_deep_nesting_is_no_problem():

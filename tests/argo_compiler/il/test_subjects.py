@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from argo_compiler.checks import check
-from argo_compiler.diagnostics.subject import NamedItem, parse_subject, subject_of
+from argo_compiler.diagnostics.subject import NamedItem, split_subject, subject_of
 from argo_compiler.files.mission_file import decode_mission, mission_text
 from argo_compiler.il import Action, Group, Mission, Task, Transition
 from argo_compiler.il.subjects import Subjects
@@ -22,8 +22,8 @@ def test_names_are_written_as_in_normalised_paths():
 
 @given(names, st.sampled_from(["", ".name", ".transitions[3].conditions[0].object_id"]))
 def test_any_name_is_read_back(name, rest):
-    path = parse_subject(subject_of("groups", name, rest))
-    assert path == ("groups", NamedItem(name), *parse_subject(rest))
+    path = split_subject(subject_of("groups", name, rest))
+    assert path == ("groups", NamedItem(name), *split_subject(rest))
 
 
 @given(missions())

@@ -64,7 +64,6 @@ SHARED_NAMES = {
     "open": "make ready for use",
     "pose_at": "return the pose at a moment of a motion",
     "prepare": "compute in advance what later calls share",
-    "project": "project points in space into a picture",
     "receive": "return the messages that have arrived",
     "replay": "carry out again what was recorded",
     "reset": "set to a start state",

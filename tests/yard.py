@@ -227,7 +227,7 @@ class Watching(Observer):
         self._observe, self._announce = observe, announce
 
     def on_change(self, entry, _):
-        for news in entry.sensed if self._announce else ():
+        for news in entry.anomalies_and_reading if self._announce else ():
             self._announce(news)
 
     def on_step(self, now, action):

@@ -274,7 +274,7 @@ class _ActionObserver(Observer):
         return (*self._ended_contacts, *self._present_contacts)
 
     def on_change(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
-        self.sensed += entry.sensed
+        self.sensed += entry.anomalies_and_reading
         self.reading = entry.reading or self.reading
         self.mishaps += entry.mishaps
         self._ended_contacts += entry.contacts

@@ -155,4 +155,6 @@ def false_alarms(record: RunRecord, spec: RunSpec, site: Site) -> int:
             truth, finding
         )
 
-    return sum(not (finding.is_reported or is_true(finding)) for finding in record.findings)
+    return sum(
+        not (finding.is_reported_from_outside or is_true(finding)) for finding in record.findings
+    )

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 from argo_env.drives.battery import Battery
 from argo_env.drives.powertrain import Powertrain
-from argo_env.sensing.onboard import OnboardSensor
+from argo_env.sensing.onboard import SensorWithFaults
 from argo_env.surroundings import Surroundings
 from argo_env.surroundings.surroundings import RadioNetwork
 from argo_env.world.without_physics import AnyWorld
@@ -19,7 +19,7 @@ class FaultTargets:
     """value that each checkpoint shows, in its unit, by the checkpoint's number"""
     surroundings: Surroundings
     drive: Powertrain
-    sensor: OnboardSensor
+    sensor: SensorWithFaults
     battery: Battery
     network: RadioNetwork
     fault_free_values: dict[int, float] = field(init=False)

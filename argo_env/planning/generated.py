@@ -4,7 +4,7 @@ from argo_compiler.base.errors import ArgoError, Unreachable
 from argo_env.navigation.navigator import Navigator
 from argo_env.planning.checking import unpatrolled_floors, unseen_checkpoints
 from argo_env.robot.spec import RobotSpec, load_robot
-from argo_env.site.families import draw_site
+from argo_env.site.families import draw_site_and_slots
 from argo_env.site.family import Family
 from argo_env.site.site import make_site
 
@@ -32,7 +32,7 @@ def generate(family: Family, robot: RobotSpec | None = None) -> Navigator:
     for attempt in range(_LAYOUTS):
         refused: set[tuple[int, int]] = set()
         for _ in range(_ROUNDS):
-            spec, slots = draw_site(family, attempt, refused)
+            spec, slots = draw_site_and_slots(family, attempt, refused)
             navigator = Navigator(make_site(spec), robot)
             try:
                 _ = navigator.lattice

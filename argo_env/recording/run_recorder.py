@@ -198,7 +198,10 @@ class RunRecorder(Observer):
                 detail = f": {original.detail}" if original.detail else ""
                 self._log(f"{original.event.replace('_', ' ')}{detail}", Log.WARNING, "event", now)
         assert self._setup is not None, "on_begin comes first"
-        anomalies = (*entry.found, *entry.reported_anomalies(self._setup.navigator.site))
+        anomalies = (
+            *entry.found,
+            *entry.anomalies_reported_from_outside(self._setup.navigator.site),
+        )
         for anomaly in anomalies:
             self._anomalies.append(anomaly)
             self._writer.put_json("/findings", anomaly, now)
@@ -335,7 +338,7 @@ def _actual_site(setup: RunSetup) -> Site:
     site, world = setup.navigator.site, setup.world
     if not isinstance(world, World):
         return site
-    return site.with_elements(tuple(e for e in world.solids if e.solids))
+    return site.replacing_elements(tuple(e for e in world.solids if e.solids))
 
 
 def _joint_positions(setup: RunSetup) -> JointPositions:

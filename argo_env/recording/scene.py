@@ -90,7 +90,10 @@ def _finding(id: str, anomaly: Anomaly, position: Vector, t: float) -> SceneEnti
     text = anomaly.kind.replace("_", " ") + (f": {anomaly.detail}" if anomaly.detail else "")
     visuals = [Visual("sphere", (_BALL, _BALL, _BALL), position, level, _ABNORMAL)]
     if anomaly.place is None:
-        text, visuals = f"{'reported' if anomaly.is_reported else 'noticed from'} here: {text}", []
+        text, visuals = (
+            f"{'reported' if anomaly.is_reported_from_outside else 'noticed from'} here: {text}",
+            [],
+        )
     if anomaly.extent is not None:
         x0, y0, x1, y1 = anomaly.extent
         middle = ((x0 + x1) / 2, (y0 + y1) / 2, position[2])

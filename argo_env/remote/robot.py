@@ -29,7 +29,7 @@ from argo_env.robot.pose import BodyPose
 from argo_env.run.initial_state import InitialState
 from argo_env.run.log import Entry
 from argo_env.run.odometry import Odometry
-from argo_env.run.perception import located_anomaly
+from argo_env.run.perception import anomaly_at_checkpoint
 from argo_env.run.record import DIGITS, Anomaly, Reading, TaskRun
 from argo_env.run.robot import ActionEnd, RobotAction, Sensed
 from argo_env.run.run_setup import RunSetup
@@ -184,7 +184,7 @@ class RemoteAction:
             self.cancelled, self._interrupted = reason, interrupted
             self._order_to_cancel()
 
-    def detour(self, setup: RunSetup) -> None:
+    def detour_if_blocked(self, setup: RunSetup) -> None:
         """No-op: the robot plans its own paths."""
 
     def to_action_end(self, report: EndReport, abnormal: bool) -> ActionEnd:
@@ -313,10 +313,10 @@ class RemoteRobot:
     def update_faults(self, now: float) -> None:
         """No-op: faults are not simulated."""
 
-    def avoid(self, blockages: Sequence[Blockage]) -> None:
+    def add_blockages(self, blockages: Sequence[Blockage]) -> None:
         self.setup = replace(self.setup, navigator=self.setup.navigator.with_blockages(blockages))
 
-    def start(self, command: StartAction, now: float, arrival_path: Path | None) -> RobotAction:  # noqa: ARG002
+    def start(self, command: StartAction, now: float, arrived_by: Path | None) -> RobotAction:  # noqa: ARG002
         """Prepare the order of an action, which the next `advance` sends.
 
         If the robot already executes an action of the same run and id, it continues that action
@@ -368,7 +368,7 @@ class RemoteRobot:
             return Sensed(found=tuple(found))
         reading = make_reading(own.task, ended, site, self._drive.pose, now)
         if reading and not reading.normal:
-            found.append(located_anomaly(reading, site))
+            found.append(anomaly_at_checkpoint(reading, site))
         self._action = None
         end = own.to_action_end(ended, reading is not None and not reading.normal)
         return Sensed(end, reading, tuple(found))

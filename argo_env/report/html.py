@@ -43,7 +43,7 @@ def page(record: RunRecord, site: Site) -> str:
         site=site,
         found=_findings(record),
         untold=any(map(lacks_measuring_times, record.tasks)),
-        missed=record.missed_faults,
+        missed=record.faults_not_begun,
         failed=[t for t in record.tasks if t.outcome == "failed"],
         readings=[(reading, markup(_bar(reading))) for reading in record.readings],
         timeline=markup(draw_timeline(record)) if record.tasks or record.waits else None,

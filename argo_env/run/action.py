@@ -120,11 +120,11 @@ class SimulatedAction:
         elif not self._only_stows:
             self._start_stowing(self._stow)
 
-    def detour(self, setup: RunSetup) -> None:
-        """Continue with a setup whose navigator knows of a new blockage.
+    def detour_if_blocked(self, setup: RunSetup) -> None:
+        """Continue with `setup`, whose navigator knows of a new blockage.
 
-        If the robot is driving, and its path leads through a known blockage, it halts and takes
-        another path.
+        If the robot is driving, and its path leads through any blockage that the navigator knows,
+        it halts and takes another path.
         """
         self._setup = setup
         navigator = setup.navigator
@@ -142,15 +142,15 @@ class SimulatedAction:
         return self._phase in (self._measure, self._stow, self._stow_unread)
 
     @property
-    def is_driving(self) -> bool:
-        """True if the robot drives along its path, and no time limit for reading has begun."""
+    def is_driving_without_reading_limit(self) -> bool:
+        """True if the robot drives along its path, and the task's `reading_limit` has not begun."""
         return self._phase == self._drive and self._give_up_at == math.inf
 
     def count_measuring_steps(self, limit: int) -> int:
         """Return how many of the next steps, at most `limit`, the robot only measures in.
 
         They are the steps before the one in which the measurement ends and its value is read; 0 if
-        the robot does not measure now, or has a limit on the time for reading.
+        the robot does not measure now, or the task's `reading_limit` has begun.
         """
         if self._phase != self._measure or self._give_up_at < math.inf:
             return 0
@@ -168,7 +168,7 @@ class SimulatedAction:
             for _ in range(count):
                 self._remaining -= self._setup.drive.time_step
 
-    def reading(self, now: float) -> Reading | None:
+    def taken_reading(self, now: float) -> Reading | None:
         """Return the reading that the action has taken, if any, with `now` (s) as its time."""
         if self.measurement is None:
             return None
@@ -252,7 +252,7 @@ class SimulatedAction:
         return self._drive()
 
     def _start_retreat(self) -> ActionEnd | None:
-        """Start to drive back along the arrival path, to plan a path from there."""
+        """Start to drive back along the arrival path; at its end, a path is planned anew."""
         assert self.arrival_path is not None
         self._retreated = True
         back_path = path_back(self.arrival_path, _to_pose(self._setup.drive.pose), RETREAT)
@@ -324,7 +324,7 @@ class SimulatedAction:
         return ActionSucceeded(self.task.name, value, abnormal, self._id)
 
     def _try_next_view(self, failure: str) -> ActionEnd | None:
-        """Drive to the next pose to look from, if the checkpoint is turned otherwise than planned.
+        """Drive to the next pose to look from: the checkpoint may be turned otherwise than planned.
 
         The action fails with `failure` if there is no further view, the task states a pose from
         which to measure, or the action is cancelled.
@@ -361,7 +361,7 @@ class SimulatedAction:
         return self._now >= self._give_up_at - _INSTANT
 
     def _start_stowing(self, phase: Callable[[], ActionEnd | None]) -> None:
-        """Enter `phase`, which lasts as long as it takes to stow the arm from where it is."""
+        """Enter `phase`, which lasts as long as stowing the arm from its present position takes."""
         third = self._setup.navigator.robot.sensor.stowing_time
         self._remaining = min(self._measuring_time - self._remaining, third)
         self._phase = phase
@@ -417,7 +417,7 @@ class SimulatedAction:
         return () if joints is None else tuple(n for n in joints.names if n not in moved)
 
     def _raised_arm(self) -> dict[str, float]:
-        """Return the joint angles (deg) of the raised arm: those of the task, else the robot's."""
+        """Return joint angles (deg) of the raised arm: the robot's, unless the task states one."""
         raised = self._setup.navigator.robot.arm_raised
         return raised | {
             name: angle for name, angle in _requested_joints(self.task).items() if name in raised

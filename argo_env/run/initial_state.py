@@ -59,9 +59,9 @@ def make_machine(mission: Mission, beginning: InitialState | None = None) -> Exe
 
 
 def progress_now(machine: Machine, now: float, by_hand: Sequence[ByHand]) -> Progress:
-    """Return the machine's progress at time `now` (s), with the tasks in `by_hand` done.
+    """Return the machine's progress at time `now` (s), with those in `by_hand` done or skipped.
 
-    `now` counts from the mission's start. Raises Conflict if the mission is not paused, an action
+    `now` counts from the mission's start. Raises Conflict if the machine is not paused, an action
     still runs, or the mission has ended or has nothing left to do.
     """
     if machine.finished or machine.outcome is not None:

@@ -88,7 +88,7 @@ class Journal(Observer, Closing):
         line = _line(self._lines, entry)
         try:
             write_all(self._file, line)
-            if entry.is_essential:
+            if entry.must_survive_power_loss:
                 os.fsync(self._file)
         except OSError as error:
             truncate_if_possible(self._file, self._size)
@@ -102,7 +102,7 @@ class Journal(Observer, Closing):
         self._lines += 1
 
     def require_not_ended(self) -> None:
-        """Raise ArgoError if the run has ended, so that no further event can occur in it."""
+        """Raise ArgoError if the run had ended when the journal was opened: no event can follow."""
         if self.ended:
             raise Conflict(
                 f"{self.path}: the run has ended, at {self.entries[-1].t:g} s: nothing more can "

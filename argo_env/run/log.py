@@ -172,23 +172,23 @@ class Entry(Model):
         return BodyPose(*self.pose)
 
     @property
-    def is_essential(self) -> bool:
+    def must_survive_power_loss(self) -> bool:
         """True if the entry must survive a loss of power.
 
-        It then has events, faults, the end of a task, an order by hand or to stop it, or is that of
-        the run's resumption or end.
+        It then has events, faults, the end of a task, a person's order that the robot acts by hand
+        or stops such an action, or is the entry of the run's resumption or end.
         """
         has_news = self.events or self.faults or self.task or self.by_hand or self.stop_by_hand
         return bool(has_news) or self.resumed or self.ended
 
     @property
-    def sensed(self) -> tuple[Reading | Anomaly, ...]:
+    def anomalies_and_reading(self) -> tuple[Reading | Anomaly, ...]:
         """Anomalies that the robot noticed, without abnormal readings; then its reading, if any."""
         # An abnormal reading is an anomaly as well, and is returned only as the reading.
         noticed = tuple(anomaly for anomaly in self.found if not anomaly.is_reading)
         return (*noticed, *((self.reading,) if self.reading else ()))
 
-    def reported_anomalies(self, site: Site) -> tuple[Anomaly, ...]:
+    def anomalies_reported_from_outside(self, site: Site) -> tuple[Anomaly, ...]:
         """Return the anomalies that events from outside report, with the robot's position then."""
         # The events of what the robot found itself come first.
         x, y, z = (round(v, DIGITS) for v in self.pose[:3])
@@ -207,7 +207,7 @@ class Entry(Model):
 
     @property
     def _has_reading_by_hand(self) -> bool:
-        """True if there is a reading by hand; its event is the first after those of `found`."""
+        """True if there is a reading by hand; its event is `events[len(found)]`."""
         return self.reading is not None and self.task is not None and self.task.by_hand
 
     def given_values(self, site: Site) -> tuple[GivenValue, ...]:
@@ -267,7 +267,7 @@ class RunLog:
             self.readings.append(entry.reading)
         self.given_values += entry.given_values(self.site)
         self.found += [(anomaly, entry.pose) for anomaly in entry.found]
-        self.anomalies += (*entry.found, *entry.reported_anomalies(self.site))
+        self.anomalies += (*entry.found, *entry.anomalies_reported_from_outside(self.site))
         self.mishaps += entry.mishaps
         if entry.events or entry.by_hand or entry.task:
             self.last_event = entry.t

@@ -61,7 +61,7 @@ class OpenMachine:
     """
 
     def __init__(self, mission: Mission) -> None:
-        """Start with a mission of which each task leads to the next."""
+        """Take the first tasks: a mission of which each task leads to the next (not checked)."""
         self.mission = mission
         self._executor = Executor(lower(mission))
         self._handled: list[tuple[Event, float]] = []
@@ -97,7 +97,7 @@ class OpenMachine:
         return () if executor.running is None else (starts[-1],)
 
     def close(self) -> None:
-        """Close the mission: no task follows, and it ends with its last task."""
+        """Close the mission: no task follows. If its last task has ended, it ends at once."""
         self._closed = True
 
     def start(self, now: float) -> tuple[Command, ...]:

@@ -35,8 +35,10 @@ class ContactTracker:
         """Replace the open contacts, for a run that is resumed."""
         self._open = {(c.link, c.element): c for c in contacts}
 
-    def update(self, touches: Iterable[Touch], now: float) -> tuple[Contact, ...]:
-        """Add all touches at time `now` (s), and return the contacts that have ended by then."""
+    def add_touches_and_pop_ended(
+        self, touches: Iterable[Touch], now: float
+    ) -> tuple[Contact, ...]:
+        """Add all touches at time `now` (s); remove and return the contacts ended by then."""
         deepest: dict[tuple[str, str], Touch] = {}
         for touch in touches:
             key = (touch.link, touch.element)
@@ -96,14 +98,14 @@ class Odometry:
         """Add a motion from `before` to `after`, up to time `now` (s), with its touches."""
         self.distance += math.dist((before.x, before.y, before.z), (after.x, after.y, after.z))
         self.climbed += max(0.0, after.z - before.z)
-        self.ended_contacts += self._contacts.update(touches, now)
+        self.ended_contacts += self._contacts.add_touches_and_pop_ended(touches, now)
 
-    def add_incidents(self, incidents: Sequence[Incident], now: float) -> None:
+    def add_new_incidents(self, all_incidents: Sequence[Incident], now: float) -> None:
         """Add the incidents of the drive that are new since the last call as mishaps at `now` (s).
 
-        `incidents` are all since the start.
+        `all_incidents` are all that the drive has recorded, also those of earlier calls.
         """
-        for incident in incidents[self._incident_count :]:
+        for incident in all_incidents[self._incident_count :]:
             pose = incident.pose
             self.mishaps.append(
                 Mishap(
@@ -114,4 +116,4 @@ class Odometry:
                     floor=self._site.floor_at(pose.z),
                 )
             )
-        self._incident_count = len(incidents)
+        self._incident_count = len(all_incidents)

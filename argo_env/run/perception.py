@@ -91,7 +91,7 @@ class Perception:
     def _was_reported(self, watch: Watch, detection: Detection) -> bool:
         """Return True if the detection is an anomaly that was reported before the run was resumed.
 
-        Each of those anomalies is recognised once only.
+        This removes the anomaly from those that are known: a second detection gives False.
         """
         if detection.place is None or isinstance(watch, RestorableWatch):
             return False
@@ -123,8 +123,8 @@ def blockage_from_anomaly(anomaly: Anomaly) -> Blockage | None:
     """Return the part of the surface that an obstacle closes.
 
     None if the anomaly is no obstacle, or has no position. The part is a little larger than what
-    was seen, because the obstacle may reach farther than it seemed from one side, and is not
-    reported again.
+    was seen: the obstacle may reach farther than it seemed from one side, and that will not be
+    reported.
     """
     if anomaly.kind not in OBSTACLES or anomaly.place is None:
         return None
@@ -134,9 +134,11 @@ def blockage_from_anomaly(anomaly: Anomaly) -> Blockage | None:
     return Blockage((x0 - more, y0 - more, x1 + more, y1 + more), z, anomaly.detail)
 
 
-def located_anomaly(reading: Reading, site: Site) -> Anomaly:
+def anomaly_at_checkpoint(abnormal_reading: Reading, site: Site) -> Anomaly:
     """Return the anomaly of an abnormal reading, at the position of its checkpoint."""
-    return anomaly_from_reading(reading, _rounded(site.checkpoint(reading.checkpoint).position))
+    return anomaly_from_reading(
+        abnormal_reading, _rounded(site.checkpoint(abnormal_reading.checkpoint).position)
+    )
 
 
 def _rounded(position: Vector) -> Vector:

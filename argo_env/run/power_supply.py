@@ -60,7 +60,7 @@ class PowerSupply:
             self.reset(entry.charge, entry.body_pose)
 
     def reset(self, charge: float, pose: BodyPose) -> None:
-        """Set the battery's charge (0 to 1); it is charging if the robot is docked at `pose`."""
+        """Set the charge (0 to 1) of the battery, if any; it is charging if `pose` is in a dock."""
         if self._battery:
             self._battery.charge = charge
             # If the robot does not stand still there, the next step corrects this.
@@ -84,14 +84,14 @@ class PowerSupply:
         self._battery.use(watts, seconds)
 
     def predict(
-        self, loads: NDArray[np.float64], places: PoseArray, seconds: float
+        self, loads: NDArray[np.float64], places: PoseArray, step_seconds: float
     ) -> PredictedSupply:
         """Predict the supply after each of n steps, but no further than the battery lasts.
 
         Args:
             loads: power in W that the robot draws in each step, shape (n,).
             places: poses of the robot after the steps, shape (n, 5).
-            seconds: duration of a step in s.
+            step_seconds: duration of a step in s.
 
         Returns:
             The prediction for the steps before the one that empties the battery; that step is to
@@ -102,16 +102,16 @@ class PowerSupply:
             return PredictedSupply(charging, np.zeros(len(loads)), np.zeros(len(loads)))
         docked = self._docked_after(loads, places)
         if docked.any():
-            charging, remaining, loads = self._predict_docked(loads, docked, seconds)
+            charging, remaining, loads = self._predict_docked(loads, docked, step_seconds)
         else:
             current, _ = self._battery.state
-            remaining = np.cumsum(np.concatenate([[current], -(loads * seconds / 3600.0)]))[1:]
+            remaining = np.cumsum(np.concatenate([[current], -(loads * step_seconds / 3600.0)]))[1:]
         empty = remaining <= 0.0
         last = int(empty.argmax()) if empty.any() else len(remaining)
         return PredictedSupply(charging[:last], remaining[:last], loads[:last])
 
     def _predict_docked(
-        self, loads: NDArray[np.float64], docked: NDArray[np.bool_], seconds: float
+        self, loads: NDArray[np.float64], docked: NDArray[np.bool_], step_seconds: float
     ) -> tuple[NDArray[np.bool_], NDArray[np.float64], NDArray[np.float64]]:
         """Return, after each step, whether it charges, the remaining energy (Wh) and the load (W).
 
@@ -124,7 +124,7 @@ class PowerSupply:
             charging = at_station and remaining / capacity < 1.0
             if at_station:
                 watts = -self._power.charging if charging else 0.0
-            remaining = min(max(remaining - watts * seconds / 3600.0, 0.0), capacity)
+            remaining = min(max(remaining - watts * step_seconds / 3600.0, 0.0), capacity)
             states.append((charging, remaining, watts))
         charges, remainders, drawn = (np.array(column) for column in zip(*states, strict=True))
         return charges, remainders, drawn

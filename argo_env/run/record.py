@@ -194,8 +194,8 @@ class Anomaly(Model):
         return self.source == FROM_READING
 
     @property
-    def is_reported(self) -> bool:
-        """True if this was reported to the robot, and not noticed by it."""
+    def is_reported_from_outside(self) -> bool:
+        """True if an event from outside reports this; False if the robot noticed it."""
         return self.source == REPORTED
 
     @property
@@ -205,7 +205,9 @@ class Anomaly(Model):
             return f"on {where(self.floor, self.place)}"
         if self.noticed_from is None:
             return ""
-        prefix = "reported while the robot was on" if self.is_reported else "noticed from"
+        prefix = (
+            "reported while the robot was on" if self.is_reported_from_outside else "noticed from"
+        )
         return f"{prefix} {where(self.floor, self.noticed_from)}"
 
     def is_end_of(self, other: "Anomaly") -> bool:
@@ -400,8 +402,8 @@ class Result(Model):
     """m"""
 
     @property
-    def only_failures(self) -> bool:
-        """True if the mission came to its end, and only failed tasks keep it from success."""
+    def only_tasks_failed(self) -> bool:
+        """True if the mission came to its end without success, and only because tasks failed."""
         completed = self.outcome is Outcome.COMPLETED_WITH_FAILURES
         return completed and self.within_max_duration and self.docked is not False
 
@@ -480,12 +482,12 @@ class RunRecord(Model):
     @computed_field  # type: ignore[prop-decorator]
     @property
     def headline(self) -> Headline:
-        """Headline of the run: its verdict and what was noticed, in one line."""
+        """Headline of the run with its parts: its verdict and what was noticed."""
         return run_headline(
             self.result.verdict,
             success=self.result.success,
             ended=self.result.ended,
-            only_failures=self.result.only_failures,
+            only_tasks_failed=self.result.only_tasks_failed,
             noticed={
                 "finding": [finding.in_words for finding in self.findings],
                 "late task": [f"{run.task} ended after its time window" for run in self.late],
@@ -502,11 +504,11 @@ class RunRecord(Model):
         return tuple(run for run in self.windows if run.kept is WindowOutcome.LATE)
 
     @property
-    def missed_faults(self) -> tuple[AnyFault, ...]:
+    def faults_not_begun(self) -> tuple[AnyFault, ...]:
         """Faults that did not happen because the run ended before they began."""
         return tuple(fault for fault in self.faults if fault.start_time > self.result.duration)
 
-    def explain_missed(self, fault: AnyFault) -> str:
+    def explain_fault_not_begun(self, fault: AnyFault) -> str:
         """Return a text that says why a missed fault did not happen."""
         return (
             f"fault {fault.kind.replace('_', ' ')} did not happen: begins at "
@@ -551,8 +553,8 @@ def anomaly_from_reading(reading: Reading, place: Vector | None = None) -> Anoma
 
     Args:
         reading: the reading.
-        place: position of the checkpoint in m; None if the reading was no anomaly of the log, as
-            one taken by hand.
+        place: position of the checkpoint in m; None for a reading that the log does not have as an
+            anomaly, such as one taken by hand.
     """
     return Anomaly(
         t=reading.t,

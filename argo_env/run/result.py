@@ -45,13 +45,13 @@ _ENDINGS = {
 }
 
 
-def failed_tasks(
+def tasks_failed_for_good(
     runs: Sequence[TaskRun], trace: Sequence[TraceEntry], visits: Sequence[VisitRun]
 ) -> tuple[str, ...]:
-    """Return the names of tasks that failed for good in a run, in the order of their failures.
+    """Return the names of tasks with a failure that no retry followed, by their first failure.
 
-    Each is named once, even if a later visit succeeded. Failures before a retry, and of actions
-    that a person ordered, don't count.
+    Each is named once. A later visit that succeeds does not clear the failure. Failures of actions
+    that a person ordered don't count.
     """
     retried = {(e.time, e.source) for e in trace if e.cause is Cause.RETRY}
     failed = [
@@ -98,7 +98,9 @@ def judge(
         missing.append(_ENDINGS[outcome])
     optional = {task.name for task in mission.tasks if task.optional}
     failed = tuple(
-        dict.fromkeys((*_failed_earlier(earlier, mission), *failed_tasks(log.tasks, trace, visits)))
+        dict.fromkeys(
+            (*_failed_earlier(earlier, mission), *tasks_failed_for_good(log.tasks, trace, visits))
+        )
     )
     needed = [name for name in failed if name not in optional]
     missed = {run.task for run in windows if run.kept is WindowOutcome.MISSED}
@@ -179,8 +181,8 @@ def _success_verdict(
 def _failed_earlier(earlier: Progress, mission: Mission) -> Iterator[str]:
     """Yield the names of the tasks that failed before this run, which continues another one.
 
-    A task that the mission no longer has counts if a task that was not optional had failed: it may
-    be that one.
+    A failed task that the mission no longer has counts only if any task that was not optional had
+    failed: it may be that one.
     """
     for tally in earlier.tallies:
         if tally.failed and (mission.task(tally.task) is not None or earlier.failed):

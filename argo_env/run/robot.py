@@ -45,8 +45,8 @@ class RobotAction(Protocol):
     def cancel(self, reason: str, interrupted: bool) -> None:
         """Cancel the action: it cleans up, and a following step reports its end."""
 
-    def detour(self, setup: RunSetup) -> None:
-        """Continue with a setup whose navigator knows of a new blockage, and avoid that."""
+    def detour_if_blocked(self, setup: RunSetup) -> None:
+        """Continue with `setup`, whose navigator knows of a new blockage, and avoid that."""
 
     def to_task_run(self, end: ActionEnd, now: float, distance: float, climbed: float) -> TaskRun:
         """Return the action, which ended at `now` (s), in the form of the run's record.
@@ -111,11 +111,14 @@ class AnyRobot(Protocol):
     def update_faults(self, now: float) -> None:
         """Begin and end the simulated faults that are due at `now` (s)."""
 
-    def avoid(self, blockages: Sequence[Blockage]) -> None:
+    def add_blockages(self, blockages: Sequence[Blockage]) -> None:
         """Make paths planned from now on keep clear of these blockages, besides the known ones."""
 
-    def start(self, command: StartAction, now: float, arrival_path: Path | None) -> RobotAction:
-        """Start an action; no other action may be running."""
+    def start(self, command: StartAction, now: float, arrived_by: Path | None) -> RobotAction:
+        """Start an action; no other action may be running.
+
+        `arrived_by` is the path by which the robot reached its pose; None if it is not known.
+        """
 
     def advance(self, step: int, now: float, action: RobotAction | None) -> Sensed:
         """Let time step number `step` pass, up to `now` (s), and return what it has led to.
@@ -126,8 +129,8 @@ class AnyRobot(Protocol):
     def state_for_entry(self) -> dict[str, Any]:
         """Return the robot's present state as fields of an `Entry` of the log, by name.
 
-        These are its pose, distance, climb, charge and contacts, and the mishaps that no entry has
-        yet.
+        These are its pose, distance, climb, charge and open contacts, and the mishaps and ended
+        contacts that no entry has yet.
         """
 
     def clear_mishaps_and_contacts(self) -> None:

@@ -68,11 +68,11 @@ class Supervision:
         )
         self._results.append((run.end, result))
 
-    def update(self, kind: str, machine: Machine) -> None:
-        """Update the supervision after the machine has handled an event of this kind."""
-        if kind == "take_over" and machine.paused:
+    def update(self, event_kind: str, machine: Machine) -> None:
+        """Update the supervision after the machine has handled an event of any kind."""
+        if event_kind == "take_over" and machine.paused:
             self.taken_over = True
-        elif kind in ("resume", "give_back") or not machine.paused:
+        elif event_kind in ("resume", "give_back") or not machine.paused:
             self.taken_over = False
             self._results.clear()
 
@@ -183,7 +183,7 @@ def check_scheduled_events(
             raise Invalid(f"the event {event.kind} given at {t:g} s: {error}") from None
 
 
-def require_no_action_by_hand(event: Event, acting: Task | None) -> None:
+def require_no_resume_while_acting(event: Event, acting: Task | None) -> None:
     """Raise Conflict if the event would resume the mission while an action by hand is running."""
     if acting is not None and isinstance(event, Resume | GiveBack):
         raise Conflict(
@@ -201,10 +201,10 @@ def require_no_action(machine: Machine) -> None:
         )
 
 
-def require_taken_over(machine: Machine, now: float) -> None:
-    """Raise Conflict if a give-back that is due at `now` (s) waits in vain.
+def require_give_back_can_occur(machine: Machine, now: float) -> None:
+    """Raise Conflict if a give-back that is due at `now` (s), as the caller knows, can't occur.
 
-    That is so if the mission goes on, as nobody has taken the robot over.
+    That is so if a task of the mission runs, and nobody has taken the robot over or paused it.
     """
     if machine.running and not machine.paused and machine.reaction is None:
         raise Conflict(
@@ -214,9 +214,9 @@ def require_taken_over(machine: Machine, now: float) -> None:
 
 
 def mark_abnormal(site: Site, mission: Mission, event: Event) -> Event:
-    """Return the event with the values that it reports marked as abnormal where they are so.
+    """Return the event with reported values outside their nominal range marked as abnormal.
 
-    These are values from a person; they are abnormal outside the checkpoint's nominal range.
+    A person has reported these values. Those that the person marked as abnormal stay so.
     """
 
     def is_abnormal(object_id: str | None, value: float) -> bool:

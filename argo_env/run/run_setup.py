@@ -21,7 +21,7 @@ from argo_env.run.drives_and_sensors import DRIVES, IDEAL, ROUTE, SENSORS, WORLD
 from argo_env.run.spec import RunSpec, ValueProfile
 from argo_env.seeding import generator
 from argo_env.sensing.ideal import IdealSensor, draw_nominal_values
-from argo_env.sensing.onboard import OnboardSensor, onboard_watches
+from argo_env.sensing.onboard import SensorWithFaults, onboard_watches
 from argo_env.sensing.sensor import Measurement, Sensor
 from argo_env.sensing.signals import standard_watches
 from argo_env.sensing.watch import Watch
@@ -162,7 +162,7 @@ def make_run_setup(spec: RunSpec, navigator: Navigator, gui: bool, stack: ExitSt
     )
     battery.wear(conditions.capacity)
     battery.charge = 1.0 if conditions.charge is None else conditions.charge
-    sensor = OnboardSensor(camera, site, seed, conditions.sensor_noise)
+    sensor = SensorWithFaults(camera, site, seed, conditions.sensor_noise)
     targets = FaultTargets(world, truth, surroundings, drive, sensor, battery, network)
     level = next((r.battery_below for r in spec.mission.reactions if r.battery_below), None)
     watches += onboard_watches(robot, battery, network, drive, sensor, level)

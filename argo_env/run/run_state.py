@@ -24,7 +24,7 @@ from argo_env.run.result import make_record
 from argo_env.run.robot import ActionEnd, AnyRobot, RobotAction
 from argo_env.run.run_commands import Supervision, mark_abnormal
 from argo_env.run.spec import RunSpec
-from argo_env.run.vehicle import find_arrival_path
+from argo_env.run.vehicle import find_recent_path
 from argo_env.run.visits_and_rounds import InterruptionTracker, RoundTracker
 
 
@@ -62,8 +62,8 @@ class ScheduledEvents:
         """Return the events that are due by time `now` (s) and can occur; count them as occurred.
 
         Two kinds of events wait, and so do all events after them: the robot is given back only
-        `at_rest`, with no action running, and in a step of its own; the mission is not resumed
-        while the robot is `acting` by hand.
+        `at_rest`, with no action running, and as the only event of its step; the mission is not
+        resumed while the robot is `acting` by hand.
         """
         first = self.occurred
         while self.pending and self._events[self.occurred][0] <= now:
@@ -113,7 +113,7 @@ class SimulationState:
         self._arrival_path: Path | None = None
 
     @property
-    def is_unsampled(self) -> bool:
+    def needs_path_sample(self) -> bool:
         """True if the current pose is not yet a point of the recorded path."""
         last = self.log.last_sample_time
         return last is None or last < self.now
@@ -127,7 +127,11 @@ class SimulationState:
     def entry(
         self, events: Sequence[Event] = (), *, sample: bool = False, task: TaskRun | None = None
     ) -> Entry:
-        """Return an entry of the current time with these events; nothing changes yet."""
+        """Return an entry of the current time with these events; nothing changes yet.
+
+        With `sample`, the entry's pose becomes a point of the recorded path. `task` is the task run
+        that has ended.
+        """
         return Entry(
             t=self.now,
             given=self.scheduled.occurred,
@@ -146,7 +150,7 @@ class SimulationState:
             for fault in entry.faults:
                 schedule.add(fault)
         if closed := [b for anomaly in entry.found if (b := blockage_from_anomaly(anomaly))]:
-            self._vehicle.avoid(closed)
+            self._vehicle.add_blockages(closed)
         if entry.task:
             self._arrival_path = (self.action and self.action.path) or self._arrival_path
             self.action = None
@@ -163,7 +167,7 @@ class SimulationState:
         if entry.stop_by_hand and self.action:
             self.action.cancel("a person stopped it", interrupted=False)
         if closed and self.action:
-            self.action.detour(self._vehicle.setup)
+            self.action.detour_if_blocked(self._vehicle.setup)
 
     def start(self) -> None:
         """Start the machine and execute its first commands."""
@@ -202,7 +206,7 @@ class SimulationState:
                 remedies=(Remedy.RUN_ANEW,),
             ) from error
 
-    def finish_replay(self) -> None:
+    def restore_path_and_end_action_by_hand(self) -> None:
         """Complete the state after a journal's entries were replayed.
 
         The path by which the robot reached its pose is restored from the log, and an action by hand
@@ -212,7 +216,7 @@ class SimulationState:
             self.action.cancel("the process that carried it out died", interrupted=True)
             self.lost_task_run = self.task_run(ActionStopped(self.action.task.name))
             self.action, self.supervision.acting = None, False
-        if arrival_path := find_arrival_path(self.log):
+        if arrival_path := find_recent_path(self.log):
             self._arrival_path = arrival_path
             if self.action:
                 self.action.arrival_path = arrival_path

@@ -110,7 +110,7 @@ def resume(
     spec = journal.header.spec
     site = site or open_site(spec.site, load_robot(spec.robot))
     journal.require_unchanged(site)
-    return continue_run(
+    return resume_unchecked(
         journal,
         site,
         observers=observers,
@@ -121,7 +121,7 @@ def resume(
     )
 
 
-def continue_run(
+def resume_unchecked(
     journal: Journal,
     site: OpenedSite,
     *,

@@ -33,10 +33,10 @@ from argo_env.run.run_commands import (
     check_scheduled_events,
     check_task_by_hand,
     mark_abnormal,
+    require_give_back_can_occur,
     require_no_action,
-    require_no_action_by_hand,
+    require_no_resume_while_acting,
     require_supervised,
-    require_taken_over,
     resolve_new_fault,
 )
 from argo_env.run.run_setup import RunSetup, check_spec, make_run_setup
@@ -46,8 +46,8 @@ from argo_env.run.termination import exhaustion_reason, standstill_reason
 from argo_env.run.validation import (
     CheckedRun,
     require_initial_state,
-    require_machine,
     require_site,
+    require_unstarted_machine,
 )
 from argo_env.run.vehicle import Vehicle
 
@@ -127,7 +127,7 @@ class Simulation(Closing):
         """record of the ended run, once it was requested"""
         if not is_checked:
             require_site(site, spec)
-        require_machine(machine, spec)
+        require_unstarted_machine(machine, spec)
         if events or not is_checked:
             check_scheduled_events(
                 [*(() if is_checked else spec.events), *events], spec.mission, site.site
@@ -148,7 +148,7 @@ class Simulation(Closing):
 
     @property
     def now(self) -> float:
-        """Simulated time in s."""
+        """Simulated time in s since the mission's start, also if this run continues another."""
         return self._state.now
 
     @property
@@ -208,7 +208,7 @@ class Simulation(Closing):
             if self._record is None:
                 self._record = self._state.record(self._spec)
             return self._record
-        present = self._state.entry(sample=self._state.is_unsampled)
+        present = self._state.entry(sample=self._state.needs_path_sample)
         contacts = (*present.contacts, *present.touching)
         present = present.model_copy(update={"contacts": contacts})
         return self._state.record(self._spec, present)
@@ -288,7 +288,7 @@ class Simulation(Closing):
                 self._commit(self._state.entry().model_copy(update={"stop_by_hand": True}))
             case _:
                 checked = check_event(event, self._spec.mission, self.setup.navigator.site)
-                require_no_action_by_hand(checked, self.by_hand)
+                require_no_resume_while_acting(checked, self.by_hand)
                 if isinstance(checked, GiveBack):
                     require_no_action(self.machine)
                 self._commit(self._state.entry([checked]))
@@ -310,7 +310,7 @@ class Simulation(Closing):
             Invalid: a task in `by_hand` can't have been done.
         """
         site = self.setup.navigator.site
-        require_no_action_by_hand(GiveBack(), self.by_hand)
+        require_no_resume_while_acting(GiveBack(), self.by_hand)
         check_event(GiveBack(tuple(by_hand)), self._spec.mission, site)
         marked = mark_abnormal(site, self._spec.mission, GiveBack(tuple(by_hand)))
         assert isinstance(marked, GiveBack)
@@ -382,7 +382,7 @@ class Simulation(Closing):
             self._end_run(why)
 
     def close(self) -> None:
-        """Release the run setup; the record stays available."""
+        """Release the run setup unless it is the caller's; the record stays available."""
         self._closed = True
         self._stack.close()
 
@@ -409,7 +409,7 @@ class Simulation(Closing):
         if last is None:
             return
         vehicle.restore(last)
-        state.finish_replay()
+        state.restore_path_and_end_action_by_hand()
         if last.ended:
             self._announce_end()
 
@@ -443,7 +443,7 @@ class Simulation(Closing):
                 events = state.scheduled.take_due(self.now, at_rest=state.machine.running is None)
             resumed = state.log.last is not None and not state.machine.finished
             first = {"resumed": resumed, "added": self._added_events}
-            entry = state.entry(events, sample=state.is_unsampled, task=state.lost_task_run)
+            entry = state.entry(events, sample=state.needs_path_sample, task=state.lost_task_run)
             self._commit(entry.model_copy(update=first))
             self.end_if_finished()
         return self.ended
@@ -485,9 +485,10 @@ class Simulation(Closing):
         return min(steps, _MAX_BATCH)
 
     def _batch_steps(self, limit: int) -> PoseArray | None:
-        """Make at most `limit` steps at once, up to the first in which the robot notices something.
+        """Make at most `limit` steps at once; the first in which something is noticed is the last.
 
-        Returns the robot's poses after each of them but the last; None if no step was made.
+        Returns the robot's poses after each of them but the last, no row if it stood still; None if
+        no step was made.
         """
         state, vehicle = self._state, self._vehicle
         if limit < 1 or not isinstance(vehicle, Vehicle):
@@ -526,7 +527,7 @@ class Simulation(Closing):
         at_rest = machine.running is None and not acting and not events
         events += scheduled.take_due(now, at_rest, acting)
         if not events and scheduled.is_give_back_waiting(now):
-            require_taken_over(machine, now)
+            require_give_back_can_occur(machine, now)
         is_sample = state.steps % self._steps_per_sample == 0
         if events or is_sample or run:
             entry = state.entry(events, sample=is_sample, task=run)
@@ -586,7 +587,7 @@ class Simulation(Closing):
         state = self._state
         run = state.stop_action()
         self._vehicle.odometry.close_contacts()
-        last = state.entry(sample=state.is_unsampled, task=run)
+        last = state.entry(sample=state.needs_path_sample, task=run)
         self._commit(last.model_copy(update={"ended": True, "stopped": stopped}))
         self._announce_end()
 

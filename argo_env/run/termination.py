@@ -62,7 +62,7 @@ def final_standstill_time(setup: RunSetup, log: RunLog) -> float:
 
 
 def _standstill_times(setup: RunSetup, log: RunLog) -> tuple[float, float]:
-    """Return since when (s) a robot that stands still does so, and from when (s) for good."""
+    """Return the times (s) from which a robot that stands still does so, and does so for good."""
     since, schedule = log.last_event, setup.schedule
     if schedule is None or not schedule.faults:
         return since, since

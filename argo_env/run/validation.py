@@ -47,7 +47,7 @@ def check_run(
     return CheckedRun(spec, site)
 
 
-def require_machine(machine: Machine, spec: RunSpec) -> None:
+def require_unstarted_machine(machine: Machine, spec: RunSpec) -> None:
     """Raise Conflict for a machine that has been started, or is not that of the spec's mission."""
     if machine.configuration:
         raise Conflict("the machine has been started already: make another one for this run")

@@ -24,7 +24,7 @@ from argo_env.run.action import RETREAT, SimulatedAction
 from argo_env.run.initial_state import InitialState
 from argo_env.run.log import Entry, RunLog
 from argo_env.run.odometry import Odometry
-from argo_env.run.perception import Perception, blockage_from_anomaly, located_anomaly
+from argo_env.run.perception import Perception, anomaly_at_checkpoint, blockage_from_anomaly
 from argo_env.run.power_supply import NO_STEPS, PowerSupply
 from argo_env.run.record import Anomaly
 from argo_env.run.robot import RobotAction, Sensed
@@ -61,7 +61,7 @@ class StepBatch:
             return
         pose = setup.drive.pose
         here = np.array([(pose.x, pose.y, pose.z, pose.yaw, pose.pitch)])
-        if action and action.is_driving:
+        if action and action.is_driving_without_reading_limit:
             self._ahead = setup.drive.steps_ahead(limit)
             self._poses = np.concatenate([here, self._ahead.poses])
             # By math.dist, as in the odometry: NumPy's square root may differ in the last bit.
@@ -153,7 +153,7 @@ class Vehicle:
             self.supply.reset(initial.charge, initial.body_pose)
         anomalies = [known.anomaly for known in initial.known]
         if closed := [b for anomaly in anomalies if (b := blockage_from_anomaly(anomaly))]:
-            self.avoid(closed)
+            self.add_blockages(closed)
 
     def restore_anomalies(self, reported: Sequence[tuple[Anomaly, BodyPose]], now: float) -> None:
         """Restore anomalies found before time `now` (s), each with the robot's pose then.
@@ -172,16 +172,16 @@ class Vehicle:
         if self.setup.schedule:
             self.setup.schedule.advance(now)
 
-    def avoid(self, blockages: Sequence[Blockage]) -> None:
+    def add_blockages(self, blockages: Sequence[Blockage]) -> None:
         """Make paths planned from now on keep clear of these blockages, besides the known ones."""
         navigator = self.setup.navigator.with_blockages(blockages)
         self.setup = replace(self.setup, navigator=navigator)
 
-    def start(self, command: StartAction, now: float, arrival_path: Path | None) -> RobotAction:
-        """Start an action at time `now` (s); the robot reached its pose by the arrival path."""
+    def start(self, command: StartAction, now: float, arrived_by: Path | None) -> RobotAction:
+        """Start an action at time `now` (s); the robot came here by the path `arrived_by`."""
         odometry = self.odometry
         self._action = SimulatedAction(
-            command, self.setup, now, odometry.distance, odometry.climbed, arrival_path
+            command, self.setup, now, odometry.distance, odometry.climbed, arrived_by
         )
         return self._action
 
@@ -200,12 +200,12 @@ class Vehicle:
             end = own.step(now)
             after, measuring = drive.pose, own.is_measuring
             odometry.add_motion(before, after, setup.world.touches(), now)
-            odometry.add_incidents(drive.incidents, now)
+            odometry.add_new_incidents(drive.incidents, now)
         self.supply.consume(before, after, drive.time_step, measuring)
         found = self._perception.update(step, now, after)
-        reading = own.reading(now) if own and end else None
+        reading = own.taken_reading(now) if own and end else None
         if reading and not reading.normal:
-            found = (*found, located_anomaly(reading, setup.navigator.site))
+            found = (*found, anomaly_at_checkpoint(reading, setup.navigator.site))
         return Sensed(end, reading, found) if end or found else _NOTHING_SENSED
 
     @property
@@ -258,7 +258,7 @@ class Vehicle:
         self.odometry.mishaps.clear()
 
 
-def find_arrival_path(log: RunLog) -> Path | None:
+def find_recent_path(log: RunLog) -> Path | None:
     """Return the last part of the path by which the robot reached its pose, from the log.
 
     It is long enough to retreat along it. None if the log has no path.

@@ -46,13 +46,14 @@ def run_headline(
     *,
     success: bool,
     ended: bool,
-    only_failures: bool,
+    only_tasks_failed: bool,
     noticed: Mapping[str, Sequence[str]],
 ) -> Headline:
     """Return the headline of a run with the given result.
 
-    `verdict`, `success`, `ended` and `only_failures` are those of the record's `Result`. `noticed`
-    lists what was noticed, in words, by its kind in the singular, such as `finding` or `contact`.
+    `verdict`, `success`, `ended` and `only_tasks_failed` are those of the record's `Result`.
+    `noticed` lists what was noticed, in words, by its kind in the singular, such as `finding` or
+    `contact`.
     """
     counts = ", ".join(
         f"{len(things)} {name}{'s' if len(things) > 1 else ''}"
@@ -62,7 +63,7 @@ def run_headline(
     summary = _summarize([thing for things in noticed.values() for thing in things])
     if not success:
         word, tone = ("No success", Tone.BAD) if ended else ("Interrupted", Tone.NOTICE)
-        if only_failures:
+        if only_tasks_failed:
             word, tone = "Completed with failures", Tone.NOTICE
         text = f"{verdict}. {counts}: {summary}" if counts else verdict
         return Headline(word=word, text=text, tone=tone)
@@ -74,7 +75,7 @@ def run_headline(
 
 
 def _summarize(things: Sequence[str]) -> str:
-    """Return the noticed things in one line: the first kinds in words, the number of the others."""
+    """Return the first few different texts, with their counts, and the number of the others."""
     times = list(Counter(things).items())
     named = [thing if n == 1 else f"{thing}, {n} times" for thing, n in times[:_NAMED]]
     more = sum(n for _, n in times[_NAMED:])

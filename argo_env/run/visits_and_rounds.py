@@ -55,17 +55,19 @@ class VisitRun:
         return by_itself and self.failure is None
 
 
-def visits_from_trace(trace: Sequence[TraceEntry], since: float = 0.0) -> Iterator[VisitRun]:
+def visits_from_trace(
+    trace: Sequence[TraceEntry], seconds_before_restore: float = 0.0
+) -> Iterator[VisitRun]:
     """Yield the visits of all tasks in a trace, in the order of time.
 
     The visit of a task that waits for its group's round to be due begins with the round. The first
-    visit of a restored machine had begun `since` (s) before it was restored.
+    visit of a restored machine had begun `seconds_before_restore` earlier than it was restored.
     """
     task: str | None = None
     start = 0.0
     for entry in trace:
         if entry.cause in (Cause.START, Cause.RESTORE):
-            task, start = entry.target, entry.time - since
+            task, start = entry.target, entry.time - seconds_before_restore
         elif entry.cause is Cause.ROUND:
             start = entry.time
         elif entry.cause in VISIT_ENDS:
@@ -98,17 +100,19 @@ def wait_runs(mission: Mission, visits: Sequence[VisitRun], now: float) -> tuple
 
 
 def visits_with_windows(
-    mission: Mission, visits: Sequence[VisitRun], earlier: Collection[str] = ()
+    mission: Mission, visits: Sequence[VisitRun], visited_earlier: Collection[str] = ()
 ) -> tuple[WindowVisit, ...]:
     """Return the visits of tasks with time windows, then an item for each unvisited one of them.
 
-    An unvisited task in `earlier` is left out, as it was visited before this run.
+    An unvisited task in `visited_earlier` is left out, as it was visited before this run.
     """
     tasks = {t.name: t for t in mission.tasks if t.window is not None}
     runs = [_window_run(tasks[visit.task], visit) for visit in visits if visit.task in tasks]
     visited = {run.task for run in runs}
     runs += [
-        _window_run(task, None) for name, task in tasks.items() if name not in {*visited, *earlier}
+        _window_run(task, None)
+        for name, task in tasks.items()
+        if name not in {*visited, *visited_earlier}
     ]
     return tuple(runs)
 
@@ -218,7 +222,7 @@ class RoundTracker:
             self._groups[name] = _KnownRound(group.round, group.elapsed, index)
 
     def rounds(self) -> tuple[RoundRun, ...]:
-        """Return all rounds of groups so far, in the order in which they could begin."""
+        """Return all rounds of groups, by their `since`; also those that still wait to begin."""
         return tuple(self._rounds)
 
     def _end(self, index: int, now: float, begun: float | None) -> None:

@@ -31,7 +31,7 @@ _HEALTHY_NOISE = 0.001  # of the scale, in the picture of the test pattern
 _SHOTS = 8  # pictures of the test pattern in one self-test
 
 
-class OnboardSensor:
+class SensorWithFaults:
     """Sensor that wraps another one, and may fail or become noisy.
 
     It holds its present condition, which faults change.
@@ -274,7 +274,7 @@ class CameraWatch:
     name = "camera"
     period = 5.0
 
-    def __init__(self, sensor: OnboardSensor) -> None:
+    def __init__(self, sensor: SensorWithFaults) -> None:
         self._sensor = sensor
         self._reported = False
 
@@ -300,7 +300,7 @@ def onboard_watches(
     battery: Battery,
     network: RadioNetwork,
     drive: Powertrain,
-    sensor: OnboardSensor,
+    sensor: SensorWithFaults,
     low_battery: float | None = None,
 ) -> tuple[Watch, ...]:
     """Return all watches for the robot itself, for one run.

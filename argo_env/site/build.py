@@ -22,7 +22,7 @@ from argo_env.site.spec import (
     SiteSpec,
     VesselSpec,
 )
-from argo_env.site.stairs import build_flight, flight_end_areas, railing, railing_offset
+from argo_env.site.stairs import build_flight, flight_end_areas, railing, railing_offset_outward
 
 DOCK_DISTANCE = 0.62  # m from the centre of a docked robot to the face of its station
 MOUNT_LENGTH = 0.2  # m from the face of a checkpoint back to what carries it
@@ -115,7 +115,7 @@ def build_dock(area: AreaSpec, ground_z: float) -> Element:
     return Element(f"docking station {area.number}", Role.DOCK, solids, "dock")
 
 
-def build_mount(checkpoint: CheckpointSpec, floor_z: float) -> Element:
+def build_bracket(checkpoint: CheckpointSpec, floor_z: float) -> Element:
     """Build the bracket that joins a checkpoint to the pipe or vessel behind it.
 
     `floor_z` is the height (m) of the checkpoint's floor.
@@ -194,7 +194,7 @@ class Deck:
             float(self.y[last]),
         )
 
-    def free_edges(self, gaps: tuple[Rect, ...]) -> list[RimEdge]:
+    def edges_outside_gaps(self, gaps: tuple[Rect, ...]) -> list[RimEdge]:
         """Return the pieces of the deck's rim, also around its openings, that are in no gap."""
         padded = np.pad(self.plated, 1)
         edges: list[RimEdge] = []
@@ -229,7 +229,11 @@ def _runs(flags: NDArray[np.bool_]) -> list[tuple[int, int]]:
 def _in_gaps(
     at: float, across: NDArray[np.float64], gaps: tuple[Rect, ...], axis: int
 ) -> NDArray[np.bool_]:
-    """Return a mask of the pieces of the line at coordinate `at` that lie inside a gap."""
+    """Return a mask of the pieces of a line that lie inside a gap.
+
+    The line has the coordinate `at` on `axis` (0: x, 1: y); `across` are the borders of its pieces
+    on the other axis, in m.
+    """
     middle = (across[:-1] + across[1:]) / 2
     inside = np.zeros(len(middle), dtype=bool)
     for gap in gaps:
@@ -293,7 +297,7 @@ def _floor(floor: FloorSpec, gaps: list[tuple[float, Rect]]) -> list[Element]:
         elements.append(Element(f"{name} {label}", Role.RAILING, tuple(solids), "railing"))
     elements += [build_vessel(v, floor.z) for v in floor.vessels]
     elements += [build_pump(p, floor.z) for p in floor.pumps]
-    elements += [build_mount(c, floor.z) for c in floor.checkpoints]
+    elements += [build_bracket(c, floor.z) for c in floor.checkpoints]
     return elements
 
 
@@ -315,7 +319,7 @@ def _plated(
     if not railed:
         return [Element(f"{name} slab", Role.DECK, tuple(plates), "concrete")]
     width, depth = BEAM
-    for edge in deck.free_edges(()):
+    for edge in deck.edges_outside_gaps(()):
         (x0, y0), (x1, y1), (nx, ny) = edge.start, edge.end, edge.outward
         # The beam lies under the rim, inside the deck's outline.
         center = (
@@ -325,8 +329,8 @@ def _plated(
         )
         plates.append(Box(center, (abs(x1 - x0) or width, abs(y1 - y0) or width, depth)))
     elements = [Element(f"{name} deck", Role.DECK, tuple(plates), "grating")]
-    for number, edge in enumerate(deck.free_edges(gaps), start=1):
-        solids = railing(edge.start, edge.end, z, railing_offset(edge.outward))
+    for number, edge in enumerate(deck.edges_outside_gaps(gaps), start=1):
+        solids = railing(edge.start, edge.end, z, railing_offset_outward(edge.outward))
         elements.append(Element(f"{name} railing {number}", Role.RAILING, solids, "railing"))
     return elements
 

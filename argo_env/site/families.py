@@ -36,8 +36,8 @@ Refused = Collection[tuple[int, int]]
 """Positions where a checkpoint can't be read, each as the numbers of its floor and its slot."""
 
 
-def draw_site(
-    family: Family, attempt: int = 0, refused: Refused = ()
+def draw_site_and_slots(
+    family: Family, attempt: int = 0, refused_slots: Refused = ()
 ) -> tuple[SiteSpec, dict[int, tuple[int, int]]]:
     """Draw the description of a site with a family's parameters, and where its checkpoints are.
 
@@ -46,7 +46,7 @@ def draw_site(
     Args:
         family: Parameters of the site, with the seed.
         attempt: Number of the draw; another one gives another site.
-        refused: Floors and slots that must have no checkpoint.
+        refused_slots: Floors and slots that must have no checkpoint.
 
     Returns:
         The description, and the numbers of the floor and the slot of each checkpoint, by its id.
@@ -56,7 +56,7 @@ def draw_site(
     """
     layout = draw_layout(family, generator(family.seed, "layout", attempt))
     width, depth = (float(edge) for edge in family.size)
-    chosen = _choose_slots(family, attempt, layout, refused)
+    chosen = _choose_slots(family, attempt, layout, refused_slots)
     checkpoints, risers = _checkpoints(family, attempt, layout, chosen)
     random = generator(family.seed, "clutter", attempt)
     vessels, free = _vessels(family, layout, random)
@@ -189,7 +189,7 @@ def _columns(width: float, depth: float) -> tuple[Point, ...]:
 
 
 def _choose_slots(
-    family: Family, attempt: int, layout: Layout, refused: Refused
+    family: Family, attempt: int, layout: Layout, refused_slots: Refused
 ) -> list[tuple[int, list[int]]]:
     """Return each floor with the slots that have a checkpoint there, in ascending order.
 
@@ -207,7 +207,7 @@ def _choose_slots(
     for floor, count in enumerate(per_floor, start=1):
         mixed = random.permutation(order).tolist()
         wanted = [s for s in mixed if s in usual] + [s for s in order if s not in usual]
-        chosen = [s for s in wanted if (floor, s) not in refused][:count]
+        chosen = [s for s in wanted if (floor, s) not in refused_slots][:count]
         if len(chosen) < count:
             most = len(layout.slots) * family.floors
             raise Invalid(
@@ -244,7 +244,7 @@ def _checkpoints(
 
 
 def _at(slot: Slot, beside: float) -> Point:
-    """Return the point at a distance of `beside` m from the edge of the aisle."""
+    """Return the point `beside` m from the edge of the aisle, outward as `slot.out`."""
     return round(slot.x + slot.out[0] * beside, 3), round(slot.y + slot.out[1] * beside, 3)
 
 

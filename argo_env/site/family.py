@@ -55,7 +55,7 @@ class Family(Model):
 
     @property
     def for_testing(self) -> bool:
-        """True if the seed is one for testing."""
+        """True if the seed is TEST_SEEDS or higher: the site is for tests, not for training."""
         return self.seed >= TEST_SEEDS
 
     def __str__(self) -> str:
@@ -66,7 +66,7 @@ class Family(Model):
         )
 
 
-def is_family(name: str) -> bool:
+def is_generated_name(name: str) -> bool:
     """Return True if a site's name begins as those of generated sites do, valid or not."""
     return name.startswith(PREFIX)
 

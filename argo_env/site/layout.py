@@ -156,7 +156,7 @@ def _dog_leg_tower(
 def _bays(
     width: float, depth: float, aisle: float, random: np.random.Generator
 ) -> tuple[tuple[dict[str, Rect], ...], tuple[Rect, ...]]:
-    """Draw the cross aisles, which run from south to north, and the fields beside them."""
+    """Draw the cross aisles from south to north, with their ends, and the fields beside them."""
     least, most = math.ceil(width / _BAY[1]), int(width // _BAY[0])
     bays = int(random.integers(least, most + 1))
     crossings, edges = [], [aisle]

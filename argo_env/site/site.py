@@ -11,7 +11,7 @@ from argo_compiler.base.catalog import CheckpointKind, Interval
 from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.base.model import Pose
 from argo_env.files import resources
-from argo_env.site.family import PREFIX, is_family
+from argo_env.site.family import PREFIX, is_generated_name
 from argo_env.site.spec import FloorSpec, SiteSpec
 
 if TYPE_CHECKING:
@@ -87,10 +87,11 @@ class Site:
 
         return SolidRays(self.elements)
 
-    def with_elements(self, elements: "tuple[Element, ...]") -> "Site":
-        """Return a copy of this site with other elements, for example with an obstacle on it.
+    def replacing_elements(self, elements: "tuple[Element, ...]") -> "Site":
+        """Return a copy of this site with `elements` in place of all of its own.
 
-        If the elements are equal to its own, it is the site itself.
+        They may contain an obstacle, for example. If they are equal to its own, this returns the
+        site itself.
         """
         return self if elements == self.elements else replace(self, altered=elements)
 
@@ -103,7 +104,7 @@ class Site:
         raise NotFound(f"site {self.name} has no checkpoint {id}; {_there_are(numbers)}")
 
     def checkpoint_for(self, object_id: str | None) -> SiteCheckpoint:
-        """Return the checkpoint that tasks call `object_id`; raises NotFound if there is none."""
+        """Return the checkpoint that tasks call `object_id`; raises NotFound if none or None."""
         for checkpoint in self.checkpoints:
             if str(checkpoint.id) == object_id:
                 return checkpoint
@@ -159,7 +160,7 @@ def site_file(name: str) -> Path:
     returned even if there is no such file. Raises NotFound if no site has this name, and Invalid if
     it is that of a generated site.
     """
-    if is_family(name):
+    if is_generated_name(name):
         raise Invalid(f"site `{name}` is generated and has no file: open it with `open_site`")
     path = Path(name)
     if path.suffix in {".yaml", ".yml"}:

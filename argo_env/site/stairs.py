@@ -22,7 +22,7 @@ def railing(
 ) -> tuple[Solid, ...]:
     """Build a railing on a deck at height `z`, along the line from `start` to `end`, all in m.
 
-    The line is moved by `offset`, such as that of `railing_offset`.
+    The line is moved by `offset`, such as that of `railing_offset_outward`.
     """
     x0, y0 = start[0] + offset[0], start[1] + offset[1]
     x1, y1 = end[0] + offset[0], end[1] + offset[1]
@@ -43,7 +43,7 @@ def railing(
     return tuple(solids)
 
 
-def railing_offset(outward: tuple[float, float]) -> tuple[float, float]:
+def railing_offset_outward(outward: tuple[float, float]) -> tuple[float, float]:
     """Return the vector (m) from a deck's rim to its railing, which leaves the whole deck free.
 
     `outward` is the unit normal of the rim.

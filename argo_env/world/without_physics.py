@@ -89,5 +89,7 @@ class WorldWithoutPhysics:
         length = float(np.linalg.norm(line))
         direction = line / length if length else np.array([0.0, 0.0, 1.0])
         rays = self.site.rays
-        _, (solid,) = rays.first_hits(np.array(origin), direction[None, :], length, inside=True)
+        _, (solid,) = rays.first_hits(
+            np.array(origin), direction[None, :], length, count_surrounding=True
+        )
         return None if solid < 0 else rays.elements[solid].name

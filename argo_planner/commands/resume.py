@@ -14,7 +14,7 @@ from argo_env.files.folders import make_folder
 from argo_env.planning.opening import open_site
 from argo_env.recording.files import check_recording_path
 from argo_env.run.journal import open_journal
-from argo_env.run.session import continue_run
+from argo_env.run.session import resume_unchecked
 from argo_env.run.spec import logged_events
 from argo_planner.terminal.conclusion import Conclusion
 from argo_planner.terminal.events import KINDS, READING_FORM, parse_events
@@ -99,7 +99,7 @@ def resume_command(
                     book.header.spec.mission.max_duration,
                     recording,
                     Path(book.header.spec.source) if book.header.spec.source else None,
-                    lambda observers: continue_run(
+                    lambda observers: resume_unchecked(
                         book, site, observers=observers, events=events, interrupted=interruption
                     ),
                 )

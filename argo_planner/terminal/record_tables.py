@@ -52,8 +52,8 @@ def _problem_lines(record: RunRecord) -> Iterator[str]:
     for mishap in record.mishaps:
         place = where(mishap.floor, mishap.place)
         yield f"{mishap.trouble} at {clock(mishap.t)} on {place}: {mishap.detail}"
-    for fault in record.missed_faults:
-        yield record.explain_missed(fault)
+    for fault in record.faults_not_begun:
+        yield record.explain_fault_not_begun(fault)
 
 
 def _readings(record: RunRecord) -> Table:

@@ -41,10 +41,10 @@ class RunDisplay(Observer, Closing):
 
     def on_change(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
         """Print anomalies and values that people reported, and those that the robot sensed."""
-        reported = entry.reported_anomalies(self._site) if self._site else ()
+        reported = entry.anomalies_reported_from_outside(self._site) if self._site else ()
         for value in entry.given_values(self._site) if self._site else ():
             self._print(f"{value.t!r} s: {value.in_words}")
-        for item in (*reported, *entry.sensed):
+        for item in (*reported, *entry.anomalies_and_reading):
             self.print_reading_or_anomaly(item)
 
     def print_reading_or_anomaly(self, item: Reading | Anomaly) -> None:
@@ -55,7 +55,7 @@ class RunDisplay(Observer, Closing):
                 f"{item.value!r} {item.unit}"
             )
         else:
-            origin = "reported" if item.is_reported else "detected"
+            origin = "reported" if item.is_reported_from_outside else "detected"
             parts = filter(None, (origin, item.kind.replace("_", " "), item.detail))
             text = f"{item.t!r} s: {': '.join(parts)}"
             if place := item.whereabouts:

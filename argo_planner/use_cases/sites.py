@@ -6,7 +6,7 @@ from argo_compiler.base.errors import Conflict
 from argo_env.planning.flaws import Flaw, SafeStates, find_flaws
 from argo_env.planning.opening import OpenedSite
 from argo_env.site import load_site, site_names
-from argo_env.site.family import PREFIX, is_family
+from argo_env.site.family import PREFIX, is_generated_name
 from argo_env.site.norms import violations
 from argo_env.site.site_file import to_yaml
 
@@ -77,7 +77,7 @@ def site_yaml_with_name(site: OpenedSite, name: str) -> str:
 
 def require_free_name(name: str) -> None:
     """Raise Conflict if the name of a site stands for another site already."""
-    if is_family(name):
+    if is_generated_name(name):
         raise Conflict(f"{PREFIX}… names a generated site, not a file; choose another name")
     if name in site_names():
         raise Conflict(

@@ -50,10 +50,10 @@ def test_faults_are_detected_logged_and_reported(argo, folder):
     go_on = ("resume", "run.journal", "--report", "again", "--event", "1=hot_spot")
     resumed = argo(*go_on, cwd=folder, status=0)
     again = read_run_record(folder / "again")
-    reported = [a.kind for a in again.anomalies if a.is_reported]
+    reported = [a.kind for a in again.anomalies if a.is_reported_from_outside]
     assert reported == ["hot_spot"]
     assert "hot spot at " in resumed.stdout
-    sensed = sorted(a.kind for a in again.anomalies if not a.is_reported)
+    sensed = sorted(a.kind for a in again.anomalies if not a.is_reported_from_outside)
     assert sensed == sorted(a.kind for a in record.anomalies)
     assert [r.value for r in again.readings] == [r.value for r in record.readings]
     assert any("hot spot" in step.cause for step in again.trace)

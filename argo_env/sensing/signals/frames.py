@@ -32,7 +32,7 @@ def to_site(pose: BodyPose, position: Vector) -> NDArray[np.float64]:
     return np.array([pose.x + x, pose.y + y, pose.z + z])
 
 
-def to_vector(values: NDArray[np.float64]) -> Vector:
+def to_rounded_vector(values: NDArray[np.float64]) -> Vector:
     """Convert an array of 3 coordinates (m) to a tuple, rounded to the millimetre."""
     x, y, z = (round(v, 3) for v in values.tolist())
     return x, y, z

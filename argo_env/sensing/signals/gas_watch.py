@@ -9,7 +9,7 @@ import numpy as np
 
 from argo_compiler.il import EventKind
 from argo_env.robot.pose import BodyPose
-from argo_env.sensing.signals.frames import NOSE, to_site, to_vector
+from argo_env.sensing.signals.frames import NOSE, to_rounded_vector, to_site
 from argo_env.sensing.signals.site_map import SiteMap
 from argo_env.sensing.watch import Detection, ReportedDetection
 from argo_env.site.shapes import Vector
@@ -102,7 +102,7 @@ class UltrasonicMicrophone:
         distance = float(np.linalg.norm(sight))
         # The leak lies in the surface of the leaking part, which therefore is no obstacle.
         range_to_solid = self._world.hit_distances_or_inf(
-            to_vector(microphone), np.array([leak.place])
+            to_rounded_vector(microphone), np.array([leak.place])
         )[0]
         return leak_level(leak, distance, bool(range_to_solid < distance - 0.2))
 
@@ -179,7 +179,8 @@ class GasWatch:
     def restore(self, reported: Sequence[ReportedDetection], now: float) -> None:
         """Restore the leaks that were reported and not cleared, each strongest where reported.
 
-        Silence counts again `WARMING_UP` seconds after `now` (s).
+        Before `now` + `WARMING_UP` (s), the absence of gas and hiss does not mean that a leak has
+        been left behind.
         """
         for detection in reported:
             if detection.kind is EventKind.GAS_LEAK:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from argo_compiler.il import EventKind
 from argo_env.robot.pose import BodyPose
-from argo_env.sensing.signals.frames import rotation, to_site, to_vector
+from argo_env.sensing.signals.frames import rotation, to_rounded_vector, to_site
 from argo_env.sensing.signals.site_map import SiteMap
 from argo_env.sensing.watch import Detection
 from argo_env.site.shapes import Role, Vector
@@ -51,10 +51,11 @@ class ThermalImage:
         """Return unit vectors in the site's frame through the middles of pixels, shape (n, 3)."""
         return directions_through_pixels(rows + 0.5, columns + 0.5) @ self.axes.T
 
-    def project(self, place: Vector) -> tuple[float, float, float]:
+    def row_column_depth(self, place: Vector) -> tuple[float, float, float]:
         """Return row and column (px) of a point of the site (m), and its depth (m).
 
-        The depth is along the camera's axis, and negative for points behind the camera.
+        The middle of the first pixel is at row and column 0.5. The depth is along the camera's
+        axis, and negative for points behind the camera.
         """
         ahead, left, up = ((np.array(place) - self.origin) @ self.axes).tolist()
         scale = FOCAL / max(ahead, 1e-6)
@@ -66,7 +67,8 @@ def directions_through_pixels(
 ) -> NDArray[np.float64]:
     """Return unit vectors from the camera through points of its image, shape (n, 3).
 
-    `rows` and `columns` are in px; the vectors are along the camera's axes (ahead, left, up).
+    `rows` and `columns` are in px, 0.5 for the middle of the first pixel; the vectors are along the
+    camera's axes (ahead, left, up).
     """
     rays = np.column_stack(
         [np.full(len(rows), FOCAL), WIDTH / 2 - columns, HEIGHT / 2 - np.asarray(rows)]
@@ -97,7 +99,7 @@ class ThermalCamera:
         axes = rotation(pose) @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
         image = ThermalImage(np.empty((HEIGHT, WIDTH)), to_site(pose, PLACE), axes)
         materials, normals = self._world.hit_materials_and_normals(
-            to_vector(image.origin), image.origin + FAR * _COARSE_RAYS @ axes.T
+            to_rounded_vector(image.origin), image.origin + FAR * _COARSE_RAYS @ axes.T
         )
         roles = [None if m is None else self._roles.get(m, Role.STRUCTURE) for m in materials]
         background = surface_temperatures(roles, normals, self._surroundings.weather)
@@ -113,7 +115,7 @@ class ThermalCamera:
 
     def _draw(self, image: ThermalImage, spot: HotSpot) -> None:
         """Blend the spot into the pixels that it covers, by the share of each pixel."""
-        row, column, depth = image.project(spot.place)
+        row, column, depth = image.row_column_depth(spot.place)
         if depth < 0.1:
             return
         radius = FOCAL * spot.radius / depth
@@ -128,7 +130,7 @@ class ThermalCamera:
     def _is_visible(self, origin: NDArray[np.float64], spot: HotSpot) -> bool:
         distance = float(np.linalg.norm(np.array(spot.place) - origin))
         range_to_solid = self._world.hit_distances_or_inf(
-            to_vector(origin), np.array([spot.place])
+            to_rounded_vector(origin), np.array([spot.place])
         )[0]
         return bool(range_to_solid >= distance - spot.radius - 0.05)
 
@@ -212,7 +214,7 @@ class HeatWatch:
         self._reported = [reported for reported in self._reported if reported.missed < GONE_IMAGES]
 
     def _is_in_view(self, image: ThermalImage, place: Vector) -> bool:
-        row, column, depth = image.project(place)
+        row, column, depth = image.row_column_depth(place)
         if not (5 <= row <= HEIGHT - 5 and 5 <= column <= WIDTH - 5 and 0.5 < depth < SURE_RANGE):
             return False
         sight = np.array(place) - image.origin
@@ -224,8 +226,8 @@ class HeatWatch:
 def find_spots(image: ThermalImage, site_map: SiteMap, air: float) -> tuple[Spot, ...]:
     """Return the hot spots in an image: warmer than its surfaces can be without a fault.
 
-    A spot has at least PIXELS pixels, and the median of its warmest ones is more than MARGIN (K)
-    above the highest temperature that the surfaces at its position can have.
+    A spot has at least PIXELS pixels, and the median of up to PROBES warm ones is more than MARGIN
+    (K) above the highest temperature that the surfaces at its position can have.
 
     Args:
         image: image of the thermal camera.
@@ -263,7 +265,7 @@ def find_spots(image: ThermalImage, site_map: SiteMap, air: float) -> tuple[Spot
         ray = image.rays(rows[probed[[nearest]]], columns[probed[[nearest]]])[0]
         spots.append(
             Spot(
-                to_vector(image.origin + depths[nearest] * ray),
+                to_rounded_vector(image.origin + depths[nearest] * ray),
                 site_map.element_of(int(solids[nearest])).name,
                 float(warmth.max()),
             )

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from argo_compiler.il import EventKind
 from argo_env.robot.pose import BodyPose
 from argo_env.seeding import generator
-from argo_env.sensing.signals.frames import NOSE, to_site, to_vector
+from argo_env.sensing.signals.frames import NOSE, to_rounded_vector, to_site
 from argo_env.sensing.signals.microphone import NEAREST, Microphone, pump_positions, sound_at
 from argo_env.sensing.watch import Detection
 from argo_env.site import Site
@@ -82,9 +82,10 @@ class AbnormalRecording:
 
 
 def noise_band_power(samples: NDArray[np.float32]) -> float | None:
-    """Return the mean power in `BAND`, above the spectral lines of normal pumps.
+    """Return the mean power in `BAND`, which has no spectral lines of normal pumps.
 
-    `samples` are a recording (Pa, RATE samples a second). Returns None if it has a bang of metal.
+    `samples` are a recording (Pa, RATE samples a second). The power is half the mean square of
+    their part in the band (Pa²). Returns None if it has a bang of metal.
     """
     blocks = samples.reshape(BLOCKS, -1)
     bins_per_hertz = blocks.shape[1] / RATE
@@ -156,7 +157,7 @@ class PumpWatch:
         """number of normal recordings beside each reported pump since the last abnormal one"""
 
     def update(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:
-        listener = to_vector(to_site(pose, NOSE))
+        listener = to_rounded_vector(to_site(pose, NOSE))
         if all(math.dist(listener, position) > NEAR for position in self._positions.values()):
             self._recordings.clear()
             return ()
@@ -201,7 +202,7 @@ class PumpWatch:
         return Detection(EventKind.ABNORMAL_SOUND, detail, self._positions[pump])
 
     def _count_quiet(self, listener: Vector) -> None:
-        """Count a normal recording for the reported pumps beside it; drop pumps that are quiet."""
+        """Count a normal recording for reported pumps near it; drop those with QUIET_RECORDINGS."""
         for name in self._reported:
             self._reported[name] += math.dist(listener, self._positions[name]) <= QUIET_RANGE
         self._reported = {

@@ -15,7 +15,7 @@ from argo_compiler.il import EventKind
 from argo_env.navigation.closed_areas import LAYER, Blockage
 from argo_env.navigation.path import wrap
 from argo_env.robot.pose import BodyPose
-from argo_env.sensing.signals.frames import rotation, to_site, to_vector
+from argo_env.sensing.signals.frames import rotation, to_rounded_vector, to_site
 from argo_env.sensing.signals.site_map import SiteMap
 from argo_env.sensing.watch import Detection
 from argo_env.site.shapes import Vector
@@ -206,9 +206,9 @@ class TerrainScanner:
         directions: NDArray[np.float64],
         reach: NDArray[np.float64],
     ) -> NDArray[np.float64]:
-        """Return the measured depths in m; inf beyond `reach`."""
+        """Return the measured distance (m) along each ray; inf if nothing is within `reach`."""
         true = self._world.hit_distances_or_inf(
-            to_vector(origin), origin + reach[:, None] * directions
+            to_rounded_vector(origin), origin + reach[:, None] * directions
         )
         fixed, share = DEPTH_NOISE
         noise = self._rng.standard_normal(len(true))
@@ -335,7 +335,7 @@ class TerrainWatch:
             if kind is EventKind.NEGATIVE_OBSTACLE and rays.any(axis=1).sum() < SUNK_ROWS:
                 continue
             low, high = positions[rays].min(axis=0) - PADDING, positions[rays].max(axis=0) + PADDING
-            (x0, y0, _), (x1, y1, _) = to_vector(low), to_vector(high)
+            (x0, y0, _), (x1, y1, _) = to_rounded_vector(low), to_rounded_vector(high)
             z = float(np.median(scan.surface[rays][:, 2]))
             if kind is EventKind.POSITIVE_OBSTACLE:
                 # The expected surface lies behind the obstacle, perhaps on another step.
@@ -349,7 +349,7 @@ class TerrainWatch:
         return detections
 
     def _update_reported(self, scan: Scan) -> None:
-        """Drop reported obstacles that are gone: two scans showed the surface instead."""
+        """Drop obstacles that are gone: GONE_SCANS scans showed the surface, none the obstacle."""
         for reported in self._reported:
             evidence, positions = _rays_showing(scan, reported.kind)
             covering = _are_inside(scan.surface, reported.rect, reported.z, 0.0)
@@ -364,7 +364,7 @@ _KINDS = (EventKind.POSITIVE_OBSTACLE, EventKind.NEGATIVE_OBSTACLE)
 
 
 def _rays_showing(scan: Scan, kind: EventKind) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
-    """Return which rays show something of that kind, and the points that they show."""
+    """Return a mask of the rays that show something of that kind, and the points of all rays."""
     if kind is EventKind.POSITIVE_OBSTACLE:
         return scan.raised, scan.hits
     return scan.sunk, scan.surface
@@ -391,5 +391,5 @@ def _detection(kind: EventKind, rect: Rect, z: float, height: float) -> Obstacle
         detail = f"an obstacle, {size} in plan as far as it is seen, {height:.2f} m high"
     else:
         detail = f"a part of the way is missing, {size}"
-    place = to_vector(np.array([(x0 + x1) / 2, (y0 + y1) / 2, z]))
+    place = to_rounded_vector(np.array([(x0 + x1) / 2, (y0 + y1) / 2, z]))
     return ObstacleDetection(kind, detail, place, blockage=Blockage(rect, z, detail))

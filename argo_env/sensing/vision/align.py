@@ -174,7 +174,8 @@ def _brightness_levels(
     """Return True if the picture has the contrast of a face, and gain and offset of brightness.
 
     Gain and offset map the drawn brightness to that of the picture, `values`. Their fit begins at
-    `start`, or without it at estimates from the medians and percentiles.
+    `start`, or without it at estimates from the medians and percentiles. If the result is False,
+    they mean nothing.
     """
     seen = np.isfinite(values) & (weights > 0)
     if seen.sum() < 20:

@@ -31,10 +31,10 @@ class IndicatorPosition:
     """0 to 1, the share of the indicator that is red"""
 
 
-def find_indicator(
+def find_indicator_on_scale(
     photo: Photo, instrument: Instrument, pose: FacePose
 ) -> IndicatorPosition | None:
-    """Return the position of the indicator of an instrument whose face is at `pose`.
+    """Return where on its scale the indicator of an instrument is whose face is at `pose`.
 
     Returns None if nothing red is on the scale.
     """
@@ -106,7 +106,7 @@ def reading_probability(fit: Fit, indicator: IndicatorPosition, cosine: float) -
     return 1.0 / (1.0 + math.exp(-score))
 
 
-def combine_readings(readings: Sequence[PictureReading]) -> PictureReading | None:
+def find_most_probable_reading(readings: Sequence[PictureReading]) -> PictureReading | None:
     """Return the most probable reading and its probability, or None if there are no readings.
 
     Bayes' rule is applied to the hypotheses "this group of readings that agree is right, and the

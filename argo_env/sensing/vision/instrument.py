@@ -80,11 +80,11 @@ def texture(kind: CheckpointKind) -> NDArray[np.float32]:
 
 
 @cache
-def blurred_texture(kind: CheckpointKind, blur: float) -> NDArray[np.float32]:
-    """Return `texture`, blurred by a Gaussian filter with the standard deviation `blur` (m)."""
+def blurred_texture(kind: CheckpointKind, blur_metres: float) -> NDArray[np.float32]:
+    """Return `texture`, blurred by a Gaussian filter with the standard deviation `blur_metres`."""
     import cv2
 
-    return np.asarray(cv2.GaussianBlur(texture(kind), (0, 0), blur * PIXELS_PER_METRE))
+    return np.asarray(cv2.GaussianBlur(texture(kind), (0, 0), blur_metres * PIXELS_PER_METRE))
 
 
 @cache
@@ -114,7 +114,7 @@ def make_template(instrument: Instrument, spacing: float, blur: float) -> Templa
 
 
 def grid(x: float, y: NDArray[np.float64], z: NDArray[np.float64]) -> Points:
-    """Return the points with `x` and each pair of values of `y` and `z` (m), shape (n, 3)."""
+    """Return points of all combinations of `y` with `z` (m) at `x`, shape (len(z) * len(y), 3)."""
     ys, zs = np.meshgrid(y, z)
     return np.column_stack([np.full(ys.size, x), ys.ravel(), zs.ravel()])
 
@@ -154,7 +154,9 @@ DIAL = Instrument(
 _FLOAT = np.linspace(-0.012, 0.012, 7)  # m from the middle, points of the float that are searched
 
 
-def lift_points(points: NDArray[np.float64], heights: NDArray[np.float64]) -> NDArray[np.float64]:
+def move_points_up(
+    points: NDArray[np.float64], heights: NDArray[np.float64]
+) -> NDArray[np.float64]:
     """Return n points (m), shape (n, 3), moved up by each of m heights (m), shape (m, n, 3)."""
     return np.asarray(points[None] + heights[:, None, None] * np.array([0.0, 0.0, 1.0]))
 
@@ -172,7 +174,7 @@ LEVEL = Instrument(
         beside=grid(0.0, _FLOAT, np.array([-0.015, -0.013, 0.013, 0.015])),
         low=-0.12,
         high=0.12,
-        move=lift_points,
+        move=move_points_up,
     ),
 )
 """a red float in a glass beside a scale of 240 mm"""

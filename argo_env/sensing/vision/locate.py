@@ -241,7 +241,8 @@ _SLACK = 0.015  # m, and times 10 in rad, that a pose may exceed the limits of d
 def find_face(photo: Photo, instrument: Instrument, planned: FacePose) -> Fit | None:
     """Search the picture for the face, and return the best fit, or None if no face is found.
 
-    Only poses are searched that a displacement from the pose `planned` can lead to.
+    Only poses are searched to which a fault can displace the instrument from `planned`: at most
+    `MAX_OFFSET` and `MAX_TURN` away, with some slack.
     """
     pixel_size = _pixel_size(photo, planned.center)
     rough, fine = photo.blurred(_ROUGH / pixel_size), photo.blurred(_SOFT / pixel_size)

@@ -16,8 +16,8 @@ from argo_env.sensing.vision.align import FacePose, Fit
 from argo_env.sensing.vision.arm import JOINTS
 from argo_env.sensing.vision.indicator import (
     PictureReading,
-    combine_readings,
-    find_indicator,
+    find_indicator_on_scale,
+    find_most_probable_reading,
     reading_probability,
 )
 from argo_env.sensing.vision.instrument import DIAL, LEVEL, VALVE, Instrument
@@ -180,14 +180,14 @@ class _CameraMeasurement:
             if fit.match > best.match:
                 best = fit
             self._record_reading(photo, fit)
-            total = combine_readings(self._readings)
+            total = find_most_probable_reading(self._readings)
             if (
                 total is not None
                 and len(self._readings) > 1
                 and total.probability >= _SURE_CONFIDENCE
             ):
                 break
-        return combine_readings(self._readings)
+        return find_most_probable_reading(self._readings)
 
     def _record_reading(self, photo: Photo, fit: Fit) -> None:
         """Record the reading of the indicator in a picture in which the face was found."""
@@ -199,7 +199,7 @@ class _CameraMeasurement:
             self.obliqueness, self.distance = obliqueness, distance
         if fit.match < _READABLE_MATCH:
             return
-        indicator = find_indicator(photo, self._instrument, fit.pose)
+        indicator = find_indicator_on_scale(photo, self._instrument, fit.pose)
         if indicator is not None:
             probability = reading_probability(fit, indicator, cosine)
             self._readings.append(PictureReading(indicator.share, probability))

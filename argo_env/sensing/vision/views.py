@@ -58,8 +58,8 @@ def plan_views(
     face: FacePose,
     solids: Sequence[Solid],
     size: float,
-    used: Sequence[NDArray[np.float64]],
-    spread: float,
+    used_positions: Sequence[NDArray[np.float64]],
+    same_direction_angle: float,
 ) -> Iterator[ArmView]:
     """Yield views of the face from a robot at `pose`, those with the least cost first.
 
@@ -73,14 +73,14 @@ def plan_views(
         face: pose of the face, as far as it is known.
         solids: solids that may hide the face.
         size: radius in m about the middle of the face that should not be hidden.
-        used: camera positions in m from which pictures were taken already.
-        spread: angle in rad from which on two directions count as different.
+        used_positions: camera positions in m from which pictures were taken already.
+        same_direction_angle: angle in rad from which on two directions count as different.
     """
     eyes = _camera_positions(face, world.robot.sensor)
     eyes = eyes[_are_reachable(eyes, pose)]
     if not len(eyes):
         return
-    cost = _costs(eyes, face, solids, size, used, spread)
+    cost = _costs(eyes, face, solids, size, used_positions, same_direction_angle)
     for k in np.argsort(cost, kind="stable"):
         if not math.isfinite(cost[k]):
             return
@@ -138,18 +138,18 @@ def _costs(
     face: FacePose,
     solids: Sequence[Solid],
     size: float,
-    used: Sequence[NDArray[np.float64]],
-    spread: float,
+    used_positions: Sequence[NDArray[np.float64]],
+    same_direction_angle: float,
 ) -> NDArray[np.float64]:
     sight = eyes - face.center
     distance = np.linalg.norm(sight, axis=1)
     toward = sight / distance[:, None]
     oblique = np.arccos(np.clip(toward @ face.normal, -1.0, 1.0))
     cost = oblique**2 + _FAR_COST * distance
-    for eye in used:
+    for eye in used_positions:
         used_direction = (eye - face.center) / np.linalg.norm(eye - face.center)
         angle = np.arccos(np.clip(toward @ used_direction, -1.0, 1.0))
-        cost += _SAME_COST * np.maximum(0.0, 1.0 - angle / spread)
+        cost += _SAME_COST * np.maximum(0.0, 1.0 - angle / same_direction_angle)
     side = np.array([-math.sin(face.yaw), math.cos(face.yaw), 0.0])
     points = [
         face.center + 0.01 * face.normal + size * (y * side + np.array([0.0, 0.0, z]))

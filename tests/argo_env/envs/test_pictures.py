@@ -131,7 +131,7 @@ def test_upper_floors_have_one_frame(navigator):
     height = site.spec.floors[3].z - 0.5
     places = [(e, e.solids[0].center) for e in site.elements]
     less = tuple(e for e, (x, _, z) in places if z < height or 3.0 < x < 11.0)
-    plans = floor_plans(site.with_elements(less))
+    plans = floor_plans(site.replacing_elements(less))
     assert len({plan.bounds for plan in plans[1:]}) == 1
     lowest, upper = plans[0].bounds, plans[1].bounds
     # The ground floor is larger, and extends beyond all that is above it.

@@ -93,7 +93,7 @@ def test_detections_and_false_alarms_agree_with_an_independent_implementation():
         causes = [
             find_causes(finding, record.faults, opened.site)
             for finding in record.findings
-            if not finding.is_reported
+            if not finding.is_reported_from_outside
         ]
         no_cause = sum(not faults for faults in causes)
         assert false_alarms(record, spec, opened.site) == no_cause, number

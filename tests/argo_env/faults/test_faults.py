@@ -29,7 +29,7 @@ from argo_env.files import resources
 from argo_env.robot.pose import BodyPose
 from argo_env.run.spec import RunSpec
 from argo_env.sensing.ideal import IdealSensor
-from argo_env.sensing.onboard import OnboardSensor
+from argo_env.sensing.onboard import SensorWithFaults
 from argo_env.site.shapes import Box, Role
 from argo_env.surroundings import Surroundings
 from argo_env.surroundings.surroundings import RadioNetwork
@@ -342,7 +342,7 @@ POSE = BodyPose(5.0, 2.5, 0.0, 0.0)
 @pytest.fixture
 def targets(umad, robot):
     world, truth = WorldWithoutPhysics(umad, robot), {c.id: 0.0 for c in umad.checkpoints}
-    sensor = OnboardSensor(IdealSensor(world, robot, truth), umad, 0)
+    sensor = SensorWithFaults(IdealSensor(world, robot, truth), umad, 0)
     drive = Powertrain(RouteDrive(robot))
     return FaultTargets(
         world, truth, Surroundings(umad), drive, sensor, Battery(robot), RadioNetwork(umad)

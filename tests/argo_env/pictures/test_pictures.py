@@ -308,6 +308,6 @@ def test_another_site_or_camera_has_another_view(umad, robot, tmp_path, monkeypa
     monkeypatch.setenv(cache.VARIABLE, str(tmp_path))
     camera, sun = site_camera(umad, (80, 60)), sun_camera(umad, 50)
     first = site_view(umad, robot, camera, sun)
-    fewer = umad.with_elements(umad.elements[: len(umad.elements) // 2])
+    fewer = umad.replacing_elements(umad.elements[: len(umad.elements) // 2])
     assert (site_view(fewer, robot, camera, sun).view.colours != first.view.colours).any()
     assert site_view(umad, robot, site_camera(umad, (60, 80)), sun).view.depth.shape == (80, 60)

@@ -125,7 +125,7 @@ def test_a_drawn_site_is_not_drawn_again(monkeypatch):
     path, lattice = first.navigator.plan_to_view(dock, 2), first.navigator.lattice
     for name in ("find_surface", "build_lattice"):
         monkeypatch.setattr(navigator_module, name, None)
-    monkeypatch.setattr("argo_env.planning.generated.draw_site", None)
+    monkeypatch.setattr("argo_env.planning.generated.draw_site_and_slots", None)
     again = open_anew(DRAWN)
     assert again is not first
     assert again.site == first.site
@@ -364,12 +364,12 @@ def test_a_file_that_has_changed_meanwhile_is_refused(yard_file, tmp_path):
 
 
 def test_a_site_with_something_in_the_way_is_not_pickled(umad):
-    changed = umad.with_elements(umad.elements[:-1])
+    changed = umad.replacing_elements(umad.elements[:-1])
     opened = OpenedSite.from_site(changed)
     assert opened.site is changed
     with pytest.raises(Conflict, match="not as its description says"):
         pickle.dumps(opened)
-    assert umad.with_elements(umad.elements) is umad
+    assert umad.replacing_elements(umad.elements) is umad
 
 
 # What is not there

@@ -61,7 +61,11 @@ class TestEventsFromOutside:
         record = run(yard, PLAN, (3.0, LEAK))
         (finding,) = record.findings
         assert (finding.t, finding.kind, finding.detail) == (3.0, EventKind.GAS_LEAK, "a hiss")
-        assert (finding.is_reported, finding.answered, finding.floor) == (True, False, 1)
+        assert (finding.is_reported_from_outside, finding.answered, finding.floor) == (
+            True,
+            False,
+            1,
+        )
         (sample,) = [s for s in record.path if s.t == 3.0]
         assert finding.noticed_from == (sample.x, sample.y, sample.z)
         assert "reported while the robot was on floor 1 at (" in finding.whereabouts

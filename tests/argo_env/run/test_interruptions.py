@@ -306,7 +306,7 @@ def reactions(draw):
 def check_findings(record, plan, events):
     """Each event is a finding or the end of one, and only findings make the headline amber."""
     occurred = [(t, e.event) for t, e in events if isinstance(e, Occurred)]
-    reported = [(a.t, a.kind) for a in record.anomalies if a.is_reported]
+    reported = [(a.t, a.kind) for a in record.anomalies if a.is_reported_from_outside]
     assert not Counter(kind for _, kind in reported) - Counter(kind for _, kind in occurred)
     assert all(
         kind in [k for _, k in reported] for t, kind in occurred if t < record.result.duration

@@ -57,7 +57,7 @@ def test_plates_cover_the_deck_once(walkways, openings):
 @settings(max_examples=150, deadline=None)
 def test_free_edges_are_the_rim(walkways, openings):
     wanted = (raster(walkways) > 0) & (raster(openings) == 0)
-    edges = Deck.from_rectangles(walkways, openings).free_edges(())
+    edges = Deck.from_rectangles(walkways, openings).edges_outside_gaps(())
     length = sum(np.abs(np.subtract(e.end, e.start)).sum() for e in edges)
     assert abs(length - perimeter(wanted)) < 1e-9
     for edge in edges:
@@ -72,9 +72,15 @@ def test_free_edges_are_the_rim(walkways, openings):
 def test_gaps_stay_open_and_nothing_else(walkways, openings, gaps):
     deck = Deck.from_rectangles(walkways, openings, gaps)
     everywhere = {
-        (*np.round(m, 6).tolist(), e.outward) for e in deck.free_edges(()) for m in pieces(e)
+        (*np.round(m, 6).tolist(), e.outward)
+        for e in deck.edges_outside_gaps(())
+        for m in pieces(e)
     }
-    kept = {(*np.round(m, 6).tolist(), e.outward) for e in deck.free_edges(gaps) for m in pieces(e)}
+    kept = {
+        (*np.round(m, 6).tolist(), e.outward)
+        for e in deck.edges_outside_gaps(gaps)
+        for m in pieces(e)
+    }
     open_ = {
         piece
         for piece in everywhere

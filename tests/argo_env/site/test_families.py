@@ -11,7 +11,7 @@ from argo_compiler.base.model import Pose
 from argo_env.planning import open_site
 from argo_env.planning.generated import generate
 from argo_env.site import make_site
-from argo_env.site.families import draw_site
+from argo_env.site.families import draw_site_and_slots
 from argo_env.site.family import TEST_SEEDS, Family, Stairs, parse_family
 from argo_env.site.norms import height_errors, violations
 from argo_env.site.site_file import read_site_spec, to_yaml
@@ -40,7 +40,7 @@ small_families = st.builds(
 @settings(max_examples=examples(60), deadline=None)
 @given(family=families)
 def test_a_draw_keeps_the_norms_and_has_the_requested_properties(family):
-    spec, slots = draw_site(family)
+    spec, slots = draw_site_and_slots(family)
     assert violations(spec) == height_errors(spec) == []
     assert len(spec.floors) == family.floors
     ids = [c.id for floor in spec.floors for c in floor.checkpoints]
@@ -48,10 +48,10 @@ def test_a_draw_keeps_the_norms_and_has_the_requested_properties(family):
     assert len(spec.towers) == (0 if family.floors == 1 else 1 + (family.stairs == Stairs.BOTH))
     for tower in spec.towers:
         assert all(0.16 <= f.rise <= 0.195 for f in tower.flights)
-    assert draw_site(family) == (spec, slots)
+    assert draw_site_and_slots(family) == (spec, slots)
     # Checkpoints avoid refused slots.
     refused = set(list(slots.values())[:5])
-    assert not refused & set(draw_site(family, refused=refused)[1].values())
+    assert not refused & set(draw_site_and_slots(family, refused=refused)[1].values())
 
 
 @pytest.mark.long
@@ -81,13 +81,13 @@ def test_every_place_is_reached_from_every_dock_and_back(family, robot, tmp_path
 
 
 def test_a_site_without_stairs_to_the_upper_floor_is_refused(monkeypatch):
-    """`generate` checks the site that `draw_site` returns."""
+    """`generate` checks the site that `draw_site_and_slots` returns."""
 
     def without_stairs(family, attempt=0, refused=()):
-        spec, slots = draw_site(family, attempt, refused)
+        spec, slots = draw_site_and_slots(family, attempt, refused)
         return spec.model_copy(update={"towers": ()}), slots
 
-    monkeypatch.setattr("argo_env.planning.generated.draw_site", without_stairs)
+    monkeypatch.setattr("argo_env.planning.generated.draw_site_and_slots", without_stairs)
     monkeypatch.setattr("argo_env.planning.generated._LAYOUTS", 1)
     with pytest.raises(ArgoError, match="no draw of this seed can be driven"):
         generate(Family(floors=2, size=(12, 12), clutter=0.0, checkpoints=0, seed=5))
@@ -98,7 +98,7 @@ def test_checkpoints_that_can_not_be_read_are_moved(monkeypatch):
     """A checkpoint that is far too high in the first draw gets another slot."""
 
     def raised(family, attempt=0, refused=()):
-        spec, slots = draw_site(family, attempt, refused)
+        spec, slots = draw_site_and_slots(family, attempt, refused)
         if refused:
             return spec, slots
         (floor,) = spec.floors
@@ -108,11 +108,11 @@ def test_checkpoints_that_can_not_be_read_are_moved(monkeypatch):
         return spec.model_copy(update={"floors": (floor,)}), slots
 
     family = Family(floors=1, size=(12, 12), clutter=0.0, checkpoints=3, seed=6)
-    first_slot = draw_site(family)[1][1]
-    monkeypatch.setattr("argo_env.planning.generated.draw_site", raised)
+    first_slot = draw_site_and_slots(family)[1][1]
+    monkeypatch.setattr("argo_env.planning.generated.draw_site_and_slots", raised)
     navigator = generate(family)
     assert all(navigator.can_view(id) for id in (1, 2, 3))
-    moved = draw_site(family, refused={first_slot})[0]
+    moved = draw_site_and_slots(family, refused_slots={first_slot})[0]
     assert navigator.site.spec == moved
 
 
@@ -152,7 +152,7 @@ def test_more_checkpoints_than_places():
 
 
 def test_norms_find_what_is_wrong():
-    spec, _ = draw_site(Family(floors=2, size=(14, 12), checkpoints=2, seed=1))
+    spec, _ = draw_site_and_slots(Family(floors=2, size=(14, 12), checkpoints=2, seed=1))
     tower = spec.towers[0]
     steep = tower.flights[0].model_copy(update={"going": 0.15, "width": 0.7})
     floor = spec.floors[0]

@@ -94,6 +94,6 @@ def test_a_spot_is_reported_once_and_again_after_it_was_gone(site, world, site_m
 def test_a_place_is_projected_to_the_pixel_whose_ray_leads_to_it(site, world, row, column, depth):
     image = camera(site, world).take_image(BodyPose(5.0, 2.0, Z, 0.7, 0.2), 0.3)
     ray = image.rays(np.array([row]), np.array([column]))[0]
-    r, c, ahead = image.project(tuple((image.origin + depth * ray).tolist()))
+    r, c, ahead = image.row_column_depth(tuple((image.origin + depth * ray).tolist()))
     assert (r, c) == pytest.approx((row + 0.5, column + 0.5))
     assert 0 < ahead <= depth + 1e-9

@@ -3,13 +3,17 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from argo_compiler.analysis.bound_verification import AT_LEAST, least_steps, unproved_claims
+from argo_compiler.analysis.bound_verification import (
+    AT_LEAST,
+    bounds_unproved_by_steps,
+    least_steps,
+)
 from argo_compiler.analysis.bound_witness_search import find_least_witness
 from argo_compiler.analysis.duration_with_failures import duration_bound_with_failures_if_computable
 from argo_compiler.analysis.endings import diagnose_endings
 from argo_compiler.analysis.flow import Flow
 from argo_compiler.analysis.limits import diagnose_always_stale_values, diagnose_limits
-from argo_compiler.analysis.non_terminating_loops import find_non_terminating_loops
+from argo_compiler.analysis.non_terminating_loops import find_loops_kept_by_readings
 from argo_compiler.analysis.reachability import compute_reachability, make_fields
 from argo_compiler.analysis.results import (
     Analysis,
@@ -89,7 +93,7 @@ def _analyse(mission: Mission, catalog: Catalog | None, travel: Travel | None) -
     if len(fields.shift) < len(fields.scales):
         names = ", ".join(sorted(fields.scales.keys() - fields.shift.keys())[:10])
         unjudged.append(f"the values of some checkpoints along the paths ({names})")
-    loops = tuple(find_non_terminating_loops(study))
+    loops = tuple(find_loops_kept_by_readings(study))
     diagnostics = [
         *diagnose_unreachable_tasks(study),
         *diagnose_transitions(study),
@@ -145,7 +149,7 @@ def _with_proved_bounds(
         least = None if steps is None else find_least_witness(steps)
         witnesses = replace(witnesses, least=least)
         analysis = analysis.model_copy(update={"witnesses": witnesses})
-    return without_unproved_diagnostics(analysis, unproved_claims(steps, analysis))
+    return without_unproved_diagnostics(analysis, bounds_unproved_by_steps(steps, analysis))
 
 
 def without_unproved_diagnostics(analysis: Analysis, rejected: Sequence[Diagnostic]) -> Analysis:

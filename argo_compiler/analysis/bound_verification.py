@@ -471,8 +471,10 @@ def unproved_bounds(
     """Return the diagnostics on lower bounds that the analysis's witness does not prove."""
     witnesses = analysis.witnesses
     if witnesses is None or not any(d.code in AT_LEAST for d in analysis.diagnostics):
-        return unproved_claims(None, analysis)
-    return unproved_claims(least_steps(mission, catalog, travel, witnesses.nominal), analysis)
+        return bounds_unproved_by_steps(None, analysis)
+    return bounds_unproved_by_steps(
+        least_steps(mission, catalog, travel, witnesses.nominal), analysis
+    )
 
 
 def least_steps(
@@ -492,7 +494,9 @@ def least_steps(
         return None
 
 
-def unproved_claims(steps: LeastSteps | None, analysis: Analysis) -> tuple[Diagnostic, ...]:
+def bounds_unproved_by_steps(
+    steps: LeastSteps | None, analysis: Analysis
+) -> tuple[Diagnostic, ...]:
     """Return the diagnostics on lower bounds that the analysis's witness does not prove.
 
     Without `steps`, nothing is proved.

@@ -33,7 +33,7 @@ class NonTerminatingLoop:
         return KeptReading(self.object_id, self.scale.bounds, self.readings)
 
 
-def find_non_terminating_loops(study: Study) -> Iterator[NonTerminatingLoop]:
+def find_loops_kept_by_readings(study: Study) -> Iterator[NonTerminatingLoop]:
     """Yield the loops that some readings of a checkpoint keep going for ever.
 
     They come in the order of the leaves that compare the checkpoint. A loop is left out if it

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 from argo_compiler.base.model import Pose
 from argo_compiler.base.number_text import number_text
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.export.exporter import battery_level_refusals, raise_refusals, refusal
+from argo_compiler.export.exporter import battery_report_refusals, raise_refusals, refusal
 from argo_compiler.export.xml import Attributes, XmlWriter
 from argo_compiler.il import (
     Action,
@@ -107,7 +107,7 @@ class _Tree:
         return self.xml.text()
 
     def _refusals(self) -> Iterator[Diagnostic]:
-        yield from battery_level_refusals(self.mission.reactions)
+        yield from battery_report_refusals(self.mission.reactions)
         for reaction in self.mission.reactions:
             if reaction.response is not Response.REPORT:
                 yield refusal(

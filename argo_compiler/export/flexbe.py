@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from importlib.resources import files
 
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.export.exporter import battery_level_refusals, raise_refusals, refusal
+from argo_compiler.export.exporter import battery_report_refusals, raise_refusals, refusal
 from argo_compiler.export.xml import XmlWriter
 from argo_compiler.hfsm import Composite, Hfsm, Leaf, StateTransition, TransitionKind
 from argo_compiler.hfsm.model import DONE, MISSION, RETURN
@@ -45,7 +45,7 @@ def to_flexbe(mission: Mission, hfsm: Hfsm) -> Mapping[str, bytes]:
 
 
 def _refusals(hfsm: Hfsm) -> Iterator[Diagnostic]:
-    yield from battery_level_refusals(state.reaction for state in hfsm.reactions)
+    yield from battery_report_refusals(state.reaction for state in hfsm.reactions)
     for state in hfsm.reactions:
         if state.reaction.response is not Response.REPORT:
             yield refusal(

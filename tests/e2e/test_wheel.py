@@ -47,7 +47,7 @@ def test_a_mission_runs_from_the_wheel(tmp_path: Path, missions: Path) -> None:
     )  # fmt: skip
     assert "Success" in output
     assert (away / "report" / "report.html").is_file()
-    built = "from argo_planner.service.web.page import page_folder as f; print(*f().glob('*'))"
+    built = "from argo_planner.service.web.page import page_folder_path as f; print(*f().glob('*'))"
     call(*install, f"{wheel}[planner]", cwd=tmp_path)
     assert "index.html" in call(python, "-c", built, cwd=away)
     location = call(python, "-c", "import argo_env; print(argo_env.__file__)", cwd=away)

@@ -11,7 +11,7 @@ from argo_compiler.base.model import Model
 from argo_compiler.il import Mission
 from argo_planner.service.core.commands import Revision
 from argo_planner.service.core.plan import MissionPlan
-from argo_planner.service.core.plan_limits import require_name
+from argo_planner.service.core.plan_limits import require_displayable_name
 
 MOST_VERSIONS = 100
 """versions of one plan"""
@@ -79,12 +79,14 @@ class PlanDocument:
     def apply(self, record: PlanRecord) -> "PlanDocument":
         """Return a copy of the document with a change applied, which a line of its file records.
 
-        Raises ValueError if the change is a revision that does not follow the present one, or does
-        not fit the mission.
+        Raises ValueError if the record is of a revision that does not follow the present one, or
+        does not fit the mission. Records of other changes are not checked.
         """
         match record:
             case RevisionMade(revision=revision):
-                return replace(self, plan=self.plan.replay(revision), changed=revision.at)
+                return replace(
+                    self, plan=self.plan.with_next_revision(revision), changed=revision.at
+                )
             case PlanRenamed(name=name, at=at):
                 return replace(self, name=name, changed=at)
             case VersionKept(version=version):
@@ -107,7 +109,7 @@ class PlanDocument:
 
         Raises Invalid if the text can't be a name.
         """
-        require_name(name, "the mission")
+        require_displayable_name(name, "the mission")
         return PlanRenamed(name=name, author=author, at=at)
 
     def make_version_record(self, name: str, author: str, at: datetime) -> VersionKept:
@@ -117,7 +119,7 @@ class PlanDocument:
             Invalid: The text can't be a name.
             Conflict: The name is taken, or there are too many versions.
         """
-        require_name(name, "the version")
+        require_displayable_name(name, "the version")
         if any(version.name == name for version in self.versions):
             raise Conflict(f"there is already a version '{name}': choose another name")
         if len(self.versions) >= MOST_VERSIONS:

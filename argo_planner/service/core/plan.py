@@ -52,10 +52,11 @@ class MissionPlan:
     undoable: Stacks = field(default_factory=dict)
     redoable: Stacks = field(default_factory=dict)
 
-    def since(self, revision: int) -> tuple[Revision, ...] | None:
+    def revisions_after(self, revision: int) -> tuple[Revision, ...] | None:
         """Return the revisions after the given one, in order.
 
-        Returns None if they are no longer in the history, or the given one does not exist yet.
+        The result is empty for the newest revision, and None if not all later ones are in the
+        history, or the given one does not exist yet.
         """
         count = self.revision - revision
         if not 0 <= count <= len(self.history):
@@ -65,9 +66,11 @@ class MissionPlan:
     def require_newest(self, made_on: int | None) -> None:
         """Raise StaleRevision if `made_on` is not the plan's newest revision; None: any will do."""
         if made_on is not None and made_on != self.revision:
-            raise StaleRevision(made_on, self.revision, self.since(made_on))
+            raise StaleRevision(made_on, self.revision, self.revisions_after(made_on))
 
-    def revision_for(self, command: PlanCommand | ReplaceFrom, author: str) -> Revision | None:
+    def find_revision_made_by(
+        self, command: PlanCommand | ReplaceFrom, author: str
+    ) -> Revision | None:
         """Return the revision that the command has made, or None if the history has none.
 
         Raises CommandIdTaken if another command has used its id.
@@ -104,7 +107,7 @@ class MissionPlan:
             EditRefused, ChangedSince, NothingToUndo, CommandIdTaken, DiagnosticError,
                 PlanTooLarge, Invalid: The command can't be executed.
         """
-        if self.revision_for(request or command, author) is not None:
+        if self.find_revision_made_by(request or command, author) is not None:
             return self
         self.require_newest(made_on)
         reverts: int | None = None
@@ -136,8 +139,8 @@ class MissionPlan:
         )
         return self._with_revision(revision, mission)
 
-    def replay(self, revision: Revision) -> "MissionPlan":
-        """Return the plan after a revision that was read from a file.
+    def with_next_revision(self, revision: Revision) -> "MissionPlan":
+        """Return a copy of the plan after a revision that was made before, such as one in a file.
 
         Raises ValueError if the revision does not follow the plan's present one, or its change does
         not fit the mission.
@@ -185,7 +188,10 @@ class MissionPlan:
         )
 
     def _revision_to_revert(self, command: UndoEdit | RedoEdit, author: str) -> int:
-        """Return the number of the edit to undo, or of the undo to revert by a redo."""
+        """Return the revision of the author's edit to undo, or of the author's undo to revert.
+
+        Raises NothingToUndo if there is none, or it can't be undone.
+        """
         if isinstance(command, RedoEdit):
             if not (undone := self.redoable.get(author)):
                 raise NothingToUndo(f"nothing to redo: {author} has undone no change")
@@ -221,7 +227,7 @@ class MissionPlan:
         kind, name = subjects[0]
         what = f"`{name}`" if kind == "header" else f"{kind[:-1]} '{name}'"
         message = f"revision {number} can't be undone: {what} was changed later"
-        later = self.since(number) or ()
+        later = self.revisions_after(number) or ()
         by = [r for r in later if (kind, name) in r.change.subjects]
         if by:
             message += f", by {by[-1].author} in revision {by[-1].number}"

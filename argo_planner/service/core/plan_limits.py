@@ -27,7 +27,7 @@ def _is_visible(character: str) -> bool:
     return unicodedata.category(character)[0] in "LNPSM" and character not in _BLANK
 
 
-def require_name(name: str, what: str) -> None:
+def require_displayable_name(name: str, what: str) -> None:
     """Raise Invalid if a name is invisible, has control characters, or is too long.
 
     All other texts are allowed. `what` is the thing that is named, for the message.
@@ -44,8 +44,8 @@ def require_name(name: str, what: str) -> None:
         )
 
 
-def require_within_limits(mission: Mission, change: MissionChange) -> None:
-    """Check a mission and the names that a change sets in it against the service's limits.
+def require_within_limits(changed_mission: Mission, change: MissionChange) -> None:
+    """Raise an error if a mission, after the given change of it, exceeds the service's limits.
 
     Raises:
         PlanTooLarge: The mission has too many tasks or groups, or a changed header text is too
@@ -53,15 +53,15 @@ def require_within_limits(mission: Mission, change: MissionChange) -> None:
         Invalid: A new name of a task or a group can't be shown.
     """
     for count, most, what in (
-        (len(mission.tasks), MOST_TASKS, "tasks"),
-        (len(mission.groups), MOST_GROUPS, "groups"),
+        (len(changed_mission.tasks), MOST_TASKS, "tasks"),
+        (len(changed_mission.groups), MOST_GROUPS, "groups"),
     ):
         if count > most:
             raise PlanTooLarge(
                 f"the mission would have {count} {what}, but at most {most} are allowed: split it"
             )
     for what, name in _names(change):
-        require_name(name, what)
+        require_displayable_name(name, what)
     for field, value in (change.header.given_fields() if change.header else {}).items():
         if isinstance(value, str) and len(value) > LONGEST_TEXT:
             raise PlanTooLarge(

@@ -32,8 +32,9 @@ def revert(now: Mission, before: Mission, after: Mission) -> RevertResult:
     """Return the mission `now` without the change that earlier led from `before` to `after`.
 
     Each changed field of the header, of a task, of a group or of a reaction gets its value from
-    `before`, and each moved item is moved back. If one of them was changed or moved again after the
-    change, nothing is reverted: the result has the mission `now`, and names these parts.
+    `before`, and each moved item is moved back. If the value or position of one of them in `now`
+    differs from that in `after`, nothing is reverted: the result has the mission `now`, and names
+    these parts.
     """
     update: dict[str, Any] = {}
     since: list[Subject] = []
@@ -108,7 +109,10 @@ class _ListMerge:
         return tuple(items[name] for name in insert_placed(unmoved, placed))
 
     def _has_moved(self, name: str) -> bool:
-        """Return True if the item has another position now than after the change."""
+        """Return True if the item has another predecessor now than after the change.
+
+        Items that are not in both lists do not count as predecessors.
+        """
         after, now = [*self._after], [*self._now]
         return _last_known(after[: after.index(name)], self._now) != _last_known(
             now[: now.index(name)], self._after

@@ -53,8 +53,8 @@ class EvaluationFolder:
     def __init__(self, path: Path) -> None:
         self._path = path
 
-    def evaluation_path(self, id: str) -> Path:
-        """Return the path of an evaluation's folder, which need not exist."""
+    def unchecked_evaluation_path(self, id: str) -> Path:
+        """Return the path of an evaluation's folder, which need not exist; `id` is not checked."""
         return self._path / id
 
     def store(self, evaluation: StoredEvaluation) -> None:
@@ -62,24 +62,28 @@ class EvaluationFolder:
 
         Raises Unavailable if the folder can't be made, OSError if the file can't be written.
         """
-        folder = self.evaluation_path(evaluation.job.id)
+        folder = self.unchecked_evaluation_path(evaluation.job.id)
         make_folder(folder)
         write_atomically(folder / _JOB_FILE, evaluation.model_dump_json().encode())
 
     def load_all(self) -> list[StoredEvaluation]:
         """Return all stored evaluations, the oldest first; damaged ones are left out.
 
-        An evaluation that is stored as running is returned as interrupted.
+        An evaluation that is stored as running is returned as interrupted; its file stays the same.
         """
         evaluations = []
         names = os.listdir(self._path) if os.path.isdir(self._path) else []
         for name in names:
-            if re.fullmatch(JOB_ID, name) and not os.path.islink(self.evaluation_path(name)):
+            if re.fullmatch(JOB_ID, name) and not os.path.islink(
+                self.unchecked_evaluation_path(name)
+            ):
                 try:
                     evaluations.append(self._read(name))
                 except (FileError, ValidationError) as error:
                     _log.warning(
-                        "%s: can't be read and is ignored: %s", self.evaluation_path(name), error
+                        "%s: can't be read and is ignored: %s",
+                        self.unchecked_evaluation_path(name),
+                        error,
                     )
         return sorted(evaluations, key=lambda evaluation: evaluation.job.begun)
 
@@ -89,19 +93,19 @@ class EvaluationFolder:
         Returns the job unchanged if there are no rows or they can't be read.
         """
         try:
-            partial_results = read_partial_results(self.evaluation_path(job.id))
+            partial_results = read_partial_results(self.unchecked_evaluation_path(job.id))
         except ArgoError as error:
             _log.warning("evaluation %s: its rows can't be read: %s", job.id, error)
             return job
         return job if partial_results is None else job.with_progress(partial_results[0])
 
     def delete(self, id: str) -> None:
-        """Delete the folder of an evaluation; raises Unavailable if that fails."""
+        """Delete the folder of an evaluation; raises Unavailable if that fails or it is missing."""
         try:
-            shutil.rmtree(self.evaluation_path(id))
+            shutil.rmtree(self.unchecked_evaluation_path(id))
         except OSError as error:
             raise Unavailable(
-                f"{self.evaluation_path(id)} can't be deleted: {error.strerror}"
+                f"{self.unchecked_evaluation_path(id)} can't be deleted: {error.strerror}"
             ) from error
 
     def load_evaluation(self, id: str) -> StoredEvaluation:
@@ -116,10 +120,12 @@ class EvaluationFolder:
 
     def read_report(self, id: str) -> bytes:
         """Return the report of an evaluation as HTML; raises NotFound if there is none yet."""
-        return read_bytes(self.evaluation_path(id) / REPORT, "report", _MAX_BYTES)
+        return read_bytes(self.unchecked_evaluation_path(id) / REPORT, "report", _MAX_BYTES)
 
     def _read(self, id: str) -> StoredEvaluation:
-        content = read_bytes(self.evaluation_path(id) / _JOB_FILE, "evaluation", _MAX_BYTES)
+        content = read_bytes(
+            self.unchecked_evaluation_path(id) / _JOB_FILE, "evaluation", _MAX_BYTES
+        )
         evaluation = StoredEvaluation.model_validate_json(content)
         if evaluation.job.state is not JobState.RUNNING:
             return evaluation
@@ -194,7 +200,7 @@ class Evaluations:
         """Cancel the running evaluation of a mission, if there is one."""
         for job in self._jobs.running(EvaluationJob):
             if job.mission == plan:
-                await self._jobs.cancel(job.id)
+                await self._jobs.cancel_running(job.id)
 
     async def delete(self, id: str) -> None:
         """Delete an evaluation that has ended, with its folder and all its rows.
@@ -206,7 +212,7 @@ class Evaluations:
             job = self.find(id)
             if job.state is JobState.RUNNING:
                 raise Conflict(f"evaluation {id} is running: cancel it first")
-            self._jobs.discard(id)
+            self._jobs.discard_ended_job(id)
             await asyncio.to_thread(self._folder.delete, id)
 
     async def delete_for_mission(self, plan: str) -> None:
@@ -217,17 +223,18 @@ class Evaluations:
                 await self.delete(job.id)
 
     async def report(self, id: str) -> bytes:
-        """Return the report of an evaluation as HTML; after an early end, that of the stored runs.
+        """Return the report of an evaluation as HTML.
 
-        Raises NotFound if there is no such evaluation, it is running, or it has no report.
+        After an early end, a report of the stored runs is written first. Raises NotFound if there
+        is no such evaluation, it has no report, or it is running, even if it has an earlier report.
         """
         job = self.find(id)
         if job.state is JobState.RUNNING:  # an earlier report would lack the new runs
             raise NotFound(f"evaluation {id} has no report yet: it is running")
         if job.state in (JobState.CANCELLED, JobState.INTERRUPTED):
-            work = JobProcess(write_partial_report, self._folder.evaluation_path(id))
+            work = JobProcess(write_partial_report, self._folder.unchecked_evaluation_path(id))
             try:
-                await work.result(lambda _: None)
+                await work.start_and_wait(lambda _: None)
             finally:
                 await work.end()
         try:
@@ -255,10 +262,10 @@ class Evaluations:
             evaluation=stored.order,
         )
         async with self._replays:
-            work = JobProcess(replay_run, request, self._folder.evaluation_path(id))
+            work = JobProcess(replay_run, request, self._folder.unchecked_evaluation_path(id))
             try:
                 async with asyncio.timeout(LONGEST_REPLAY):
-                    return await work.result(lambda _: None)
+                    return await work.start_and_wait(lambda _: None)
             except TimeoutError:
                 raise Unavailable(
                     f"the replay of the run takes longer than {LONGEST_REPLAY:.0f} s: the report "
@@ -280,7 +287,7 @@ class Evaluations:
         work = JobProcess(
             evaluate_mission,
             evaluation.order,
-            self._folder.evaluation_path(evaluation.job.id),
+            self._folder.unchecked_evaluation_path(evaluation.job.id),
             parent=True,
         )
 

@@ -39,7 +39,8 @@ class Analyst:
     async def analyse_revision(self, mission: Mission, revision: int) -> AnalysisFound:
         """Analyse a mission, and return the analysis or the problem that prevented it.
 
-        `revision` is the number of the mission's revision, which the result repeats.
+        The result has one or the other; no error is raised. `revision` is the number of the
+        mission's revision, which the result repeats. Analyses run one after the other.
         """
         for _ in range(2):  # the second time in a new process
             pool = self._pool
@@ -57,7 +58,7 @@ class Analyst:
         return AnalysisFound(revision=revision, problem=problem)
 
     def close(self) -> None:
-        """Kill the process; an analysis under way is lost."""
+        """Kill the process; an `analyse_revision` under way returns no result."""
         self._pool.shutdown(wait=True, kill_workers=True)
 
 

@@ -130,10 +130,10 @@ def evaluate_mission(
 ) -> EvaluationStanding:
     """Execute the runs that have no row in the folder yet, and return the final results.
 
-    It stops earlier if the requirements are decided or the rate is known well enough. `report` is
-    called with the progress. At the end, the folder has the rows, the report and, without
-    obstacles, the specs of the failed runs. Raises ArgoError if something can't be run at all, or
-    the folder can't be written.
+    It ends before all runs are executed if its requirements are decided or the rates are known to
+    its width. `report` is called with the progress. In either case, the folder then has the rows,
+    the report and, if `spec` has no obstacles, the specs of the failed runs. Raises ArgoError if
+    something can't be run at all, or the folder can't be written.
     """
     from argo_env.evaluation.report.page import write_evaluation_report  # matplotlib
 
@@ -170,9 +170,10 @@ def evaluate_mission(
 
 
 def read_partial_results(folder: Path) -> tuple[EvaluationStanding, EvaluationResults] | None:
-    """Return the progress and the results of an evaluation that was ended early, from its folder.
+    """Return the results of an evaluation that was ended early, from the rows in its folder.
 
-    Returns None if no run has been stored. Raises ArgoError if the rows can't be read.
+    The first item is for the job: the progress, and the results so far. The second one is for the
+    report. Returns None if no run has been stored. Raises ArgoError if the rows can't be read.
     """
     plan = read_plan(folder)
     try:

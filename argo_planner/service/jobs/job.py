@@ -51,7 +51,10 @@ class OrderJob(_Job):
     found: OrderFound | None = None
 
     def with_progress(self, progress: OrderProgress) -> "OrderJob":
-        """Return a copy with one more progress report; the job itself if it has MOST_PROGRESS."""
+        """Return a copy with one more progress report.
+
+        If the job has MOST_PROGRESS reports already, return the job itself: the new one is dropped.
+        """
         if len(self.progress) == MOST_PROGRESS:
             return self
         return self.model_copy(update={"progress": (*self.progress, progress)})
@@ -60,7 +63,7 @@ class OrderJob(_Job):
         """Return a copy of the job with its result, in the state `done`."""
         return self.model_copy(update={"state": JobState.DONE, "found": found})
 
-    def for_members(self) -> "OrderJob":
+    def as_sent_to_members(self) -> "OrderJob":
         """Return what members of the mission's room are sent: the job without the new mission."""
         found = self.found and self.found.model_copy(update={"mission": None})
         return self.model_copy(update={"found": found})
@@ -88,7 +91,7 @@ class EvaluationJob(_Job):
         """Return a copy of the job with its final results, in the state `done`."""
         return self.model_copy(update={"state": JobState.DONE, "standing": standing})
 
-    def for_members(self) -> "EvaluationJob":
+    def as_sent_to_members(self) -> "EvaluationJob":
         """Return what members of the mission's room are sent: the whole job."""
         return self
 

@@ -66,7 +66,7 @@ class Jobs:
         self._running[job.id] = _RunningJob(work, task, on_end)
         return self._store(job)
 
-    async def cancel(self, id: str) -> Job:
+    async def cancel_running(self, id: str) -> Job:
         """Cancel a running job, and return it in its last state.
 
         Raises NotFound if there is no such job, Conflict if it has already ended.
@@ -86,7 +86,7 @@ class Jobs:
         if job.id in self._jobs:
             self._store(job)
 
-    def discard(self, id: str) -> None:
+    def discard_ended_job(self, id: str) -> None:
         """Remove the ended job with this id, if there is one."""
         self._jobs.pop(id, None)
 
@@ -105,7 +105,7 @@ class Jobs:
                 self._store(self._jobs[id].with_progress(progress))
 
         try:
-            result = await work.result(on_progress)
+            result = await work.start_and_wait(on_progress)
             job = self.job(id).with_result(result)
         except ArgoError as error:
             job = self.job(id)

@@ -28,8 +28,8 @@ class JobProcess(Generic[Result]):
         Args:
             work: The function; its last argument is a `ReportProgress`.
             arguments: Its other arguments.
-            parent: True if the work starts processes of its own. These then have to end by
-                themselves after the work has ended.
+            parent: True if the work starts processes of its own, which it could not do in a daemon
+                process. `end` does not end these: they have to end by themselves after it.
         """
         self._receiver, self._sender = CONTEXT.Pipe(duplex=False)
         self._process = CONTEXT.Process(target=_run_work, args=(self._sender, work, arguments))
@@ -38,7 +38,7 @@ class JobProcess(Generic[Result]):
         """held while the process is started or ended"""
         self._ended = False
 
-    async def result(self, on_progress: ReportProgress) -> Result:
+    async def start_and_wait(self, on_progress: ReportProgress) -> Result:
         """Start the process, wait for the work to end, and return its result.
 
         Meanwhile, `on_progress` is called with each progress that the work reports. Raises the
@@ -77,7 +77,7 @@ class JobProcess(Generic[Result]):
                 self._sender.close()
 
     async def end(self) -> None:
-        """End the process at once, or prevent its start."""
+        """Kill the process, or prevent its start; `start_and_wait` then raises Unavailable."""
         await asyncio.to_thread(self._end)
 
     def _end(self) -> None:

@@ -38,8 +38,8 @@ class Mailbox:
     def post(self, message: str) -> None:
         """Add a message, which no later message replaces; does nothing if the mailbox is closed.
 
-        If too many messages then wait, all of them are removed, and the mailbox is closed as too
-        slow.
+        If too many messages then wait, all that wait are removed, this one and those of
+        `post_newest` included, and the mailbox is closed as too slow.
         """
         if self._closed is not None:
             return

@@ -86,7 +86,7 @@ class PlanRoom:
         return not self._members and not self._turn.locked()
 
     @property
-    def analysis(self) -> AnalysisFound | None:
+    def last_analysis(self) -> AnalysisFound | None:
         """The last analysis, which may be of an earlier revision; None if there is none yet."""
         return self._analysis
 
@@ -98,11 +98,12 @@ class PlanRoom:
         )
 
     def earlier_answer(self, request: ReplaceFrom, author: str) -> CommandDone | None:
-        """Return the answer to a request that was executed before, or None if it was not.
+        """Return the same answer as before to a request that was executed before.
 
-        Raises CommandIdTaken if another command has used its id.
+        Returns None if the history does not have the request: it is new, or very old. Raises
+        CommandIdTaken if another command has used its id.
         """
-        known = self.document.plan.revision_for(request, author)
+        known = self.document.plan.find_revision_made_by(request, author)
         return None if known is None else self._command_done(known, author)
 
     @_shielded
@@ -123,7 +124,7 @@ class PlanRoom:
         async with self._turn:
             self._require_open()
             plan = self.document.plan
-            known = plan.revision_for(request or command, author)
+            known = plan.find_revision_made_by(request or command, author)
             if known is not None:
                 return self._command_done(known, author)
             changed, record = self.document.with_plan(
@@ -185,14 +186,15 @@ class PlanRoom:
     def join(self, client: str, author: str, since: int | None = None) -> Mailbox:
         """Add a client as a member of the room, and return the mailbox with its messages.
 
-        The first message is the whole state of the plan. If the client knows the revision `since`
-        already, and the history still has all later revisions, the first messages are instead a
-        `resumed` message, the revisions after `since`, and the last analysis if there is one.
+        The first message is the whole state of the plan, with the last analysis. If the client
+        knows the revision `since` already, and the history still has all later revisions, the first
+        messages are instead a `resumed` message, one for each revision after `since`, and one with
+        the last analysis if there is one.
         """
         self._require_open()
         member = Member(client=client, author=author)
         members = (*self._member_list(), member)
-        missed = None if since is None else self.document.plan.since(since)
+        missed = None if since is None else self.document.plan.revisions_after(since)
         messages: list[Model] = []
         if since is None or missed is None:
             state = self.plan_state(author)
@@ -227,8 +229,8 @@ class PlanRoom:
             self._broadcast(MembersTold(members=self._member_list()), except_for=client)
 
     def publish_job(self, job: Job) -> None:
-        """Send the state of a job to all members."""
-        text = JobTold.model_construct(job=job.for_members()).model_dump_json()
+        """Send a job to all members; it replaces an earlier state of the job that still waits."""
+        text = JobTold.model_construct(job=job.as_sent_to_members()).model_dump_json()
         for _, mailbox in self._members.values():
             mailbox.post_newest(job.id, text)
 
@@ -241,22 +243,25 @@ class PlanRoom:
         if self._members.pop(client, None) is not None:
             self._broadcast(MembersTold(members=self._member_list()))
 
-    async def close(self, deleting: Callable[[], None] | None = None) -> None:
+    async def close(self, move_file: Callable[[], None] | None = None) -> None:
         """Wait for the change under way, then disconnect all members and close the file.
 
-        `deleting`, if given, is called first to move the file away. If it raises an error, the
+        `move_file`, if given, is called first to move the file away. If it raises an error, the
         room stays open and the error is passed on.
         """
         async with self._turn:
             if self._closed:
                 return
-            if deleting is not None:
-                await asyncio.to_thread(deleting)
+            if move_file is not None:
+                await asyncio.to_thread(move_file)
                 self._broadcast(DeletedTold())
-            self.close_idle()
+            self.close_at_once()
 
-    def close_idle(self) -> None:
-        """Disconnect all members and close the file at once; no change may be under way."""
+    def close_at_once(self) -> None:
+        """Disconnect all members and close the file, without waiting for a change under way.
+
+        The caller makes sure that there is none; this does not check it.
+        """
         self._closed = True
         if self._analysing is not None:
             self._analysing.cancel()

@@ -76,11 +76,11 @@ class PlanRooms:
         Raises the errors of `PlanFolder.delete`; the room then stays open.
         """
         async with self._turn:
-            deleting = partial(self._folder.delete, id)
+            move_file = partial(self._folder.delete, id)
             if (room := self._rooms.get(id)) is None:
-                await asyncio.to_thread(deleting)
+                await asyncio.to_thread(move_file)
             else:
-                await room.close(deleting)
+                await room.close(move_file)
                 self._rooms.pop(id, None)
 
     async def restore(self, id: str) -> PlanRoom:
@@ -105,5 +105,5 @@ class PlanRooms:
         self._rooms[room.document.id] = room
         idle = [id for id, other in self._rooms.items() if other.is_idle and other is not room]
         for id in idle[: max(0, len(idle) - MOST_OPEN)]:
-            self._rooms.pop(id).close_idle()
+            self._rooms.pop(id).close_at_once()
         return room

@@ -40,7 +40,8 @@ class CurrentRun:
     def replace_run(self, stored: StoredRun, requests: Iterable[RequestState] = ()) -> None:
         """Make another run the current one, with an empty log and its earlier requests.
 
-        The run must be on disk already. `load_missing_entries` fills the log.
+        The run must be on disk already. `load_missing_entries` fills the log. Followers stay, and
+        are sent nothing by this.
         """
         self._stored, self._essential_fields = stored, _essential_fields(stored.state)
         self._entries, self.book = [], RequestBook(stored.state.id, requests)
@@ -63,9 +64,12 @@ class CurrentRun:
             raise NotFound(f"run {run[:40]!r} is not the current run")
         return state
 
-    def list_entries(self, since: int, most: int) -> EntryList:
-        """Return at most `most` entries of the log after the first `since` ones."""
-        texts = self._entries[since : since + most]
+    def list_entries(self, after_first: int, most: int) -> EntryList:
+        """Return at most `most` entries of the log after the first `after_first` ones.
+
+        The list is empty if the log has no more than those.
+        """
+        texts = self._entries[after_first : after_first + most]
         messages = [EntryTold.model_validate_json(text) for text in texts]
         entries = tuple(message.entry for message in messages)
         return EntryList(count=len(self._entries), entries=entries)
@@ -75,13 +79,13 @@ class CurrentRun:
         """Number of entries in the log."""
         return len(self._entries)
 
-    def subscribe(self, client: str, since: int | None) -> Mailbox:
+    def subscribe(self, client: str, after_first: int | None) -> Mailbox:
         """Add a follower with the id `client`, and return its mailbox.
 
-        The mailbox gets the state of the run, then the entries after number `since` (None: all of
-        them), then all further messages.
+        The mailbox gets the state of the run, then the entries after the first `after_first` ones
+        (None: all entries), then all further messages.
         """
-        mailbox = Mailbox([self._state_text(), *self._entries[since or 0 :]])
+        mailbox = Mailbox([self._state_text(), *self._entries[after_first or 0 :]])
         self._followers[client] = mailbox
         return mailbox
 

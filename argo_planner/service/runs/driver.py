@@ -51,7 +51,10 @@ class EntryReporter(Observer):
     """
 
     def __init__(self, run: str, send: SendMessage, past: tuple[Entry, ...] = ()) -> None:
-        """Create the reporter of a run; `past` entries are counted, but not sent."""
+        """Create the reporter of a run; `past` entries are counted, but not sent.
+
+        The first entry that is sent has the number `len(past) + 1`.
+        """
         self._run, self._send = run, send
         self.count = 0
         """number of entries"""
@@ -93,20 +96,19 @@ class Pace:
         self.speed = speed
         self._simulated, self._now = simulated, now
 
-    def time_to_step(self, simulated: float, now: float, waits: bool) -> float:
+    def seconds_until_step(self, simulated: float, now: float, waits_for_person: bool) -> float:
         """Return the real time in s until the next time step is due; 0 or less: it is due.
 
         Args:
             simulated: Present simulated time in s.
             now: Present real time in s.
-            waits: Whether the run waits for a person. Simulated time then is not faster than real
-                time.
+            waits_for_person: Whether the run waits for a person. The speed then is 1 at most.
         """
-        if waits is not self._waits:
-            self._waits = waits
+        if waits_for_person is not self._waits:
+            self._waits = waits_for_person
             self._simulated, self._now = simulated, now
         speed = self.speed
-        if waits:
+        if waits_for_person:
             speed = 1.0 if speed is None else min(1.0, speed)
         if speed is None:
             return 0.0
@@ -156,11 +158,12 @@ class SupervisedRun:
             )
         self._skipped.append(name)
 
-    def done_and_skipped(self, mission: Mission) -> tuple[ByHand, ...]:
+    def done_then_skipped(self, mission: Mission) -> tuple[ByHand, ...]:
         """Return the tasks that the person has done and those skipped, for giving the robot back.
 
         `mission` is the mission with which the run continues, which may have been edited. A skipped
-        task is not returned if `mission` has a different task of the same name.
+        task is left out if `mission` has a task of the same name with another action, checkpoint or
+        pose, but not if it has no task of this name. Tasks that were done are never left out.
         """
         old = self._simulation.spec.mission
         names = (name for name in self._skipped if _is_same(old.task(name), mission.task(name)))
@@ -171,7 +174,7 @@ class SupervisedRun:
         """Remove all marks of skipped tasks, after the robot was given back."""
         self._skipped.clear()
 
-    def requested_task(self, request: asked.DoTask | asked.DriveTo | asked.MeasureAt) -> Task:
+    def find_or_make_task(self, request: asked.DoTask | asked.DriveTo | asked.MeasureAt) -> Task:
         """Return the task that a request by hand asks for: one of the mission, or a new one.
 
         Raises NotFound if the mission has no task of that name.
@@ -261,7 +264,7 @@ class RunDriver:
         Returns the real time in s until this must be called again; 0 or less: at once.
         """
         waits = self._waits_for_person()
-        time_left = self._pace.time_to_step(self._simulation.now, self._clock(), waits)
+        time_left = self._pace.seconds_until_step(self._simulation.now, self._clock(), waits)
         if time_left <= 0.0:
             self._simulation.step()
             self._settle_requests()
@@ -277,10 +280,11 @@ class RunDriver:
             self.send_state()
         return min(time_left, max(0.0, state_due - now)) if self._reporter.has_news else time_left
 
-    def handle_restart_request(self, request: RunRequest, by: str) -> None:
+    def handle_resume_or_stop(self, request: RunRequest, by: str) -> None:
         """Carry out the request, by author `by`, that an interrupted run be resumed or stopped.
 
-        A request to resume is confirmed with the next entry.
+        A request to resume is confirmed once there is a new entry. If the run is over already, any
+        request is confirmed at once.
         """
         if isinstance(request, asked.EndRun) and not self.over:
             self.handle_request(request, by)
@@ -305,7 +309,7 @@ class RunDriver:
         self._settle_requests()
         self.send_state()
 
-    def confirm_continuation(self) -> None:
+    def confirm_requests_to_continue(self) -> None:
         """Confirm the pending requests to continue with an edited plan: this simulation does so."""
         confirmed = {"progress": RequestProgress.CONFIRMED}
         self._settle(
@@ -358,7 +362,10 @@ class RunDriver:
     # ---- requests
 
     def _begin(self, request: RunRequest) -> Callable[[], bool]:
-        """Begin to carry out a request; return a function that returns True once it has effect."""
+        """Begin to carry out a request; return a function that returns True once it has effect.
+
+        The driver calls this function until it does. Raises ArgoError if the request is refused.
+        """
         simulation = self._simulation
         machine = simulation.machine
         match request:
@@ -369,7 +376,7 @@ class RunDriver:
             case asked.GiveRobotBack():
                 if not simulation.taken_over:
                     raise Conflict("nobody has the robot, so that it can't be given back")
-                by_hand = self._supervised.done_and_skipped(simulation.spec.mission)
+                by_hand = self._supervised.done_then_skipped(simulation.spec.mission)
                 simulation.handle(GiveBack(by_hand))
                 self._supervised.clear_skipped()
                 return lambda: simulation.ended or not simulation.taken_over
@@ -379,7 +386,7 @@ class RunDriver:
                         "only a person who has the robot can continue with the edited mission: "
                         "take the robot over first"
                     )
-                by_hand = self._supervised.done_and_skipped(mission)
+                by_hand = self._supervised.done_then_skipped(mission)
                 self.continuation = simulation.continuation_spec(mission, by_hand), revision
                 return lambda: False
             case asked.TakeRobot():
@@ -405,7 +412,7 @@ class RunDriver:
                 simulation.handle(StopByHand())
                 return lambda: simulation.task is None
             case asked.DoTask() | asked.DriveTo() | asked.MeasureAt():
-                simulation.handle(DoByHand(self._supervised.requested_task(request)))
+                simulation.handle(DoByHand(self._supervised.find_or_make_task(request)))
                 self._by_hand = request.id
                 return lambda: simulation.by_hand is None
             case asked.CancelMission():

@@ -133,7 +133,7 @@ class RunFolder:
         except OSError as error:
             raise Unavailable(f"{path} can't be written: {error.strerror}") from error
 
-    def load_runs(self) -> list[StoredRun]:
+    def load_runs_newest_first(self) -> list[StoredRun]:
         """Return the stored runs, the newest first; damaged ones are left out."""
         runs: list[StoredRun] = []
         with suppress(FileNotFoundError):
@@ -177,7 +177,8 @@ class RunFolder:
     def read_report_file(self, id: str, file: str) -> bytes | None:
         """Return the content of a file of a run's report; None if the file does not exist.
 
-        Raises NotFound if there is no such run, Unavailable if the file can't be read.
+        `file` is its name in the folder of the run, which the caller has checked. Raises NotFound
+        if there is no such run, Unavailable if the file can't be read.
         """
         self.load_run(id)
         path = self.run_path(id) / file
@@ -193,7 +194,7 @@ class RunFolder:
         return next(reversed(journal_paths(self.run_path(id))), None)
 
     def has_ended(self, id: str) -> bool:
-        """Return True if the newest journal of a run has the run's end; False if there is none.
+        """Return True if the newest journal of a run has the run's end; False without a journal.
 
         Raises ArgoError if the journal can't be read.
         """

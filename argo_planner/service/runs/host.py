@@ -57,7 +57,7 @@ class RobotConnection:
         """Return True if this is the mailbox of the present connection."""
         return mailbox is self._mailbox
 
-    def queue_message(self, message: str) -> None:
+    def queue_if_connected(self, message: str) -> None:
         """Queue a message for the robot; it is dropped if no robot is connected."""
         if self._mailbox is not None:
             self._mailbox.post(message)
@@ -124,11 +124,11 @@ class RunHost:
     async def open(self) -> None:
         """Load the newest run, if there is one.
 
-        If it had not ended, it is resumed or waits for a person, as `after_restart` states; it is
-        stopped if a person had requested that.
+        If it had not ended, it is stopped if a person had requested to stop it. Otherwise it is
+        resumed, or waits for a person, as `after_restart` states.
         """
         async with self._lock:
-            runs = await self._disk.run(self._folder.load_runs)
+            runs = await self._disk.run(self._folder.load_runs_newest_first)
             if not runs:
                 return
             current, last = self._current, runs[0]
@@ -200,7 +200,7 @@ class RunHost:
                     "`stop` are possible"
                 )
             if worker is not None:
-                worker.require_capacity()
+                worker.require_queue_space()
             elif not interrupted:
                 raise Conflict(f"run {run} is {state.status}: try again in a moment")
             accepted = RequestState(
@@ -229,7 +229,7 @@ class RunHost:
 
     async def list_runs(self) -> list[RunState]:
         """Return the states of all runs, the newest first."""
-        runs = [run.state for run in await self._disk.run(self._folder.load_runs)]
+        runs = [run.state for run in await self._disk.run(self._folder.load_runs_newest_first)]
         state = self.state
         return runs if state is None else [state, *(run for run in runs if run.id != state.id)]
 
@@ -239,17 +239,18 @@ class RunHost:
             return self._current.stored.state
         return (await self._disk.run(self._folder.load_run, run)).state
 
-    async def list_entries(self, run: str, since: int, most: int) -> EntryList:
-        """Return at most `most` entries of a run's log after the first `since` ones.
+    async def list_entries(self, run: str, after_first: int, most: int) -> EntryList:
+        """Return at most `most` entries of a run's log after the first `after_first` ones.
 
-        Raises NotFound if there is no such run.
+        Raises NotFound if there is no such run, ArgoError if a journal of an earlier run can't be
+        read.
         """
         if self._is_current(run):
-            return self._current.list_entries(since, most)
+            return self._current.list_entries(after_first, most)
         if self._last_log is None or self._last_log[0] != run:
             self._last_log = run, await self._disk.run(self._folder.load_entries, run)
         entries = self._last_log[1]
-        return EntryList(count=len(entries), entries=entries[since : since + most])
+        return EntryList(count=len(entries), entries=entries[after_first : after_first + most])
 
     async def read_report_file(self, run: str, file: str) -> bytes:
         """Return the content of a file of a run's report; wait if the report is being written.
@@ -268,13 +269,13 @@ class RunHost:
         journal = await self._disk.run(self._folder.last_journal, run)
         raise _missing_report_error(await self.read_state(run), file, journal, is_writing)
 
-    def subscribe(self, client: str, since: int | None = None) -> Mailbox:
+    def subscribe(self, client: str, after_first: int | None = None) -> Mailbox:
         """Add a follower of the robot's runs with the id `client`, and return its mailbox.
 
-        The mailbox gets the state of the current run, its entries after number `since` (None: all
-        of them), then all further messages.
+        The mailbox gets the state of the current run, its entries after the first `after_first`
+        ones (None: all entries), then all further messages.
         """
-        return self._current.subscribe(client, since)
+        return self._current.subscribe(client, after_first)
 
     def unsubscribe(self, client: str) -> None:
         """Remove the follower with this id, if there is one."""
@@ -287,14 +288,14 @@ class RunHost:
         has meanwhile connected again, so that `mailbox` is not that of its present connection.
         """
         if self._worker is not None and self.robot.has_mailbox(mailbox):
-            self._worker.forward_robot_message(message)
+            self._worker.queue_or_drop_robot_message(message)
 
     async def close(self) -> None:
         """Kill all processes and end all connections; the run can be resumed from its journal."""
         async with self._lock:
             self._worker = None
         while self._workers:
-            await asyncio.to_thread(next(iter(self._workers)).kill)
+            await asyncio.to_thread(next(iter(self._workers)).kill_and_wait)
         await asyncio.to_thread(self._disk.close)
         self._current.close("the service ends")
         self.robot.close("the service ends")
@@ -333,13 +334,13 @@ class RunHost:
         )
 
     async def _handle_messages(self, worker: RunProcess, messages: Sequence[Model]) -> None:
-        """Apply messages of a process; of an earlier run's process only its failure is noted."""
+        """Apply messages of a process; of an earlier run's process, only set `worker.problem`."""
         for message in messages:
             match message:
                 case WorkerFailed(problem=problem):
                     worker.problem = problem
                 case RobotText(text=text) if worker is self._worker:
-                    self.robot.queue_message(text)
+                    self.robot.queue_if_connected(text)
         async with self._lock:
             if worker is self._worker:
                 await self._current.apply_messages(messages)
@@ -356,9 +357,10 @@ class RunHost:
             self._workers.discard(worker)
 
     async def _handle_loss(self, problem: str, may_stop: bool) -> None:
-        """Set and publish the state of the current run, whose process is gone (`_settle_loss`).
+        """Set and publish the state of the current run after its process is gone.
 
-        If a person has asked for the run to stop, another process is started that stops it.
+        `_settle_loss` computes this state. If a person has asked for the run to stop, and
+        `may_stop` is True, another process is started that stops it.
         """
         current, ended = self._current, False
         run = current.stored.state.id

@@ -38,7 +38,10 @@ class WorkerPipe:
             self._receive(timeout)
 
     def take_requests(self) -> Sequence[tuple[RunRequest, str]]:
-        """Remove and return the requests received since the last call, each with its author."""
+        """Remove and return the requests received since the last call, each with its author.
+
+        This does not wait: there may be none.
+        """
         self._receive(0.0)
         requests = tuple(self._requests)
         self._requests.clear()

@@ -61,7 +61,7 @@ class RunProcess:
         self._sender = threading.Thread(target=self._send_waiting, daemon=True)
         self._sender.start()
 
-    def require_capacity(self) -> None:
+    def require_queue_space(self) -> None:
         """Raise Unavailable if the queue of messages to the process is full."""
         if self._waiting.full():
             raise self._overload_error()
@@ -73,7 +73,7 @@ class RunProcess:
         except queue.Full:
             raise self._overload_error() from None
 
-    def forward_robot_message(self, message: str) -> None:
+    def queue_or_drop_robot_message(self, message: str) -> None:
         """Queue a message of the remote robot for the process; drop it if the queue is half full.
 
         The rest of the queue is left for people's requests. The robot repeats a dropped message, as
@@ -107,7 +107,7 @@ class RunProcess:
         self._reader = threading.Thread(target=pass_on, daemon=True)
         self._reader.start()
 
-    def kill(self) -> None:
+    def kill_and_wait(self) -> None:
         """Kill the process, and wait until the reading thread has called `on_exit` and ended.
 
         The caller must not block the thread in which the callbacks do their work.

@@ -266,8 +266,9 @@ class RequestBook:
     def pending_and_latest(self, updates: Iterable[RequestState] = ()) -> tuple[RequestState, ...]:
         """Return all pending requests and at most MOST_SETTLED settled ones, the latest of these.
 
-        They are in the order in which they came. `updates` are new states that replace those in the
-        book in the result; the book itself is not changed.
+        All are in the order in which the requests came, which also decides which ones are the
+        latest. In the result, `updates` replace the states in the book or are added to them; the
+        book itself is not changed.
         """
         requests = (self._requests | {request.id: request for request in updates}).values()
         over = [request.id for request in requests if request.over]

@@ -120,7 +120,7 @@ class _RunWorker:
             journal = self._open_journal(stack)
             driver, simulation = self._begin(journal, stack, self._state.requests)
             if self._first_request is not None:
-                driver.handle_restart_request(*self._first_request)
+                driver.handle_resume_or_stop(*self._first_request)
             while not driver.over:
                 self._pipe.wait_for_message(driver.step_if_due())
                 for request, by in self._pipe.take_requests():
@@ -143,9 +143,10 @@ class _RunWorker:
         return self._first_request is not None and isinstance(self._first_request[0], EndRun)
 
     def _connect_robot(self) -> RemoteRobot | None:
-        """Return the remote robot; None if the run only stops and the robot sends no pose.
+        """Return the remote robot, after its first pose; for runs with a remote robot only.
 
-        Raises Unavailable if the run does not only stop and the robot sends no pose.
+        If the robot sends no pose in time, return None if the run only stops, else raise
+        Unavailable.
         """
         channel = Channel(self._pipe, uuid4().hex, time.time)
         navigator = self._site.navigator
@@ -223,5 +224,5 @@ class _RunWorker:
         update = {"revision": revision, "max_duration": limit, "speed": driver.speed, "skipped": ()}
         self._state = self._state.model_copy(update=update)
         new_driver, new_simulation = self._begin(journal, stack, driver.requests)
-        new_driver.confirm_continuation()
+        new_driver.confirm_requests_to_continue()
         return new_driver, new_simulation

@@ -15,9 +15,9 @@ from argo_env.closing import Closing
 from argo_env.files.checked_lines import sync_folder
 from argo_planner.service.core.document import PlanDocument
 from argo_planner.service.core.plan import MissionPlan
-from argo_planner.service.core.plan_limits import require_name
-from argo_planner.service.storage.outline import PlanSummary, read_outline
-from argo_planner.service.storage.plan_file import PlanFile, create_plan_file, open_plan_file
+from argo_planner.service.core.plan_limits import require_displayable_name
+from argo_planner.service.storage.outline import PlanSummary, read_plan_summary
+from argo_planner.service.storage.plan_file import PlanFile, open_plan_file, write_plan_file
 
 MOST_PLANS = 2_000
 """plans in a folder, and as many in its bin"""
@@ -87,15 +87,15 @@ class PlanFolder(Closing):
     def create(self, name: str, mission: Mission, at: datetime) -> PlanFile:
         """Create a plan with a new id, and return its open file.
 
-        Raises Invalid if the text can't be its name, Conflict if the folder is full, Unavailable if
-        the file can't be written.
+        Raises Invalid if the text can't be its name, Conflict if the folder has MOST_PLANS plans
+        (those in the bin don't count), Unavailable if the file can't be written.
         """
-        require_name(name, "the mission")
+        require_displayable_name(name, "the mission")
         if sum(1 for _ in _files(self.path)) >= MOST_PLANS:
             raise Conflict(f"there are {MOST_PLANS} missions: delete some of them first")
         id = self._free_id()
         document = PlanDocument(id, name, at, at, MissionPlan(mission))
-        return create_plan_file(self._path(id), document)
+        return write_plan_file(self._path(id), document)
 
     def open(self, id: str) -> PlanFile:
         """Open the file of a plan; raises NotFound, or the other errors of `open_plan_file`."""
@@ -114,7 +114,10 @@ class PlanFolder(Closing):
         self._move(self._path(id), self._deleted_path(id), id)
 
     def restore(self, id: str) -> None:
-        """Move a plan out of the bin; raises NotFound if the bin does not have it."""
+        """Move a plan out of the bin, even if the folder then has more than MOST_PLANS plans.
+
+        Raises NotFound if the bin does not have it, Unavailable if the file can't be moved.
+        """
         self._move(self._deleted_path(id), self._path(id), id)
 
     def destroy(self, id: str) -> None:
@@ -152,7 +155,7 @@ class PlanFolder(Closing):
             state = (status.st_mtime_ns, status.st_size, status.st_ino)
             cached = self._cache.get(path)
             if cached is None or cached.state != state:
-                cached = _CachedSummary(state, read_outline(path))
+                cached = _CachedSummary(state, read_plan_summary(path))
                 self._cache[path] = cached
         except (FileNotFoundError, NotFound):
             return None

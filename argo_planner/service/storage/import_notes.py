@@ -36,7 +36,10 @@ def store_import_notes(
 
 
 def load_import_notes(folder: Path, plan: str) -> tuple[int, tuple[Diagnostic, ...]]:
-    """Return the revision number and the notes of the last import; 0 and () if there are none."""
+    """Return the revision number and the notes of the last import.
+
+    The result is 0 and () if no import is stored, or its file can't be read.
+    """
     try:
         stored = _Notes.model_validate_json(_path(folder, plan).read_bytes())
     except (OSError, ValidationError):

@@ -8,7 +8,11 @@ from typing import Any
 from argo_compiler.base.errors import ArgoError, NotFound
 from argo_compiler.base.model import Model
 from argo_env.files.checked_lines import checked_object
-from argo_planner.service.storage.plan_file import parse_first_line, previous_file, read_plan_bytes
+from argo_planner.service.storage.plan_file import (
+    parse_first_line,
+    read_plan_bytes,
+    replaced_file_path,
+)
 
 
 class PlanSummary(Model):
@@ -24,16 +28,16 @@ class PlanSummary(Model):
     """why the plan can't be opened; None: it can be opened"""
 
 
-def read_outline(path: Path) -> PlanSummary:
+def read_plan_summary(path: Path) -> PlanSummary:
     """Return the summary of a plan's file, from its lines up to the first damaged one.
 
     If the first line is damaged, the file that this one has replaced is read instead. If nothing
-    can be read as a plan, the summary's `problem` states why. Raises NotFound if there is no such
-    file.
+    can be read as a plan, and only then, the summary's `problem` states why. Raises NotFound if
+    there is no such file.
     """
     try:
         summary = _summarize(path.stem, read_plan_bytes(path))
-        if summary is None and os.path.exists(previous := previous_file(path)):
+        if summary is None and os.path.exists(previous := replaced_file_path(path)):
             summary = _summarize(path.stem, read_plan_bytes(previous))
     except NotFound:
         raise

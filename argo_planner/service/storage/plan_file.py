@@ -81,7 +81,7 @@ class PlanExtent:
     lines: int
 
     @property
-    def has_grown(self) -> bool:
+    def must_be_rewritten(self) -> bool:
         """True if the file has so many lines or bytes that it is to be rewritten."""
         grown = self.size - self.first
         return self.lines > MOST_RECORDS or grown > max(MAX_GROWTH, self.first)
@@ -101,8 +101,8 @@ class PlanFile(Closing):
         self._file = file
         self._extent = extent
 
-    def append(self, document: PlanDocument, record: PlanRecord) -> None:
-        """Append a record to the file and sync it; `document` is the plan's state after the record.
+    def append(self, document_after: PlanDocument, record: PlanRecord) -> None:
+        """Append a record to the file and sync it; `document_after` is the plan's new state.
 
         Raises Unavailable if the record can't be written, PlanTooLarge if the file would be too
         large to be opened again. After an error the file has the same content as before.
@@ -125,8 +125,8 @@ class PlanFile(Closing):
             truncate_if_possible(self._file, extent.size)
             raise _write_error(self.path, error) from error
         self._extent = PlanExtent(extent.first, extent.size + len(line), extent.lines + 1)
-        self.document = document
-        if self._extent.has_grown:
+        self.document = document_after
+        if self._extent.must_be_rewritten:
             self._rewrite()
 
     def close(self) -> None:
@@ -142,8 +142,11 @@ class PlanFile(Closing):
         self._file, self._extent = written
 
 
-def create_plan_file(path: Path, document: PlanDocument) -> PlanFile:
-    """Write a plan to a new file and return it open; raises Unavailable if that fails."""
+def write_plan_file(path: Path, document: PlanDocument) -> PlanFile:
+    """Write a plan to a file, which replaces an existing one, and return it open.
+
+    Raises Unavailable if that fails.
+    """
     file, extent = _write_plan(path, document, 0)
     return PlanFile(path, file, document, extent)
 
@@ -161,7 +164,7 @@ def open_plan_file(path: Path) -> PlanFile:
     """
     content = read_plan_bytes(path)
     parsed = _parse(content)
-    previous = previous_file(path)
+    previous = replaced_file_path(path)
     if parsed is None and os.path.exists(previous):
         parsed_previous = _parse(read_plan_bytes(previous))
         if parsed_previous is not None:
@@ -300,8 +303,8 @@ def _write_plan(
         write_all(file, content)
         os.fsync(file)
         if keep_previous and os.path.exists(path):
-            previous_file(path).unlink(missing_ok=True)
-            os.link(path, previous_file(path), follow_symlinks=False)
+            replaced_file_path(path).unlink(missing_ok=True)
+            os.link(path, replaced_file_path(path), follow_symlinks=False)
         draft.replace(path)
         sync_folder(path.parent)
     except OSError as error:
@@ -328,7 +331,7 @@ def _last_revisions(plan: MissionPlan, most: int) -> list[RevisionMade]:
     return records[::-1]
 
 
-def previous_file(path: Path) -> Path:
+def replaced_file_path(path: Path) -> Path:
     """Return the path of the file that a plan's file has replaced; it need not exist."""
     return path.with_name(f"{path.name}.before")
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from urllib.parse import unquote
 
 from argo_compiler.base.errors import ArgoError, Invalid, Unavailable
-from argo_planner.service.core.plan_limits import require_name
+from argo_planner.service.core.plan_limits import require_displayable_name
 
 MIN_TOKEN_LENGTH = 16
 """in characters"""
@@ -61,7 +61,10 @@ class AccessToken:
 
     @property
     def cookie(self) -> str:
-        """Value for a cookie: an HMAC, from which the secret can't be computed."""
+        """Value for a cookie, always the same for one secret, which can't be computed from it.
+
+        It is an HMAC with the secret as the key.
+        """
         return hmac.new(self.secret.encode(), b"argo cookie", hashlib.sha256).hexdigest()
 
 
@@ -110,14 +113,15 @@ def identify_visitor(
 ) -> Visitor:
     """Return name and role of the sender of a request that has a valid token.
 
-    The name is that of the token, else that of the header or of the parameter `author`, else
-    `somebody`. Raises Invalid if the request states a text that can't be a name.
+    The name is that of the token, else the text of AUTHOR_HEADER, else that of the parameter
+    `author`, else `somebody`; empty texts don't count. Raises Invalid if the request states a text
+    that can't be a name.
     """
     stated = headers.get(AUTHOR_HEADER) or query.get("author")
     if token.name is not None or not stated:
         return Visitor(token.role, token.name or "somebody", token.name is not None)
     author = unquote(stated)
-    require_name(author, "the author of this request")
+    require_displayable_name(author, "the author of this request")
     return Visitor(token.role, author)
 
 
@@ -145,7 +149,7 @@ def read_tokens(path: Path) -> tuple[AccessToken, ...]:
             )
         name = words[2].strip() if len(words) > 2 else None
         if name is not None:
-            require_name(name, f"the owner of the token in {where}")
+            require_displayable_name(name, f"the owner of the token in {where}")
         tokens.append(AccessToken(validate_secret(words[0], where), AccessRole(role), name))
     if not tokens:
         raise Invalid(f"{path} has no tokens: write one per line, such as `SECRET plan Ann`")

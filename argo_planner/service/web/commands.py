@@ -91,7 +91,7 @@ async def write_script(
 
 @router.get("/reading", operation_id="read_back", response_model=MissionReading)
 async def read_sentences(service: Service, _: Viewer, id: PlanId) -> Response:
-    """Return the mission in plain sentences, by task; `text` is a script of the same mission."""
+    """Return the mission in plain sentences, by task; `text` is a script made from the mission."""
     document = (await service.rooms.open(id)).document
     reading = await asyncio.to_thread(
         explain_mission, require_valid_mission(document, service.site), service.site
@@ -103,9 +103,9 @@ async def read_sentences(service: Service, _: Viewer, id: PlanId) -> Response:
 async def read_analysis(service: Service, _: Viewer, id: PlanId) -> Response:
     """Return the last analysis and its revision; 404 until the mission has been analysed."""
     room = await service.rooms.open(id)
-    if room.analysis is None:
+    if room.last_analysis is None:
         raise NotFound("the mission has not been analysed yet: ask again in a moment")
-    return json_response(room.analysis)
+    return json_response(room.last_analysis)
 
 
 async def execute_command(

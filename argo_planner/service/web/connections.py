@@ -35,7 +35,10 @@ class LimitedProtocol(HttpToolsProtocol):
     _timeout: asyncio.TimerHandle | None = None
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
-        """Wait for the first request; if there are too many connections, refuse one of them."""
+        """Wait for the first request; if there are too many connections, refuse one of them.
+
+        That is the one that has waited longest for its first request, or this one if none waits.
+        """
         super().connection_made(transport)
         if len(self.connections) > self.limit:
             oldest = next(iter(self.waiting.values()), self)

@@ -125,7 +125,11 @@ class Guard:
         return None
 
     def _find_token(self, scope: Scope, headers: Headers) -> tuple[AccessToken | None, bool]:
-        """Return the request's token, and whether it is in the address of a page."""
+        """Return the request's token, and True if the address of a page states a token.
+
+        The address of a page is one outside `/api/`; the token is its parameter `token`. The token
+        is None if the request states none, or an unknown one.
+        """
         kind, _, secret = headers.get("authorization", "").partition(" ")
         if kind.lower() == "bearer":
             return self._tokens.find_by_secret(secret.strip()), False
@@ -205,8 +209,8 @@ class _LimitedBody:
     def wrap_send(self, send: Send) -> Send:
         """Return a function that sends a response, unless the body was too large.
 
-        For such a body, the framework between the guard and the routes would answer that the
-        request is bad.
+        For such a body, the guard sends the response: the framework between it and the routes would
+        answer that the request is bad, which is dropped here.
         """
 
         async def send_unless_too_large(message: Message) -> None:
@@ -218,7 +222,10 @@ class _LimitedBody:
 
 
 def _add_headers(scope: Scope, send: Send) -> Send:
-    """Return a function that adds security headers; those of the API are not cached by default."""
+    """Return a function that sends a message with security headers added.
+
+    Responses of the API that do not state how to cache them must not be cached.
+    """
     api = scope["path"].startswith("/api/")
 
     async def send_with_headers(message: Message) -> None:

@@ -95,7 +95,7 @@ async def read_job(service: Service, _: Viewer, id: JobId) -> Response:
 @router.delete("/jobs/{id}", operation_id="cancel_job", response_model=AnyJob)
 async def cancel_job(service: Service, _: Planner, id: JobId) -> Response:
     """Cancel a running job."""
-    return json_response(await service.jobs.cancel(id))
+    return json_response(await service.jobs.cancel_running(id))
 
 
 @router.post("/jobs/{id}/accept", operation_id="accept_order", **COMMAND_RESPONSE)
@@ -108,7 +108,7 @@ async def accept_order(
 ) -> Response:
     """Apply the order that a search has found, as a command that can be undone.
 
-    412 if the mission has changed since the search started.
+    412 if the mission has changed since the search started, or since the revision in `If-Match`.
     """
     job, mission = service.orders.find_result(id)
     room = await service.rooms.open(job.mission)
@@ -116,7 +116,7 @@ async def accept_order(
         id=accepted.id, mission=mission, about="a suggested order"
     )
     plan = room.document.plan
-    if plan.revision_for(command, visitor.author) is None:
+    if plan.find_revision_made_by(command, visitor.author) is None:
         for revision in (job.revision, made_on):
             plan.require_newest(revision)
     return await execute_command(room, command, visitor.author, job.revision)

@@ -32,7 +32,11 @@ _NUMBERS = count(1)
 async def follow_mission(
     socket: WebSocket, id: str, since: Annotated[int | None, Query(ge=1)] = None
 ) -> None:
-    """Send the mission, or the revisions after `since`, and then each event."""
+    """Send the messages of a mission's room, and receive the client's selection.
+
+    The first messages are the mission or, if `since` is given and all later revisions are known,
+    the revisions after `since`; see `PlanRoom.join`.
+    """
     service: PlanningService = socket.app.state.service
     visitor: Visitor = socket.scope["visitor"]
     if not await accept_socket(socket, plan=id):

@@ -243,7 +243,7 @@ async def export_a_mission(
         str, Path(max_length=40, description="`script`, `json`, or a format of `argo export`")
     ],
 ) -> Response:
-    """Return the mission in the format of another tool, as a script or as JSON."""
+    """Return the mission as `format` states: a script, JSON, or the format of another tool."""
     room = await service.rooms.open(id)
     document = room.document
     imported = (
@@ -262,9 +262,12 @@ async def export_a_mission(
 async def list_revisions(
     service: Service, _: Viewer, id: PlanId, since: Annotated[int, Query(ge=1, le=10**12)]
 ) -> Response:
-    """Return the revisions after the number `since`; 404 if not all of them are known."""
+    """Return the revisions after the number `since`, none if it is the present one.
+
+    404 if not all of them are known, or there is no revision `since` yet.
+    """
     plan = (await service.rooms.open(id)).document.plan
-    revisions = plan.since(since)
+    revisions = plan.revisions_after(since)
     if revisions is None:
         raise NotFound(
             f"the changes since revision {since} are not known: read the mission, which is at "
@@ -285,7 +288,7 @@ async def read_import_notes(service: Service, _: Viewer, id: PlanId) -> Response
 
 
 def unchecked_mission(document: PlanDocument) -> ImportedMission:
-    """Return the mission of a plan, without diagnostics; it is not checked and may have errors."""
+    """Return the mission of a plan, with no diagnostics: it is not checked and may have errors."""
     return ImportedMission(document.plan.mission, document.name, (), ())
 
 
@@ -302,7 +305,7 @@ async def open_valid_plan(service: Service, id: str, made_on: int | None = None)
 
 
 def require_valid_mission(document: PlanDocument, site: OpenedSite) -> ImportedMission:
-    """Return the mission of a plan, without diagnostics.
+    """Return the mission of a plan, with no diagnostics: its warnings are left out.
 
     Raises DiagnosticError if the mission has errors.
     """

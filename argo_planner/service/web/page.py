@@ -45,14 +45,14 @@ async def show_asset(name: str) -> Response:
     return Response(content, media_type=media, headers=headers)
 
 
-def page_folder() -> Path:
+def page_folder_path() -> Path:
     """Return the folder of the built planner page."""
     return Path(str(files("argo_planner"))) / "page" / "dist"
 
 
 def _load_files() -> Mapping[str, bytes]:
     """Return the files of the planner page by their paths; empty if it has not been built."""
-    folder = page_folder()
+    folder = page_folder_path()
     try:
         return _read_files(folder, os.stat(folder / "index.html").st_mtime_ns)
     except OSError:

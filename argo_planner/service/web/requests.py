@@ -51,7 +51,7 @@ class PlanningService:
     """executor with one thread, as a site is not safe for concurrent use"""
 
     async def run_on_site(self, work: Callable[..., T], *arguments: Any) -> T:
-        """Call a function in the site's thread and return its result; it may take long."""
+        """Call a function in the site's thread, after all earlier calls, and return its result."""
         loop = asyncio.get_running_loop()
         return await loop.run_in_executor(self.site_thread, partial(work, *arguments))
 
@@ -68,7 +68,7 @@ def get_service(request: Request) -> PlanningService:
     return service
 
 
-def get_visitor(request: Request) -> Visitor:
+def get_identified_visitor(request: Request) -> Visitor:
     """Return the sender of a request, whom the guard has identified."""
     visitor: Visitor = request.scope["visitor"]
     return visitor
@@ -78,7 +78,7 @@ def _visitor_with(role: AccessRole) -> Any:
     """Return a dependency: the visitor, whose role must include the given one."""
 
     def get_permitted_visitor(request: Request) -> Visitor:
-        visitor = get_visitor(request)
+        visitor = get_identified_visitor(request)
         visitor.require(role)
         return visitor
 

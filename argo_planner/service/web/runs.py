@@ -88,7 +88,7 @@ class RunList(Model):
 async def start_run(
     service: Service, visitor: Operator, id: PlanId, run: JsonBody[RunAsked], made_on: MadeOn
 ) -> Response:
-    """Start a run of the mission; 409 while another run has the robot, with who started it."""
+    """Start a run of the mission; 409 until the current run has ended, with who started it."""
     document = await open_valid_plan(service, id, made_on)
     plan = document.plan
     _require_known(run, service.site.site)
@@ -107,7 +107,7 @@ async def start_run(
 
 @router.get("/runs", operation_id="list_runs", response_model=RunList)
 async def list_runs(service: Service, _: Viewer) -> Response:
-    """Return the current run and the earlier ones."""
+    """Return the states of all runs: the current run first, then the others, the newest first."""
     return json_response(RunList(runs=tuple(await service.runs.list_runs())))
 
 
@@ -149,7 +149,10 @@ async def continue_with_edits(
     given: JsonBody[PlanGiven],
     made_on: MadeOn,
 ) -> Response:
-    """Give the robot back, and continue the run with its edited mission."""
+    """Request that the robot is given back and the run continues with the run's edited mission.
+
+    A request that was accepted is not done yet: read its progress.
+    """
     plan = (await open_valid_plan(service, service.runs.require_current(run).plan, made_on)).plan
     request = GoOnEdited(id=given.id, mission=plan.mission, revision=plan.revision)
     state = await service.runs.send_request(run, request, visitor.author)
@@ -165,7 +168,7 @@ async def read_request(
     run: RunId,
     request: Annotated[str, Path(pattern=r"^[A-Za-z0-9._:-]{1,64}$")],
 ) -> Response:
-    """Return the progress of a request to the current run."""
+    """Return the progress of a request to the current run; 404 if `run` is another run."""
     return json_response(service.runs.find_request(run, request))
 
 
@@ -229,7 +232,10 @@ socket_router = APIRouter()
 
 @socket_router.websocket("/api/robot/live")
 async def follow_robot(socket: WebSocket, since: Annotated[int | None, Query(ge=0)] = None) -> None:
-    """Send the state of the current run, its entries after the first `since`, then each event."""
+    """Send the state of the current run, its entries after the first `since`, then each event.
+
+    Without `since`, all entries are sent.
+    """
     service: PlanningService = socket.app.state.service
     if not await accept_socket(socket):
         return

@@ -70,7 +70,10 @@ async def store_mission_version(
     given: JsonBody[NameGiven],
     made_on: MadeOn,
 ) -> Response:
-    """Store the present mission as a version with a name; 409 if another version has it."""
+    """Store the present mission as a version with a name.
+
+    409 if another version has the name, or there are too many versions.
+    """
     room = await service.rooms.open(id)
     version = await room.store_version(given.name, visitor.author, made_on)
     return json_response(version, 201, location=f"/api/missions/{id}/versions/{version.number}")

@@ -108,9 +108,10 @@ async def read_standing(
     floor: Floor,
     heading: Annotated[int, Path(ge=0, le=1_000, description="number of the heading")],
 ) -> Response:
-    """Return a map of where on a floor the robot can stand with a heading, and what it can reach.
+    """Return a map of where on a floor the robot can stand with a heading.
 
-    `docs/service.md` describes the format.
+    It states which of these places the robot can reach from the docks. The heading is the number of
+    one of equal steps. `docs/service.md` describes the format.
     """
     obstacles = service.obstacles.present.obstacles
     return await _respond_with_file(
@@ -162,7 +163,11 @@ async def preview_a_way(service: Service, _: Viewer, asked: JsonBody[WayAsked]) 
     "/missions/{id}/preview", operation_id="preview_mission", response_model=PreviewedMission
 )
 async def preview_a_mission(service: Service, _: Viewer, id: PlanId) -> Response:
-    """Return the paths of a mission as they will be driven, with times, climb and energy."""
+    """Return the paths between a mission's tasks, with times, climb and energy.
+
+    The first paths are those if each task succeeds, in their order; those of other transitions
+    follow.
+    """
     plan = (await open_valid_plan(service, id)).plan
     obstacles = service.obstacles.present.obstacles
     preview = await service.run_on_site(preview_mission, service.site, plan.mission, obstacles)

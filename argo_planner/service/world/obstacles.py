@@ -21,7 +21,7 @@ from argo_env.navigation.raster import CELL
 from argo_env.planning.opening import OpenedSite
 from argo_env.site.shapes import Box, Element, Role
 from argo_env.site.spec import Rect
-from argo_planner.service.core.plan_limits import require_name
+from argo_planner.service.core.plan_limits import require_displayable_name
 
 T = TypeVar("T")
 MOST_OBSTACLES = 200
@@ -49,7 +49,7 @@ class Obstacle(Model):
     @classmethod
     def _check_text(cls, text: str) -> str:
         if text:
-            _raise_as_value_error(require_name, text, "the obstacle")
+            _raise_as_value_error(require_displayable_name, text, "the obstacle")
         return text
 
     @field_validator("pose")

@@ -57,12 +57,12 @@ async def ticks(times: int) -> int:
 
 def test_work_returns_its_result_and_reports_progress() -> None:
     progress: list[str] = []
-    assert asyncio.run(JobProcess[int](double, 21).result(progress.append)) == 42
+    assert asyncio.run(JobProcess[int](double, 21).start_and_wait(progress.append)) == 42
     assert progress == ["half of it"]
 
 
 async def work(_: OpenedSite) -> object:
-    return await JobProcess[int](double, 21).result(lambda _: None)
+    return await JobProcess[int](double, 21).start_and_wait(lambda _: None)
 
 
 async def analysis(site: OpenedSite) -> AnalysisFound:
@@ -92,7 +92,7 @@ def test_nothing_else_waits_while_a_process_starts(
 def test_work_is_ended_while_it_starts_and_while_it_runs(slow_start: threading.Event) -> None:
     async def end(at_once: bool) -> None:
         endless = JobProcess[None](never)
-        task = asyncio.ensure_future(endless.result(lambda _: None))
+        task = asyncio.ensure_future(endless.start_and_wait(lambda _: None))
         await ticks(2)
         if not at_once:
             slow_start.set()

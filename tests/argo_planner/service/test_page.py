@@ -6,7 +6,7 @@ from argo_planner.service.web import page
 def test_without_a_built_page_the_service_shows_how_to_build_it(
     service, monkeypatch, tmp_path
 ) -> None:
-    monkeypatch.setattr(page, "page_folder", lambda: tmp_path)
+    monkeypatch.setattr(page, "page_folder_path", lambda: tmp_path)
     answer = service.client.get("/")
     assert answer.status_code == 200
     assert "make page" in answer.text
@@ -16,7 +16,7 @@ def test_the_page_and_its_files_are_served(service, monkeypatch, tmp_path) -> No
     (tmp_path / "assets").mkdir()
     (tmp_path / "index.html").write_text("<title>Argo</title>", encoding="utf-8")
     (tmp_path / "assets" / "index-1234.js").write_text("let a = 1", encoding="utf-8")
-    monkeypatch.setattr(page, "page_folder", lambda: tmp_path)
+    monkeypatch.setattr(page, "page_folder_path", lambda: tmp_path)
     index = service.client.get("/")
     assert index.text == "<title>Argo</title>"
     assert index.headers["cache-control"] == "no-cache"

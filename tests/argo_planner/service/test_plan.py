@@ -115,7 +115,7 @@ def test_a_command_that_is_sent_again_is_executed_once(people: People) -> None:
     people.edit("bob", edits.RemoveTask(name="c"))
     plan = people.plan
     assert people.plan.execute(command, "ann", 1, AT) is plan
-    assert plan.revision_for(command, "ann") is first
+    assert plan.find_revision_made_by(command, "ann") is first
     other = EditPlan(id="x", edits=(edits.RemoveTask(name="d"),))
     for again, author in ((other, "ann"), (command, "bob")):
         with pytest.raises(CommandIdTaken):
@@ -263,10 +263,10 @@ def test_old_revisions_leave_the_history(people: People) -> None:
     for k in range(HISTORY + 5):
         people.edit("ann", edits.ChangeTask(name="a", velocity=0.1 + k / 1e4))
     assert len(people.plan.history) == HISTORY
-    assert people.plan.since(1) is None
-    assert people.plan.since(people.plan.revision + 1) is None
-    assert people.plan.since(people.plan.revision) == ()
-    assert people.plan.since(6) == people.plan.history
+    assert people.plan.revisions_after(1) is None
+    assert people.plan.revisions_after(people.plan.revision + 1) is None
+    assert people.plan.revisions_after(people.plan.revision) == ()
+    assert people.plan.revisions_after(6) == people.plan.history
     with pytest.raises(NothingToUndo):
         people.undo("ann", 6)
     with pytest.raises(ChangedSince):
@@ -346,16 +346,18 @@ def test_three_people_edit_undo_and_redo_at_once() -> None:
                 done[command.kind] += 1
                 check_invariants(before, plan)
             if rng.random() < 0.9:
-                for revision in plan.since(seen[author]) or ():
+                for revision in plan.revisions_after(seen[author]) or ():
                     followers[author].apply(revision)
                 seen[author] = plan.revision
         for author, follower in followers.items():
-            for revision in plan.since(seen[author]) or ():
+            for revision in plan.revisions_after(seen[author]) or ():
                 follower.apply(revision)
             assert follower.state == json.loads(plan.mission.model_dump_json())
         replayed = MissionPlan(first)
         for revision in plan.history:
-            replayed = replayed.replay(Revision.model_validate_json(revision.model_dump_json()))
+            replayed = replayed.with_next_revision(
+                Revision.model_validate_json(revision.model_dump_json())
+            )
         assert replayed == plan
     assert min(done[kind] for kind in ("edit", "undo", "redo", "stale", "changed-since")) > 10, done
 

@@ -134,7 +134,7 @@ async def test_unused_rooms_are_closed(rooms, monkeypatch) -> None:
 
 async def test_files_of_open_plans_are_not_read_for_a_list(rooms, monkeypatch) -> None:
     read = []
-    monkeypatch.setattr(folders, "read_outline", read.append)
+    monkeypatch.setattr(folders, "read_plan_summary", read.append)
     room = await rooms.create("Round", mission("a", "b"))
     await room.execute(rename_command(1), "ann", 1)
     (listed,) = await rooms.list_plans()

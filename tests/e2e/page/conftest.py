@@ -6,7 +6,7 @@ import pytest
 from playwright.sync_api import expect
 
 from argo_env.planning.opening import OpenedSite, open_site
-from argo_planner.service.web.page import page_folder
+from argo_planner.service.web.page import page_folder_path
 from tests.argo_planner.service.served import ALL, Served, served
 from tests.e2e.page.person import CHROMIUM, NO_CHROMIUM, Browsers, Person
 
@@ -19,7 +19,7 @@ def umad() -> OpenedSite:
 @pytest.fixture(scope="module")
 def service(tmp_path_factory, umad) -> Iterator[Served]:
     """Yield a service that all tests of a file share."""
-    if not (page_folder() / "index.html").is_file():
+    if not (page_folder_path() / "index.html").is_file():
         pytest.skip("the page is not built: `make page` builds it")
     with served(tmp_path_factory.mktemp("missions"), umad) as running:
         yield running

@@ -14,7 +14,10 @@ from hypothesis import strategies as st
 
 from argo_compiler.base.model import Model
 from argo_compiler.il import Mission
-from argo_compiler.il.velocities import with_approach_velocities, with_departure_velocities
+from argo_compiler.il.velocities import (
+    approach_to_departure_velocities,
+    departure_to_approach_velocities,
+)
 
 INTEGERS = st.integers(-(2**63), 2**63 - 1)
 FLOATS = st.floats(allow_nan=False, allow_infinity=False)
@@ -30,8 +33,10 @@ def carried_missions() -> st.SearchStrategy[Mission]:
 
 
 def _carried(mission: Mission) -> Mission:
-    mission, differ = with_approach_velocities(mission.model_copy(update={"left_out": ()}))
-    if not differ and with_approach_velocities(with_departure_velocities(mission)[0]) == (
+    mission, differ = departure_to_approach_velocities(mission.model_copy(update={"left_out": ()}))
+    if not differ and departure_to_approach_velocities(
+        approach_to_departure_velocities(mission)[0]
+    ) == (
         mission,
         (),
     ):

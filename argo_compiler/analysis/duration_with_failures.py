@@ -84,7 +84,9 @@ class _ReactionTimes:
         if any(map(_may_pause, self.reactions)):
             return math.inf
         # A reaction of the same or a higher rank may be active when the time is up.
-        return limit + sum(self._time_to_end(r) for r in self.reactions if r.rank >= last.rank)
+        return limit + sum(
+            self._time_to_end(r) for r in self.reactions if r.urgency >= last.urgency
+        )
 
     def _time_to_end(self, reaction: Reaction) -> float:
         """Return the greatest time in s from a reaction's event to the mission's end.

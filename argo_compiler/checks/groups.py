@@ -21,7 +21,7 @@ from argo_compiler.il.grouping import (
     task_positions,
 )
 from argo_compiler.il.subjects import Subjects
-from argo_compiler.il.transitions import default_target, failure_targets
+from argo_compiler.il.transitions import default_target, failure_targets_by_field
 
 MIN_PERIOD_S = 1.0
 """least `every`: late rounds are made up for at once, so a pause must not make too many of them
@@ -241,7 +241,7 @@ def _targets_by_field(task: Task) -> Iterator[tuple[str | None, str]]:
     """
     for k, transition in enumerate(task.transitions):
         yield f".transitions[{k}].target" if transition.conditions else None, transition.target
-    for field, target in failure_targets(task).items():
+    for field, target in failure_targets_by_field(task).items():
         yield f".{field}", target
 
 

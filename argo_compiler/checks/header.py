@@ -19,7 +19,7 @@ def check_header(mission: Mission, catalog: Catalog | None) -> Iterator[Diagnost
             "name a task or leave it out: only the planner uses it",
             "current",
         )
-    if omitted := mission.omitted:
+    if omitted := mission.omitted_task_names:
         more = len(omitted) - _SHOWN
         yield diagnostic_of(
             "il.left-out",

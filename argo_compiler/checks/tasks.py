@@ -16,7 +16,7 @@ from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Action, Mission, OnFailure, Task
 from argo_compiler.il.reserved import RESERVED_NAMES
 from argo_compiler.il.subjects import Subjects
-from argo_compiler.il.transitions import failure_targets
+from argo_compiler.il.transitions import failure_targets_by_field
 
 MANY_RETRIES = 100
 """limit of retries without a warning; with more, the mission seems to hang"""
@@ -120,7 +120,7 @@ class TaskChecks:
         for n, condition in enumerate(task.wait.conditions if task.wait else ()):
             field = f".wait.conditions[{n}]"
             yield from self.conditions.diagnostics(item, task, condition, field)
-        for field, target in failure_targets(task).items():
+        for field, target in failure_targets_by_field(task).items():
             if target not in self.targets:
                 yield self._target_diagnostic(item, task, target, f".{field}")
 

@@ -9,7 +9,7 @@ from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.errors import EditConflict, EditInvalid
 from argo_compiler.il import Action, Group, Mission, Task, Transition
-from argo_compiler.il.transitions import default_target, failure_targets, initial_task
+from argo_compiler.il.transitions import default_target, failure_targets_by_field, initial_task
 
 _INVALID_IN_THEMSELVES = frozenset(
     [
@@ -195,7 +195,7 @@ def _transition_consequences(
 def _branch_consequences(at: str, old: Task, new: Task) -> Iterator[Consequence]:
     if (old.failure_target, old.window) == (new.failure_target, new.window):
         return
-    former, now = failure_targets(old), failure_targets(new)
+    former, now = failure_targets_by_field(old), failure_targets_by_field(new)
     for field, occasion in _BRANCHES.items():
         was, is_now = former.get(field), now.get(field)
         if was != is_now:

@@ -11,7 +11,7 @@ from argo_compiler.editing.draft import DraftGroup, DraftTask, MissionDraft
 from argo_compiler.editing.errors import EditConflict, conflict
 from argo_compiler.editing.targets import default_targets, retargeted
 from argo_compiler.il import Action, Mission, Task
-from argo_compiler.il.transitions import default_target, failure_targets, initial_task
+from argo_compiler.il.transitions import default_target, failure_targets_by_field, initial_task
 
 _NAMES = 3
 """largest number of names that a message lists"""
@@ -113,7 +113,7 @@ class _Removal:
         ) or self._branches_to_it(task)
 
     def _branches_to_it(self, task: Task) -> bool:
-        return self.name in failure_targets(task).values()
+        return self.name in failure_targets_by_field(task).values()
 
     def _successor(self) -> str | None:
         target = default_target(self.entry.task)

@@ -20,7 +20,7 @@ from argo_compiler.editing.errors import (
 )
 from argo_compiler.editing.header import invalid_value_diagnostics, require_known_fields
 from argo_compiler.il import Action, JointState, Mission, OnFailure, Task, TimeWindow, WaitRule
-from argo_compiler.il.transitions import failure_targets
+from argo_compiler.il.transitions import failure_targets_by_field
 
 
 class TaskFields(TypedDict, total=False):
@@ -195,7 +195,7 @@ def _anchor(
 def _require_targets(known: Collection[str], task: Task) -> None:
     for target in (
         *(transition.target for transition in task.transitions),
-        *failure_targets(task).values(),
+        *failure_targets_by_field(task).values(),
     ):
         if target != task.name and target not in known:
             raise unknown("task", target, known)

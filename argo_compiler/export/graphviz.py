@@ -1,7 +1,7 @@
 """Export of the machine as a DOT graph for Graphviz, with a cluster for each group."""
 
 from argo_compiler.export.diagram import Arrow, Diagram, reaction_label, task_label_with_limits
-from argo_compiler.export.xml import printable
+from argo_compiler.export.xml import escape_forbidden_characters
 from argo_compiler.hfsm import Hfsm, Leaf
 
 
@@ -59,7 +59,7 @@ def _edge(diagram: Diagram, arrow: Arrow) -> str:
 
 def _quoted(text: str) -> str:
     """Return the text as a quoted string in which DOT interprets no escape sequences."""
-    plain = printable(text).replace("\\", "\\\\").replace('"', '\\"')
+    plain = escape_forbidden_characters(text).replace("\\", "\\\\").replace('"', '\\"')
     # Graphviz would replace XML entities by the characters that they stand for.
     plain = plain.replace("&", "&amp;")
     return '"' + plain.replace("\r", " ").replace("\t", " ").replace("\n", "\\n") + '"'

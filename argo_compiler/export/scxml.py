@@ -22,17 +22,17 @@ from argo_compiler.export.scxml_data import (
     NEVER,
     ChartIds,
     assign,
-    cancel_timer,
-    start_group_timer,
-    start_timer,
     task_attributes,
     write_data_model,
+    write_group_timer_start,
+    write_timer_cancel,
+    write_timer_start,
 )
 from argo_compiler.export.xml import Attributes, XmlWriter
 from argo_compiler.hfsm import Composite, Hfsm, Leaf, Outcome, StateTransition, TransitionKind
 from argo_compiler.hfsm.model import DONE, RETURN, RepeatRule
 from argo_compiler.il import Condition, ConditionType, Mission, Task
-from argo_compiler.il.transitions import start_task
+from argo_compiler.il.transitions import find_start_action_task
 
 NAMESPACE = "http://www.w3.org/2005/07/scxml"
 
@@ -47,7 +47,7 @@ def to_scxml(mission: Mission, hfsm: Hfsm, timers: bool = False) -> str:
     Without, the time-outs come from outside like all other events, so that any clock can drive the
     machine.
     """
-    start = start_task(mission)
+    start = find_start_action_task(mission)
     return _Document(hfsm, start, timers).text()
 
 
@@ -144,7 +144,7 @@ class _Document:
                     assign(xml, f"until_{n}", NEVER)
             if self.timers and group.timeout:
                 with xml.nest_in("if", {"cond": "mode == 0 && awaits == 0"}):
-                    start_group_timer(xml, n, repeat.count_interruptions)
+                    write_group_timer_start(xml, n, repeat.count_interruptions)
         if group.timeout:
             with xml.nest_in("transition", {"event": f"timeout.g{n}"}):
                 self._assign([("now", "_event.data.time"), ("clock", "now - lost")])
@@ -236,7 +236,7 @@ class _Document:
             if self.timers:
                 with xml.nest_in("onexit"):
                     for kind in self.ids.deadlines:
-                        cancel_timer(xml, kind)
+                        write_timer_cancel(xml, kind)
 
     def _task_entry(self, leaf: Leaf, id: str) -> None:
         xml, task = self.xml, leaf.task
@@ -249,7 +249,7 @@ class _Document:
                 ("visit", "0" if waits else "count"),
                 ("first", "count"),
                 ("place", f"'{id}'"),
-                ("object", str(self.ids.object_number(task))),
+                ("object", str(self.ids.measured_object_number(task))),
                 ("limit", number_text(0 if waits else task.time_limit or 0)),
                 ("earliest", number_text(0 if window is None else window.earliest)),
                 ("occurred", "0"),
@@ -269,7 +269,7 @@ class _Document:
         if self.timers:
             with xml.nest_in("if", {"cond": "mode == 0"}):
                 for kind in self.ids.deadlines:
-                    start_timer(xml, kind)
+                    write_timer_start(xml, kind)
 
     def _set_wait_deadlines(self, leaf: Leaf) -> None:
         """Write the assignments of a WAIT's deadlines, which count from the entry of its state.
@@ -361,7 +361,7 @@ class _Document:
         )
         with xml.nest_in("transition", {"event": event, "cond": cond, "target": target}):
             self._assign([("now", "_event.data.time"), ("clock", "now - lost")])
-            if k := self.ids.object_number(task):
+            if k := self.ids.measured_object_number(task):
                 self._assign(
                     [
                         (f"known_{k}", str(_FAILED)),
@@ -442,7 +442,7 @@ class _Document:
                     with xml.nest_in("if", {"cond": "limit > 0 && earliest > now"}):
                         assign(xml, "due_action", "earliest + limit")
                     if self.timers and "action" in self.ids.deadlines:
-                        start_timer(xml, "action")
+                        write_timer_start(xml, "action")
                 with xml.nest_in("transition", {"cond": "mode == 1", "target": "busy"}):
                     self._start_action("drive", "drive_place", "0")
             for id in ("busy", "stopping"):
@@ -471,7 +471,7 @@ class _Document:
     def _end_action(self) -> None:
         self._assign([("running", "0"), ("due_action", "0")])
         if self.timers and "action" in self.ids.deadlines:
-            cancel_timer(self.xml, "action")
+            write_timer_cancel(self.xml, "action")
 
     def _store_reading(self, k: int) -> None:
         """Write the assignments that store checkpoint `k`'s reading from an event's data."""

@@ -15,10 +15,10 @@ from argo_compiler.export.scxml_data import (
     NEVER,
     ChartIds,
     assign,
-    cancel_timer,
-    start_group_timer,
-    start_timer,
     task_attributes,
+    write_group_timer_start,
+    write_timer_cancel,
+    write_timer_start,
 )
 from argo_compiler.export.xml import Attributes, XmlWriter
 from argo_compiler.hfsm import Hfsm, Outcome
@@ -147,10 +147,10 @@ class ControlRegion:
                         self._assign([("due_round", round_due_time(n, repeat))])
                 for n, counted in self.timed.items():
                     with self.xml.nest_in("if", {"cond": f"In('g{n}') && until_{n} < {NEVER}"}):
-                        start_group_timer(self.xml, n, counted)
+                        write_group_timer_start(self.xml, n, counted)
                 if self.timers:
                     for kind in self.deadlines:
-                        start_timer(self.xml, kind)
+                        write_timer_start(self.xml, kind)
             with self.xml.nest_in("onexit"):
                 # An interrupted action is started again later, with its full time limit.
                 self._assign([("due_action", 0)])
@@ -158,7 +158,7 @@ class ControlRegion:
                     self.xml.add("cancel", {"sendid": f"timer_{n}"})
                 if self.timers:
                     for kind in self.deadlines:
-                        cancel_timer(self.xml, kind)
+                        write_timer_cancel(self.xml, kind)
             self._row_transitions(Stage.GOING)
             clock = [("clock", "now - lost")]
             self._event_transition("action timeout event reading tick pause resume", None, clock)
@@ -194,20 +194,21 @@ class ControlRegion:
                 with self.xml.nest_in("onentry"):
                     self._assign([("due_hold", f"now + {number_text(reaction.hold_limit)}")])
                     if self.timers:
-                        start_timer(self.xml, "hold")
+                        write_timer_start(self.xml, "hold")
                 with self.xml.nest_in("onexit"):
                     self._assign([("due_hold", 0)])
                     if self.timers:
-                        cancel_timer(self.xml, "hold")
+                        write_timer_cancel(self.xml, "hold")
             self._row_transitions(Stage.HOLDING, reaction)
 
     # Rows
 
     def _row_transitions(self, stage: Stage, active: Reaction | None = None) -> None:
-        """Write the transitions of the open state, from the table's rows for its stage.
+        """Write transitions from the table's rows for a stage into the XML element that is open.
 
-        The table is that of interruptions (`argo_compiler.hfsm.interrupts`). `active` is the
-        reaction that the state belongs to; None outside of reactions.
+        The element is that of the state to leave. The table is that of interruptions
+        (`argo_compiler.hfsm.interrupts`). `active` is the reaction that the state belongs to; None
+        outside of reactions.
         """
         for trigger, guard in _SPONTANEOUS.items():
             for row, conds, _ in self._possible_rows(stage, trigger, active, None):
@@ -262,7 +263,7 @@ class ControlRegion:
         if InterruptGuard.HIGHER_WAITS in row.when:
             assert active is not None
             for higher in self.reactions.values():
-                if higher.rank > active.rank:
+                if higher.urgency > active.urgency:
                     waits = _conjunction([cond or "", f"since_{higher.event} != 0"])
                     target = self._target(row.target, None)
                     self._transition(row, stage, event, waits, target, active, own, kind)
@@ -285,7 +286,7 @@ class ControlRegion:
         guards += (
             f"(since_{r.event} == 0 || since_{reaction.event} < since_{r.event})"
             for r in self.reactions.values()
-            if r.rank == reaction.rank and r is not reaction
+            if r.urgency == reaction.urgency and r is not reaction
         )
         return " && ".join(guards)
 

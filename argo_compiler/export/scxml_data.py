@@ -75,7 +75,7 @@ class ChartIds:
     def _number(self, object_id: str) -> None:
         self.objects.setdefault(object_id, len(self.objects) + 1)
 
-    def object_number(self, task: Task) -> int:
+    def measured_object_number(self, task: Task) -> int:
         """Return the chart's number of the task's checkpoint, or 0 if it measures none."""
         if task.action is not Action.MEASURE or task.object_id is None:
             return 0
@@ -167,25 +167,29 @@ def _pose_attributes(pose: Pose | None) -> Attributes:
     return {f"argo:{axis}": value for axis, value in pose.model_dump().items()}
 
 
-def start_group_timer(xml: XmlWriter, n: int, counts_interruptions: bool) -> None:
+def write_group_timer_start(xml: XmlWriter, n: int, counts_interruptions: bool) -> None:
     """Write the start of the engine's own timer for the time-out of group `n`.
 
-    The caller starts and cancels the timer so that it runs while the group is active and the
-    mission is not interrupted.
+    The caller writes starts and cancellations at such places of the chart that the timer runs while
+    the group is active and the mission is not interrupted. Unless `counts_interruptions`, the
+    time-out is later by the time that interruptions took.
     """
     deadline = f"until_{n}" if counts_interruptions else f"until_{n} + lost"
     _send(xml, f"timeout.g{n}", f"timer_{n}", deadline)
 
 
-def start_timer(xml: XmlWriter, kind: str) -> None:
-    """Write the start of the engine's own timer for a deadline of `DEADLINES`, if that is set."""
-    with xml.nest_in("if", {"cond": f"due_{kind} != 0"}):
-        _send(xml, f"timeout.{kind}", f"timer_{kind}", f"due_{kind}")
+def write_timer_start(xml: XmlWriter, deadline: str) -> None:
+    """Write the start of the engine's own timer for a deadline of `DEADLINES`.
+
+    The engine starts the timer only if the deadline is set at that time of the run.
+    """
+    with xml.nest_in("if", {"cond": f"due_{deadline} != 0"}):
+        _send(xml, f"timeout.{deadline}", f"timer_{deadline}", f"due_{deadline}")
 
 
-def cancel_timer(xml: XmlWriter, kind: str) -> None:
-    """Write the cancellation of the timer that `start_timer` starts."""
-    xml.add("cancel", {"sendid": f"timer_{kind}"})
+def write_timer_cancel(xml: XmlWriter, deadline: str) -> None:
+    """Write the cancellation of the timer that `write_timer_start` starts."""
+    xml.add("cancel", {"sendid": f"timer_{deadline}"})
 
 
 def _send(xml: XmlWriter, event: str, id: str, deadline: str) -> None:

@@ -66,12 +66,14 @@ class XmlWriter:
 
 
 def escape(text: str) -> str:
-    """Return the text escaped for an attribute or an element; see also `printable`."""
-    return _SPECIAL_CHARACTER.sub(lambda match: _SPECIAL[match[0]], printable(text))
+    """Return the text escaped for an attribute or an element; its forbidden characters as well."""
+    return _SPECIAL_CHARACTER.sub(
+        lambda match: _SPECIAL[match[0]], escape_forbidden_characters(text)
+    )
 
 
-def printable(text: str) -> str:
-    r"""Return the text with characters that XML forbids written as `\x00` (the null character)."""
+def escape_forbidden_characters(text: str) -> str:
+    r"""Return the text with an escape for each character that XML forbids: for null, `\x00`."""
     return _NOT_IN_XML.sub(lambda match: f"\\x{ord(match[0]):02x}", text)
 
 

@@ -84,7 +84,7 @@ def atomic_draft(path: Path) -> Iterator[Path]:
         draft.replace(path)
 
 
-def write_folder(folder: Path, files: Mapping[str, bytes]) -> None:
+def write_files_atomically(folder: Path, files: Mapping[str, bytes]) -> None:
     """Write files by their paths in the folder; afterwards all of them are old or all are new.
 
     Other files in the folder stay. The last file is removed first and added last, so it should be

@@ -43,7 +43,7 @@ class JsonText:
         self._lines = [0, *(m.end() for m in re.finditer("\n", text))]
 
     def span(self, start: int, end: int) -> Span:
-        """Return the span from `start` to `end`, or to the end of the line of `start`."""
+        """Return the span from `start` to `end`, cut off at the end of the line of `start`."""
         line = bisect_right(self._lines, start)
         end = min(end, self._line_end(line))
         column = start - self._lines[line - 1] + 1

@@ -7,7 +7,7 @@ from argo_compiler.base.listing import quoted_list_text
 from argo_compiler.diagnostics import Diagnostic, diagnostic_of
 from argo_compiler.files.json_places import JsonPath
 from argo_compiler.il import Action, EventKind, Mission, Mode, OnFailure, Response, Task
-from argo_compiler.il.velocities import with_approach_velocities
+from argo_compiler.il.velocities import departure_to_approach_velocities
 
 VERSION = 3
 """Version of the mission format that Argo writes."""
@@ -28,12 +28,13 @@ _NEW_FIELDS = {
 """Fields that were added in version 3, by list of the mission."""
 
 
-def migrate(data: dict[str, Any]) -> tuple[dict[str, Any], int]:
+def mark_as_current_version(data: dict[str, Any]) -> tuple[dict[str, Any], int]:
     """Return the data of a mission marked as the current version, and the version they had.
 
     All fields of older versions exist in the current one. After the data have become a mission,
     `newer_fields` finds fields that the older version did not have, and `upgrade` restores the
-    meaning of the others. Data of unknown versions are returned unchanged.
+    meaning of the others. Data without a version, or of an unknown one, are returned unchanged,
+    with the current version as the second result.
     """
     version = data.get("version", VERSION)
     if isinstance(version, bool) or version not in range(1, VERSION):
@@ -79,7 +80,7 @@ def _to_3(mission: Mission) -> tuple[Mission, tuple[Diagnostic, ...]]:
     priorities become 0.
     """
     warnings = tuple(_changes(mission))
-    mission, differ = with_approach_velocities(mission)
+    mission, differ = departure_to_approach_velocities(mission)
     if differ:
         warnings = (*warnings, _velocity_warning(differ))
     reactions = tuple(

@@ -13,7 +13,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, diagnostic_of
-from argo_compiler.files.fields import field_hint
+from argo_compiler.files.fields import similar_field_hint
 from argo_compiler.files.json_places import JsonPath, format_path
 from argo_compiler.il import Group, Mission, Reaction, Task
 
@@ -83,8 +83,8 @@ def _validate_list(
 ) -> tuple[tuple[Model, ...], list[UnplacedDiagnostic]]:
     """Return the items of one of the mission's lists, and the errors in it.
 
-    `name` is that of the list. Items are missing if there are errors. The validation stops after
-    `max_faults` errors.
+    `name` is that of the list. If there are errors, faultless items may be missing, too: the items
+    are of no use then. The validation stops after `max_faults` errors.
     """
     items: list[Model] = []
     faults: list[UnplacedDiagnostic] = []
@@ -154,6 +154,9 @@ def _faults(
             path = (*list_path, path[0] + first, *path[1:])
         message, hint = fault["msg"][:1].lower() + fault["msg"][1:], None
         if fault["type"] == "extra_forbidden":
-            message, hint = "the mission format has no such field", field_hint(Mission, path)
+            message, hint = (
+                "the mission format has no such field",
+                similar_field_hint(Mission, path),
+            )
         where = format_path(path) or "the file"
         yield unplaced("file.wrong-field", f"{where}: {message}", hint, path)

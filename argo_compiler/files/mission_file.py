@@ -28,7 +28,7 @@ from argo_compiler.files.loading import (
     read_bytes,
     require_size,
 )
-from argo_compiler.files.migration import VERSION, migrate, newer_fields, upgrade
+from argo_compiler.files.migration import VERSION, mark_as_current_version, newer_fields, upgrade
 from argo_compiler.files.mission_data import (
     MAX_FAULTS,
     UnplacedDiagnostic,
@@ -106,7 +106,7 @@ def decode_mission(content: bytes, source_name: str) -> MissionFile:
         _refuse(source_name, text, [*faults, _not_a_mission()])
     if _RECORD_FIELDS.issubset(data):
         _refuse(source_name, text, [*faults, _run_record()])
-    current, written_as = migrate(data)
+    current, written_as = mark_as_current_version(data)
     version = current.get("version", VERSION)
     if version != VERSION or isinstance(version, bool):
         _refuse(source_name, text, [*faults, _unsupported_version(version)])

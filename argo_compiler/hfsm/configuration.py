@@ -83,8 +83,8 @@ class Configuration:
         self.last_number += 1
         return self.last_number
 
-    def clock_at(self, now: float, group: GroupNode) -> float:
-        """Return what a group's clock shows (s) at time `now`."""
+    def clock_time_at(self, now: float, group: GroupNode) -> float:
+        """Return the time (s) on a group's clock at `now`; it is not 0 when the group starts."""
         return self._clock_time(now, group) + self._clock_offset(group)
 
     def take_transition(
@@ -92,10 +92,11 @@ class Configuration:
     ) -> CompiledTransition:
         """Take the first of these transitions that is possible at `now`, and return it.
 
-        If it completes a group's round, one of the group's own transitions is taken and returned.
+        If none before it is possible, the last one is taken. If the transition completes a group's
+        round, one of the group's own transitions is taken and returned instead.
         """
         if self.awaited_round is not None:
-            self.start_round(now)
+            self.start_awaited_round(now)
         while True:
             for transition in transitions:
                 if transition.always_possible or self._is_possible(transition, now):
@@ -134,13 +135,13 @@ class Configuration:
         self.schedule_wait_check(now)
         self._update_group_due(now)
 
-    def advance_clocks(self, seconds: float, now: float) -> None:
+    def advance_group_clocks(self, by_hand_seconds: float, now: float) -> None:
         """Advance the clocks of groups by the duration (s) of a task done by hand.
 
         Groups that count interruptions are not affected: their clocks have run meanwhile.
         """
-        if seconds:
-            self.by_hand_s += seconds
+        if by_hand_seconds:
+            self.by_hand_s += by_hand_seconds
             self._update_group_due(now)
 
     def set_reading(self, object_id: str, reading: CheckpointReading | None, now: float) -> None:
@@ -149,9 +150,9 @@ class Configuration:
             self.readings.pop(object_id, None)
         else:
             self.readings[object_id] = reading
-        self.handle_reading_change(now)
+        self.schedule_check_if_waiting(now)
 
-    def handle_reading_change(self, now: float) -> None:
+    def schedule_check_if_waiting(self, now: float) -> None:
         """Let the active task, if it is a WAIT, check its conditions, as a reading has changed."""
         if self.visit.leaf is not None and self.visit.leaf.wait is not None:
             self.schedule_wait_check(now)
@@ -170,20 +171,20 @@ class Configuration:
                 return False
         return True
 
-    def start_round(self, now: float) -> None:
+    def start_awaited_round(self, now: float) -> None:
         """Start the awaited round of a group at `now`, and with it the present visit."""
         frame = self.awaited_round
         assert frame is not None
         self.awaited_round = None
         self.visit.since = self.visit.check_at = now
         for inner in self.frames[frame.group.depth + 1 :]:
-            inner.entered = self.clock_at(now, inner.group)
+            inner.entered = self.clock_time_at(now, inner.group)
         self._update_group_due(now)
         self.update_visit_due()
 
     @property
-    def round_due(self) -> float:
-        """Time (s) at which the awaited round is due if no clock stops; infinite without one."""
+    def awaited_round_due(self) -> float:
+        """Time (s) at which the awaited round is due if no clock stops; infinite if none is."""
         frame = self.awaited_round
         return math.inf if frame is None else self._round_due(frame)
 
@@ -194,7 +195,9 @@ class Configuration:
         if leaf is None or self.interrupted_at is not None:
             return
         if self.awaited_round is not None:
-            self.visit_due = self.round_due  # a window is not missed before the round starts
+            self.visit_due = (
+                self.awaited_round_due
+            )  # a window is not missed before the round starts
         elif leaf.is_timed or visit.action_due < math.inf:
             self.visit_due = visit.next_due(self.started_at)
 
@@ -246,7 +249,7 @@ class Configuration:
             group = leaf.parent
             entered = []
             while group is not None and group is not domain:
-                entered.append(Frame(group, 1, self.clock_at(now, group)))
+                entered.append(Frame(group, 1, self.clock_time_at(now, group)))
                 group = group.parent
             frames.extend(reversed(entered))
         if changed and self._has_hard_groups:

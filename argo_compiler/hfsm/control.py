@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from argo_compiler.hfsm.interrupt_state import AppliedRow, InterruptState, take_rows
+from argo_compiler.hfsm.interrupt_state import AppliedRow, InterruptState, rows_taken_at
 from argo_compiler.hfsm.interrupts import Effect, Stage, Trigger
 from argo_compiler.hfsm.kinds import Cause, Outcome
 from argo_compiler.hfsm.machine_state import MachineState
@@ -63,7 +63,7 @@ class Control:
 
     @property
     def next_due(self) -> float:
-        """Earliest time (s) of a change of the mission or a hold without an event, or infinity."""
+        """Earliest time (s) at which the mission or hold changes without an event; or infinity."""
         due = self.mission.next_due
         return due if due < self.hold_due else self.hold_due
 
@@ -80,7 +80,7 @@ class Control:
 
     # Time
 
-    def advance_time(self, until: float) -> None:
+    def process_changes_until(self, until: float) -> None:
         """Process all changes that are due up to the time `until` (s), in the order of time."""
         while (at := self.next_due) <= until:
             self.mission.now = at
@@ -165,7 +165,7 @@ class Control:
     ) -> None:
         over: EventKind | None = None
         outcome = self.mission.outcome
-        for step in take_rows(self.interrupt_state, self._reactions, trigger, event, outcome):
+        for step in rows_taken_at(self.interrupt_state, self._reactions, trigger, event, outcome):
             self.interrupt_state = step.after
             if step.row.effects and step.row.effects[-1] is Effect.DROP:
                 over = step.before.active

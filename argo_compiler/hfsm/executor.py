@@ -110,8 +110,8 @@ class Executor:
 
         `away` is the time (s) since the progress was taken. It counts for the mission's duration,
         for waits and holds, for groups that count interruptions, and for the ages of readings. It
-        also counts for the ages of tasks done by hand that the progress already had; `hand_over`
-        has its own `away` for the time before it.
+        also counts for the ages of tasks done by hand that the progress already had. For a progress
+        that `hand_over` returned, `away` is only the time since then.
 
         Raises:
             ArgoError: the progress does not belong to this machine.
@@ -185,7 +185,7 @@ class Executor:
                 or now > control.hold_due
             ):
                 # The next float below `now` represents all times before it.
-                control.advance_time(math.nextafter(now, -math.inf))
+                control.process_changes_until(math.nextafter(now, -math.inf))
             mission.now = now
             if type(event) is ActionSucceeded:
                 self._succeed(event)
@@ -280,7 +280,7 @@ class Executor:
 
     @property
     def paused(self) -> bool:
-        """True if the mission waits for a person to resume it."""
+        """True if the mission is paused until a person resumes it; see `holding` for reactions."""
         return self._control.paused
 
     @property
@@ -319,12 +319,12 @@ class Executor:
 
     @property
     def readings(self) -> Mapping[str, CheckpointReading]:
-        """The last measurement's result at each checkpoint, by object_id."""
+        """Last reading of each checkpoint by object_id, even if unreadable or given by a person."""
         return dict(self._control.mission.configuration.readings)
 
     @property
     def values(self) -> Mapping[str, Measured]:
-        """Last reading of each checkpoint, by object_id, where it has a value."""
+        """Value and time of each checkpoint's last reading by object_id, if that has a value."""
         return {
             id: Measured(reading.value, reading.time)
             for id, reading in self._control.mission.configuration.readings.items()

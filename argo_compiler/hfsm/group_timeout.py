@@ -9,7 +9,7 @@ from argo_compiler.hfsm.model import StateTransition, TransitionKind, group_id
 from argo_compiler.il import Group
 
 
-def timeout_transition(group: Group) -> StateTransition | None:
+def hard_stop_transition(group: Group) -> StateTransition | None:
     """Return the transition that leaves a group when its time is up, or None without a hard stop.
 
     The transition completes the group: what follows the group is next, as after its last round.

@@ -52,14 +52,14 @@ class AppliedRow(NamedTuple):
     after: InterruptState
 
 
-def take_rows(
+def rows_taken_at(
     state: InterruptState,
     reactions: Reactions,
     trigger: Trigger,
     event: EventKind | None = None,
     outcome: Outcome | None = None,
 ) -> tuple[AppliedRow, ...]:
-    """Return the rows of the table of interruptions that are taken at a trigger, in order.
+    """Return the rows of the table of interruptions that a trigger takes, in order; none may fit.
 
     The first one is taken at the trigger, the others follow from it (`Trigger.ALWAYS`). `event` is
     the event that occurs, for EVENT; `outcome` is that of the mission itself, for DONE and ENDED.
@@ -115,7 +115,7 @@ def _evaluate_guard(
             return bool(state.waiting)
         case InterruptGuard.HIGHER_WAITS:
             assert active is not None
-            return any(reactions[p.event].rank > active.rank for p in state.waiting)
+            return any(reactions[p.event].urgency > active.urgency for p in state.waiting)
         case _:
             return evaluate_static_guard(guard, own, active, event)
 
@@ -135,7 +135,7 @@ def evaluate_static_guard(
     assert active is not None
     match guard:
         case InterruptGuard.HIGHER:
-            return own is not None and own.rank > active.rank
+            return own is not None and own.urgency > active.urgency
         case InterruptGuard.AWAITED:
             return active.until is event
         case InterruptGuard.DRIVES:
@@ -172,7 +172,7 @@ def _apply_effect(
             return replace(state, active=None)
         case Effect.ACTIVATE:
             # Among equal ranks, max returns the one that occurred first.
-            highest = max(state.pending, key=lambda pending: reactions[pending.event].rank)
+            highest = max(state.pending, key=lambda pending: reactions[pending.event].urgency)
             return replace(state, active=highest.event)
         case Effect.DROP:
             return replace(state, active=None, pending=state.waiting)
@@ -196,7 +196,7 @@ _OUTCOMES = {
 
 
 def reaction_outcome(reaction: Reaction) -> Outcome:
-    """Return the outcome of a mission that ends with a reaction, by where its drive led."""
+    """Return the outcome of a mission that ends with a reaction, by its drive's destination."""
     return {
         Response.RETURN: Outcome.RETURNED,
         Response.SAFE_AREA: Outcome.SHELTERED,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from argo_compiler.base.garbage_collector import collector_held
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, Severity
-from argo_compiler.hfsm.group_timeout import timeout_transition
+from argo_compiler.hfsm.group_timeout import hard_stop_transition
 from argo_compiler.hfsm.model import (
     DONE,
     MISSION,
@@ -107,7 +107,9 @@ class _Lowering:
             leaves=(*leaves, *self._return_leaf()),
             reactions=tuple(
                 _reaction_state(reaction, self.mission)
-                for reaction in sorted(self.mission.reactions, key=lambda r: r.rank, reverse=True)
+                for reaction in sorted(
+                    self.mission.reactions, key=lambda r: r.urgency, reverse=True
+                )
             ),
             max_duration=self.mission.max_duration,
             supervised=self.mission.mode is Mode.SUPERVISORY,
@@ -160,7 +162,7 @@ class _Lowering:
                 until=r.group.until,
             ),
             transitions=(repeat, onward),
-            timeout=timeout_transition(r.group),
+            timeout=hard_stop_transition(r.group),
             source=r.group.source,
         )
 

@@ -117,7 +117,7 @@ class MachineState:
         ):
             return False
         if (
-            not visit.wait_end_at(configuration.started_at)
+            not visit.earliest_wait_end(configuration.started_at)
             <= self.now
             <= visit.missed_at(configuration.started_at)
         ):
@@ -168,7 +168,7 @@ class MachineState:
         configuration, visit = self.configuration, self.configuration.visit
         if configuration.awaited_round is not None:
             frame = configuration.awaited_round
-            configuration.start_round(self.now)
+            configuration.start_awaited_round(self.now)
             self.add_entry(Cause.ROUND, detail=f"{frame.round} of '{frame.group.name}'")
         elif visit.missed_at(configuration.started_at) <= self.now:
             self._fail_for_good(leaf, _OVER, leaf.missed or leaf.failure)
@@ -218,7 +218,7 @@ class MachineState:
                 CheckpointReading, (_VALUE, now, value, abnormal)
             )
         if configuration.visit.leaf is not leaf:
-            configuration.handle_reading_change(now)
+            configuration.schedule_check_if_waiting(now)
 
     def set_reading(self, object_id: str, value: float, abnormal: bool, at: float) -> None:
         """Set the reading of a checkpoint to a value that was read at the time `at` (s)."""
@@ -353,8 +353,8 @@ class MachineState:
         if not queue:
             del self.by_hand[leaf.name]
         if self.configuration.awaited_round is not None:
-            self.configuration.start_round(self.now)
-        self.configuration.advance_clocks(done.duration, self.now)
+            self.configuration.start_awaited_round(self.now)
+        self.configuration.advance_group_clocks(done.duration, self.now)
         if leaf.measures is not None:
             if done.value is None or done.skipped:
                 self.configuration.set_reading(leaf.measures, None, self.now)

@@ -111,7 +111,9 @@ class _Reach:
         missable = leaf.latest is not None
         if missable and leaf.missed is not None:
             self._follow_transitions((leaf.missed,), under_way)
-        if leaf.failure is not None and (leaf.may_fail or (missable and leaf.missed is None)):
+        if leaf.failure is not None and (
+            leaf.can_fail_for_good or (missable and leaf.missed is None)
+        ):
             self._follow_transitions((leaf.failure,), under_way)
         for group in leaf.groups:
             if (group.id, under_way, True) in self._searched:
@@ -132,7 +134,8 @@ class _Reach:
     def _complete(self, group: GroupNode, under_way: int, time_up: bool) -> None:
         """Add what can follow the end of a group's round, and of rounds around it that end with it.
 
-        With `time_up`, the group is left by its time-out and has no further round.
+        `under_way`: see the class. With `time_up`, the group is left by its time-out and has no
+        further round.
         """
         following: GroupNode | None = group
         while following is not None:

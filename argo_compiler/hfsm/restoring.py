@@ -109,7 +109,7 @@ def group_progress(configuration: Configuration, now: float) -> tuple[GroupProgr
         GroupProgress(
             group=frame.group.name,
             round=frame.round,
-            elapsed=max(0.0, configuration.clock_at(now, frame.group) - frame.entered)
+            elapsed=max(0.0, configuration.clock_time_at(now, frame.group) - frame.entered)
             if i < started
             else 0.0,
             counts_interruptions=frame.group.counts_interruptions,

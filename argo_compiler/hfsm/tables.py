@@ -124,7 +124,7 @@ class LeafNode:
             group = group.parent
 
     @property
-    def may_fail(self) -> bool:
+    def can_fail_for_good(self) -> bool:
         """True if the task can fail for good by its action or its wait's limit, not its window."""
         return self.wait is None or self.wait.limit is not None
 
@@ -137,8 +137,8 @@ class ReactionNode:
     task: Task | None
 
     @property
-    def rank(self) -> tuple[int, int]:
-        return self.state.reaction.rank
+    def urgency(self) -> tuple[int, int]:
+        return self.state.reaction.urgency
 
 
 @dataclass(slots=True, eq=False)

@@ -28,7 +28,7 @@ class TaskVisit:
     action_due: float = math.inf
     """time (s) at which the time limit of the running action ends"""
 
-    def wait_end_at(self, started_at: float) -> float:
+    def earliest_wait_end(self, started_at: float) -> float:
         """Return the earliest time (s) at which a WAIT may end by duration, event or next check.
 
         Whether its conditions are satisfied is not checked. `started_at` is the time (s) at which
@@ -66,7 +66,7 @@ class TaskVisit:
         time limit ends. `started_at` is the time (s) at which the mission started.
         """
         return min(
-            self.wait_end_at(started_at),
+            self.earliest_wait_end(started_at),
             self.wait_limit_at,
             self.missed_at(started_at),
             self.action_due,

@@ -21,7 +21,7 @@ def are_exclusive(first: Alternatives, second: Alternatives) -> bool:
 
 
 def are_contradictory(conditions: Iterable[Condition]) -> bool:
-    """Return True if no value of a checkpoint satisfies two of the conditions on it."""
+    """Return True if two conditions on the same checkpoint can't be satisfied together."""
     return any(_are_disjoint(a, b) for a, b in combinations(conditions, 2))
 
 

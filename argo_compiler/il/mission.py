@@ -360,11 +360,11 @@ class Reaction(Model):
         return self.until is not None or self.response is Response.PAUSE
 
     @property
-    def rank(self) -> tuple[int, int]:
-        """Rank among reactions; the greater one goes first.
+    def urgency(self) -> tuple[int, int]:
+        """Urgency (rank) among reactions; the greatest one goes first.
 
         ABORT ranks above all others, then the reaction to an emergency stop, then the priority
-        decides.
+        decides, by default that of the event.
         """
         safety = 0
         if self.response is Response.ABORT:
@@ -411,7 +411,7 @@ class Mission(Model):
         return next((t for t in self.tasks if t.name == name), None)
 
     @property
-    def omitted(self) -> tuple[str, ...]:
+    def omitted_task_names(self) -> tuple[str, ...]:
         """Names of the tasks that were left out and have not been added again."""
         names = {task.name for task in self.tasks}
         return tuple(name for name in self.left_out if name not in names)

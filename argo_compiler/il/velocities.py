@@ -8,7 +8,12 @@ from collections.abc import Iterator, Mapping
 
 from argo_compiler.il.grouping import group_ranges
 from argo_compiler.il.mission import Action, Mission, Task
-from argo_compiler.il.transitions import default_target, failure_targets, initial_task, start_task
+from argo_compiler.il.transitions import (
+    default_target,
+    failure_targets_by_field,
+    find_start_action_task,
+    initial_task,
+)
 
 Velocity = float | None
 """m/s; None: the robot's planning speed"""
@@ -25,14 +30,14 @@ def transition_pairs(mission: Mission) -> Iterator[tuple[str, str]]:
     to the first task.
     """
     tasks = mission.tasks
-    start = start_task(mission)
+    start = find_start_action_task(mission)
     if (first := initial_task(mission)) is not None:
         yield MISSION_START if start is None else start.name, first
     for task in tasks:
         if task.action is not Action.START:
             for transition in task.transitions:
                 yield task.name, transition.target
-        for target in failure_targets(task).values():
+        for target in failure_targets_by_field(task).values():
             yield task.name, target
     onward: dict[str, list[str]] = {task.name: [] for task in tasks}
     for task in tasks:
@@ -48,7 +53,7 @@ def transition_pairs(mission: Mission) -> Iterator[tuple[str, str]]:
         onward[group.end].append(group.start)
 
 
-def with_approach_velocities(mission: Mission) -> tuple[Mission, tuple[str, ...]]:
+def departure_to_approach_velocities(mission: Mission) -> tuple[Mission, tuple[str, ...]]:
     """Convert velocities on the path to the next task into velocities on the path to the task.
 
     Also returns the names of the tasks for which this loses something, because transitions to them
@@ -63,7 +68,7 @@ def with_approach_velocities(mission: Mission) -> tuple[Mission, tuple[str, ...]
     return mission.model_copy(update={"tasks": tasks}), differ
 
 
-def with_departure_velocities(mission: Mission) -> tuple[Mission, tuple[str, ...]]:
+def approach_to_departure_velocities(mission: Mission) -> tuple[Mission, tuple[str, ...]]:
     """Convert velocities on the path to the task into velocities on the path to the next task.
 
     Also returns the names of the tasks for which this loses something, because transitions from

@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING
 
 from argo_compiler.base.lazy_names import lazy_names
 
-__all__ = ["Imported", "InspectionView", "find_definition", "from_isar", "read_isar", "to_isar"]
+__all__ = ["Imported", "InspectionView", "find_isar_data", "from_isar", "read_isar", "to_isar"]
 
 if TYPE_CHECKING:
     from argo_compiler.isar.exporter import InspectionView, to_isar
     from argo_compiler.isar.importer import Imported, from_isar, read_isar
-    from argo_compiler.isar.recognition import find_definition
+    from argo_compiler.isar.recognition import find_isar_data
 else:
     __getattr__, __dir__ = lazy_names(
         __name__,
         {
             "importer": ["Imported", "from_isar", "read_isar"],
-            "recognition": ["find_definition"],
+            "recognition": ["find_isar_data"],
             "exporter": ["InspectionView", "to_isar"],
         },
     )

@@ -126,7 +126,7 @@ def _task_order(hfsm: Hfsm) -> tuple[Task, ...]:
 def _task_refusals(
     mission: Mission, tasks: tuple[Task, ...], views: Mapping[str, InspectionView]
 ) -> Iterator[Diagnostic]:
-    """Yield refusals for WAYPOINT tasks except a last one to the dock, and unknown checkpoints.
+    """Yield refusals for unknown checkpoints, and for WAYPOINTs other than a last one to the dock.
 
     A mission without tasks is refused, too.
     """

@@ -20,7 +20,7 @@ from argo_compiler.isar.definition import (
     RobotPose,
     TaskDefinition,
 )
-from argo_compiler.isar.recognition import RETURN_TO_HOME, WRAPPED, find_definition
+from argo_compiler.isar.recognition import RETURN_TO_HOME, WRAPPED, find_isar_data
 
 _START = "START"
 
@@ -38,16 +38,17 @@ def read_isar(content: bytes, source_name: str, catalog: Catalog | None = None) 
 
     Raises DiagnosticError as `from_isar` does.
     """
-    data = find_definition(content)
+    data = find_isar_data(content)
     return None if data is None else from_isar(data, source_name, catalog)
 
 
 def from_isar(data: Any, source_name: str, catalog: Catalog | None = None) -> Imported:
     """Return the mission of an isar definition: a MEASURE for each image, in the same order.
 
-    The tag of the equipment names the checkpoint: it is the checkpoint's number, or its name if a
-    catalogue is given. The robot's pose is imported, and the robot measures from it; the target
-    point is not imported, as the site has it.
+    Inspections of other types are errors. The tag of the equipment names the checkpoint: it is the
+    checkpoint's number; if a catalogue is given, it may also be the checkpoint's name. The robot's
+    pose is imported, and the robot measures from it; the target point is not imported, as the site
+    has it.
 
     Raises DiagnosticError with a diagnostic for each part that Argo can't execute.
     """

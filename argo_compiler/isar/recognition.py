@@ -13,8 +13,8 @@ WRAPPED = "mission_definition"
 """Field of a request to isar's API that contains the definition."""
 
 
-def find_definition(content: bytes) -> dict[str, Any] | None:
-    """Return the data of a file with an isar definition, or None if the file has none."""
+def find_isar_data(content: bytes) -> dict[str, Any] | None:
+    """Return all data of a file with an isar definition, or None if the file has none."""
     # Argo's own missions can be large, so they are parsed here only if they contain these words.
     try:
         text = "" if len(content) > MAX_BYTES else decode_text(content, "", "mission")

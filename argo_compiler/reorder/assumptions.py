@@ -36,7 +36,7 @@ def assumption_notes(visits: Visits, matrix: TravelMatrix) -> Iterator[str]:
             yield f"'{group.name}' is assumed to have as many rounds as it may have"
 
 
-def assumptions(visits: Visits, matrix: TravelMatrix) -> Iterator[str]:
+def assumption_phrases(visits: Visits, matrix: TravelMatrix) -> Iterator[str]:
     """Yield, in words, the conditions under which a run takes the computed time of its order."""
     if _waits_of_unknown_length(visits):
         yield "each WAIT takes its whole limit"

@@ -51,19 +51,21 @@ class BranchCosts:
         self._seconds, self._probabilities = seconds, probabilities
         self._rounds: dict[int, float] = {}
 
-    def times_after(self, unit: TaskUnit) -> Row:
+    def times_to_destinations(self, unit: TaskUnit) -> Row:
         """Return the times from the end of a unit's first task to the end of each destination.
 
-        A destination is a task with its action, a charger, or the mission's end. The times are in
+        A destination is a task with its action, a charger, or the mission's end; they have the
+        order of the costs' columns. The times are in
         units of time, and include the conditional tasks of the unit: in the worst case, or in the
         mean where probabilities are known.
         """
         return self._row(unit, self._time, self._probabilities)
 
-    def inner_time(self, unit: TaskUnit) -> float:
+    def inner_time_units(self, unit: TaskUnit) -> float:
         """Return the time from the end of a unit's first task to the end of its last one.
 
-        It is in units of time, and 0 if the unit has one task.
+        It is in units of time, for the worst case or the mean as in `times_to_destinations`, and 0
+        if the unit has one task.
         """
         if len(unit.leaves) == 1:
             return 0.0
@@ -73,8 +75,8 @@ class BranchCosts:
         )
         return float(rows[0])
 
-    def energies_after(self, unit: TaskUnit) -> Row:
-        """Return the energies of what `times_after` counts, always in the worst case."""
+    def energies_to_destinations(self, unit: TaskUnit) -> Row:
+        """Return the energies of what `times_to_destinations` counts, always in the worst case."""
         return self._row(unit, self._energy, {})
 
     def _row(self, unit: TaskUnit, costs: Costs, probabilities: Probabilities) -> Row:
@@ -101,7 +103,8 @@ class BranchCosts:
     ) -> Row:
         """Return the costs from the end of leaf `entry` to the destinations, over leaves `inside`.
 
-        `leaving` returns the costs from the last of these leaves on.
+        `leaving` returns the costs from the last of these leaves on. Further rounds of groups are
+        included for the groups inside of `level`, not for `level` itself (NOWHERE: the mission).
         """
         branches = {
             leaf: self._branches(leaf, inside, level, costs, probabilities) for leaf in inside
@@ -162,7 +165,10 @@ class BranchCosts:
         return node, extra
 
     def _further_rounds(self, number: int, costs: Costs) -> float:
-        """Return the cost of all rounds of group `number` after the first one."""
+        """Return the cost of all rounds of group `number` after the first one.
+
+        It is 0 for an endless group. A duration limits the number of rounds.
+        """
         group = self._chain.flow.groups[number]
         round_ = self._after(
             group.start,

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from argo_compiler.analysis.quantities import time_words
 from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.il import Mission, Order
-from argo_compiler.reorder.assumptions import assumption_notes, assumptions
+from argo_compiler.reorder.assumptions import assumption_notes, assumption_phrases
 from argo_compiler.reorder.branch_costs import BranchCosts
 from argo_compiler.reorder.precedences import (
     precedence_name_pairs,
@@ -90,7 +90,7 @@ def route_problem(
     latest = min((end for end in (limit, windows.end_limit()) if end), default=None)
     words = {} if latest is None else {"max_duration": latest[1]}
     for k in range(len(visits.task_units)):
-        if window_words := windows.description(k):
+        if window_words := windows.latest_end_text(k):
             words[f"window {k}"] = window_words
     reasons = [*chain.reasons, *assumption_notes(visits, matrix)]
     if battery is None:  # chargers are not needed either
@@ -119,11 +119,11 @@ def route_problem(
         None if limit is None else limit[0],
         precedence_name_pairs(visits, requirements),
         tuple(map(int, matrix.work)),
-        tuple(assumptions(visits, matrix)),
+        tuple(assumption_phrases(visits, matrix)),
     )
 
 
-def late_visits(planned: MissionProblem, route: Tour) -> Iterator[str]:
+def late_visit_texts(planned: MissionProblem, route: Tour) -> Iterator[str]:
     """Yield, in words, the visits of a route that end after the `latest` of a soft window."""
     visits = planned.visits
     for k, start in zip(route.order, evaluate(planned.problem, route).arrivals, strict=True):
@@ -162,7 +162,7 @@ def require_known(mission: Mission, requirements: Requirements) -> None:
         *(requirement.what for requirement in requirements.windows),
     ]
     for what in named:
-        visits.find(what)
+        visits.resolve_visits(what)
     precedence_name_pairs(visits, requirements)
     _probabilities(visits, requirements)
 
@@ -204,8 +204,10 @@ def _costs(
     nowhere = np.zeros((len(matrix.time), 1))  # column of a mission that ends where the robot is
     time, energy = np.hstack([matrix.time, nowhere]), np.hstack([matrix.energy, nowhere])
     branch_costs = BranchCosts(visits.chain, time, energy, matrix.unit, probabilities)
-    times = [branch_costs.times_after(unit) for unit in visits.task_units] + list(time[tasks:])
-    energies = [branch_costs.energies_after(unit) for unit in visits.task_units] + list(
+    times = [branch_costs.times_to_destinations(unit) for unit in visits.task_units] + list(
+        time[tasks:]
+    )
+    energies = [branch_costs.energies_to_destinations(unit) for unit in visits.task_units] + list(
         energy[tasks:]
     )
     for row, unit in zip(times, visits.task_units, strict=False):
@@ -218,7 +220,9 @@ def _costs(
     chargers = range(tasks, tasks + len(matrix.chargers))
     columns = [unit.entry for unit in visits.task_units]
     columns += [len(time[0]) - 1 if end is None else end, *chargers]
-    inner_times = [int(branch_costs.inner_time(unit) + _ROUNDING) for unit in visits.task_units]
+    inner_times = [
+        int(branch_costs.inner_time_units(unit) + _ROUNDING) for unit in visits.task_units
+    ]
     return np.array(times)[:, columns], np.array(energies)[:, columns], inner_times
 
 
@@ -253,7 +257,7 @@ def _visits(
         required = {
             k
             for what in requirements.mandatory
-            for k in visits.with_whole_groups(visits.find(what))
+            for k in visits.with_whole_groups(visits.resolve_visits(what))
         }
         optional_visits = set(everything) - required
     last = required_last_visit(visits)
@@ -293,8 +297,8 @@ def _battery(
     if _max_energy(visits, matrix, times, energies) <= matrix.battery:
         return None
     used = np.where(np.isfinite(energies), energies, 0.0)
-    used = np.ceil(matrix.charging_times(used) - _ROUNDING).astype(np.int64)
-    return EnergyBudget(used, int(matrix.charging_times(np.array(matrix.battery))))
+    used = np.ceil(matrix.charging_time_units(used) - _ROUNDING).astype(np.int64)
+    return EnergyBudget(used, int(matrix.charging_time_units(np.array(matrix.battery))))
 
 
 def _max_energy(

@@ -15,20 +15,21 @@ AS_WRITTEN = "the order as written"
 
 
 def precedences(
-    visits: Visits, precise: bool, requirements: Requirements
+    visits: Visits, mission_is_precise: bool, requirements: Requirements
 ) -> tuple[Precedence, ...]:
     """Return all precedences of a mission's visits.
 
-    `precise` states whether the mission itself requires the written order.
+    `mission_is_precise` states that the mission itself requires the written order; then the result
+    includes the precedence of all visits in that order.
 
     Raises ArgoError if a requirement names something that the mission does not have.
     """
     everything = tuple(range(len(visits.task_units)))
     result: list[Precedence] = []
-    is_fixed = precise or requirements.keep_order
+    is_fixed = mission_is_precise or requirements.keep_order
     if is_fixed and len(everything) > 1:
         names = ", ".join(visits.short_name(k) for k in everything)
-        words = f"precise order {names}" if precise else AS_WRITTEN
+        words = f"precise order {names}" if mission_is_precise else AS_WRITTEN
         result.append(Precedence(everything, words))
     result += required_precedences(visits, requirements)
     result += _mission_precedences(visits)
@@ -43,7 +44,7 @@ def precedences(
 
 
 def required_last_visit(visits: Visits) -> int | None:
-    """Return the last visit if an earlier unit can't end the mission, so that it must be made.
+    """Return the visit written last if it must be made, as some earlier unit can't come last.
 
     Returns None if it need not be made. A unit that is left by several transitions can't come last
     in a mission that does not dock.
@@ -58,7 +59,7 @@ def required_last_visit(visits: Visits) -> int | None:
 def required_precedences(visits: Visits, requirements: Requirements) -> Iterator[Precedence]:
     """Yield the precedences of the requirements. Raises ArgoError as `precedences` does."""
     for sequence in requirements.before:
-        members = [visits.find(what) for what in sequence]
+        members = [visits.resolve_visits(what) for what in sequence]
         words = " before ".join(map(display_name, sequence))
         for (i, one), (j, other) in combinations(enumerate(members), 2):
             if set(one) & set(other):
@@ -125,7 +126,7 @@ def _decisions(visits: Visits) -> Iterator[Precedence]:
         compared = dict.fromkeys(
             condition.object_id
             for leaf in unit.leaves
-            for condition in visits.chain.conditions_after[leaf]
+            for condition in visits.chain.conditions_checked_after[leaf]
         )
         for object_id in compared:
             if object_id == own:
@@ -160,9 +161,10 @@ def _early_ends(visits: Visits) -> Iterator[Precedence]:
 
 
 def _last_units(visits: Visits) -> Iterator[Precedence]:
-    """Yield precedences that keep a unit that is left by several transitions from coming last.
+    """Yield precedences that keep units from coming last in the mission or in a group's round.
 
-    A round ends with one task, and so does a mission that does not dock.
+    These are the units that are left by several transitions: a round can only end with one task,
+    and so can a mission that does not dock.
     """
     if visits.chain.end is None:
         yield from _before_last(visits, visits.chain.units, "the mission")

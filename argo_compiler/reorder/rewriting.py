@@ -187,9 +187,9 @@ class _Rewriting:
         return changed
 
     def _keeps_target(self, leaf: int, transition: Transition, inside: set[str]) -> bool:
-        """Return True if a transition keeps its target: it stays in its unit or ends the mission.
+        """Return True if a transition keeps its target.
 
-        The end is one before the mission's usual end.
+        That is so if it stays in its unit, or ends the mission early: before its usual end.
         """
         if transition.target in inside:
             return bool(transition.conditions) or not self._ends_round_of_level(leaf)
@@ -208,7 +208,7 @@ class _Rewriting:
         }
 
     def _ends_round_of_level(self, leaf: int) -> bool:
-        """Return True if the unconditional transition ends a round of the group around the unit.
+        """Return True if a leaf's unconditional transition ends a round of its unit's group.
 
         In the mission, this transition leads to what follows after the last round.
         """

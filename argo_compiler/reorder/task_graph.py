@@ -78,12 +78,12 @@ class TaskGraph:
             leaf = self.flow.leaves[i]
             task = leaf.leaf.task
             docks = task.action is Action.WAYPOINT and task.pose == mission.dock
-            branches = leaf.conditional or self.branch_targets(i)
+            branches = leaf.conditional or self.leaves_after_failure_or_miss(i)
             if docks and leaf.parent == NOWHERE and not branches:
                 return i if leaf.unconditional == self.flow.end_node else None
         return None
 
-    def branch_targets(self, leaf: int) -> tuple[int, ...]:
+    def leaves_after_failure_or_miss(self, leaf: int) -> tuple[int, ...]:
         """Return the leaves that the task names for a final failure and for a missed window."""
         flow = self.flow.leaves[leaf]
         return tuple(
@@ -94,7 +94,7 @@ class TaskGraph:
         """Return True if the task is a WAIT, for which the robot stays where it is."""
         return self.flow.leaves[leaf].leaf.task.action is Action.WAIT
 
-    def conditions_after(self, leaf: int) -> Iterator[Condition]:
+    def conditions_checked_after(self, leaf: int) -> Iterator[Condition]:
         """Yield the conditions that are checked when a task ends.
 
         They choose the next task, end a WAIT, or end the rounds of a group.
@@ -114,7 +114,7 @@ class TaskGraph:
         following: list[list[int]] = [[] for _ in range(flow.size)]
         for i, leaf in enumerate(flow.leaves):
             following[i] = [target for _, target in leaf.conditional] + [leaf.unconditional]
-            following[i] += self.branch_targets(i) if i in self._own_leaf_set else ()
+            following[i] += self.leaves_after_failure_or_miss(i) if i in self._own_leaf_set else ()
             if leaf.parent >= 0:
                 following[i].append(flow.time_up_node(leaf.parent))
         for g, group in enumerate(flow.groups):
@@ -180,7 +180,7 @@ class TaskGraph:
         number = level.child_of[leaf]
         for _, target in flow.leaves[leaf].conditional:
             self._add_edge(level, group, number, leaf, target, False, None)
-        for target in self.branch_targets(leaf):
+        for target in self.leaves_after_failure_or_miss(leaf):
             self._add_edge(level, group, number, leaf, target, False, None)
         tail = flow.leaves[leaf].unconditional
         ended_group = flow.group_of_round_end(tail)
@@ -199,7 +199,9 @@ class TaskGraph:
     ) -> None:
         """Add the edge from a leaf of a child to a node, or record an early exit or a chain error.
 
-        `through` is the group whose end the transition passes, if any.
+        `number` is the child's position in the level. `tail` states that the transition is the
+        leaf's unconditional one. `through` is the group whose end the transition passes, if any. A
+        chain error is stored in the level, not raised.
         """
         flow = self.flow
         if target in level.child_of and target != self.end:
@@ -215,7 +217,9 @@ class TaskGraph:
             else:
                 self.early_exits.add((leaf, target))
         elif target == flow.end_node:
-            branches = bool(flow.leaves[leaf].conditional or self.branch_targets(leaf))
+            branches = bool(
+                flow.leaves[leaf].conditional or self.leaves_after_failure_or_miss(leaf)
+            )
             if group == NOWHERE and self.end is None:
                 level.edges.append(Edge(number, level.sink, leaf, None, tail, branches))
             else:
@@ -247,7 +251,7 @@ class TaskGraph:
                 remaining.append(edge)
         return remaining
 
-    def detach_early_ends(self, level: Level) -> None:
+    def detach_early_end_tasks(self, level: Level) -> None:
         """Remove from the mission's level the children that do not lead to its usual end.
 
         Transitions to them become early exits.
@@ -265,7 +269,9 @@ class TaskGraph:
         if level.child_of[self.flow.initial] in out:
             level.chain_error = "it does not always reach its docking station"
         for leaf in self.detached:
-            if any(condition.max_age is not None for condition in self.conditions_after(leaf)):
+            if any(
+                condition.max_age is not None for condition in self.conditions_checked_after(leaf)
+            ):
                 name = self.flow.leaves[leaf].name
                 level.chain_error = (
                     f"'{name}', with which it may end early, checks the age of a value"

@@ -18,17 +18,17 @@ def with_requirements(mission: Mission, visits: Visits, requirements: Requiremen
         changed.setdefault(visits.chain.name(leaf), {}).update(fields)
 
     for priority in requirements.optional:
-        for k in visits.find(priority.what):
+        for k in visits.resolve_visits(priority.what):
             change(visits.task_units[k].entry, priority=priority.priority)
-        for k in visits.with_whole_groups(visits.find(priority.what)):
+        for k in visits.with_whole_groups(visits.resolve_visits(priority.what)):
             for leaf in visits.task_units[k].leaves:
                 change(leaf, optional=True)
     for what in requirements.mandatory:
-        for k in visits.with_whole_groups(visits.find(what)):
+        for k in visits.with_whole_groups(visits.resolve_visits(what)):
             for leaf in visits.task_units[k].leaves:
                 change(leaf, optional=False)
     for window in requirements.windows:
-        for k in visits.find(window.what):
+        for k in visits.resolve_visits(window.what):
             entry = visits.task_units[k].entry
             change(entry, window=_window(tasks[visits.chain.name(entry)], window))
     if not changed:

@@ -48,7 +48,7 @@ class TravelMatrix:
         if self.chargers and (self.battery is None or self.charging <= 0.0):
             raise Invalid("with chargers, the battery and the charging power must be given")
 
-    def charging_times(self, watt_hours: NDArray[np.float64]) -> NDArray[np.float64]:
+    def charging_time_units(self, watt_hours: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the times, in units of time, that it takes to charge energies in Wh."""
         return watt_hours * 3600.0 / (self.charging * self.unit)
 

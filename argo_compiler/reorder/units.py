@@ -57,7 +57,7 @@ class UnitChain:
     """transitions that end the mission early: a leaf and the node that it leads to"""
     reasons: tuple[str, ...]
     """reasons why parts stay as they are written, for users"""
-    conditions_after: Mapping[int, tuple[Condition, ...]]
+    conditions_checked_after: Mapping[int, tuple[Condition, ...]]
     """by leaf, the conditions that are checked when it ends"""
     before: tuple[tuple[str, str], ...] = ()
     """pairs of task names: the first comes before the second, as the mission requires"""
@@ -100,7 +100,7 @@ class _Finder:
         units: tuple[Unit, ...] = ()
         if graph.own_leaves and graph.end != self.flow.initial:
             level = graph.level(NOWHERE)
-            graph.detach_early_ends(level)
+            graph.detach_early_end_tasks(level)
             if level.chain_error:
                 raise Invalid(f"the order of this mission can't be changed: {level.chain_error}")
             units = self._units(NOWHERE, level, self.flow.initial)
@@ -111,7 +111,7 @@ class _Finder:
             frozenset(graph.detached),
             frozenset(graph.early_exits),
             tuple(dict.fromkeys(self.reasons)),
-            {leaf: tuple(graph.conditions_after(leaf)) for leaf in graph.own_leaves},
+            {leaf: tuple(graph.conditions_checked_after(leaf)) for leaf in graph.own_leaves},
             self.before,
         )
 
@@ -193,7 +193,7 @@ class _Finder:
             if child not in number:
                 continue
             here = number[child]
-            for condition in self.graph.conditions_after(leaf):
+            for condition in self.graph.conditions_checked_after(leaf):
                 if condition.max_age is None:
                     continue
                 if condition.object_id == self.flow.leaves[leaf].measures:
@@ -231,7 +231,7 @@ class _Finder:
         exits = [e for e in level.edges if e.source in inside and e.target not in inside]
         final = exits[0].leaf if len(exits) == 1 and exits[0].tail else None
         if final is not None and (
-            flow.leaves[final].conditional or self.graph.branch_targets(final)
+            flow.leaves[final].conditional or self.graph.leaves_after_failure_or_miss(final)
         ):
             final = None
         ends = [level.child_of[entry]]

@@ -76,7 +76,7 @@ class Visits:
         return f"checkpoint {task.object_id}" + (f" ('{task.name}')" if len(others) > 1 else "")
 
     def other_tasks(self, visit: int) -> tuple[str, ...]:
-        """Return the names of the other tasks of a visit, done always or in some cases."""
+        """Return the names of a visit's tasks except the first, done always or in some cases."""
         unit = self.task_units[visit]
         others = (self.name(leaf) for leaf in unit.leaves if leaf != unit.entry)
         return tuple(dict.fromkeys(others))
@@ -98,8 +98,8 @@ class Visits:
         leaves = self._leaves_measuring.get(object_id, ())
         return sorted({self.visit_of_leaf[i] for i in leaves if i in self.visit_of_leaf})
 
-    def find(self, what: MissionPart) -> list[int]:
-        """Return the visits of a checkpoint, task or group that a requirement names.
+    def resolve_visits(self, what: MissionPart) -> list[int]:
+        """Return the visits of a checkpoint, task or group that a requirement on the order names.
 
         Raises ArgoError if there are none.
         """

@@ -12,7 +12,8 @@ from argo_compiler.reorder.units import UnitChain
 def with_wait_times(chain: UnitChain, matrix: TravelMatrix) -> TravelMatrix:
     """Return the matrix with the times and energies to and from WAITs filled in.
 
-    To a WAIT it takes as long as the WAIT lasts at most. From a WAIT it takes as long as from the
+    To a WAIT it takes as long as the WAIT lasts at most; each has a duration or a limit, see
+    `require_computable_times`. From a WAIT it takes as long as from the
     poses where the robot may be then; the longest time counts.
     """
     leaves = chain.flow.leaves[: len(matrix.tasks)]

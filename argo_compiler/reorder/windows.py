@@ -16,14 +16,14 @@ def require_computable_times(visits: Visits) -> None:
                 f"group '{group.name}' starts its rounds at set times: Argo can't compute orders "
                 "of missions with planned rounds yet"
             )
-    for leaf in visits.chain.conditions_after:
+    for leaf in visits.chain.conditions_checked_after:
         task = flow.leaves[leaf].leaf.task
         if task.wait is not None and task.wait.duration is None and task.wait.limit is None:
             raise Invalid(f"how long '{task.name}' waits can't be computed: give it a limit")
     inside = {leaf for _, members in visits.group_units for k in members
               for leaf in visits.task_units[k].leaves}  # fmt: skip
     entries = {unit.entry for unit in visits.task_units} - inside
-    for leaf in visits.chain.conditions_after:
+    for leaf in visits.chain.conditions_checked_after:
         window = _binding_window(flow.leaves[leaf].leaf.task.window)
         is_wait = flow.leaves[leaf].leaf.task.action is Action.WAIT
         if window is None or (leaf in entries and not is_wait):
@@ -65,7 +65,7 @@ class Windows:
             )
         return self._matrix.units_rounded_up(window.earliest), latest
 
-    def description(self, visit: int) -> str | None:
+    def latest_end_text(self, visit: int) -> str | None:
         """Return the visit's window in words, or None if it sets no latest end."""
         window = _binding_window(
             self._visits.leaf_task(self._visits.task_units[visit].entry).window
@@ -88,7 +88,7 @@ class Windows:
 
 
 def _binding_window(window: TimeWindow | None) -> TimeWindow | None:
-    """Return the window if it limits an order, else None."""
+    """Return the window if it has an earliest start or a hard latest end, else None."""
     if window is None or not (window.earliest or (window.hard and window.latest is not None)):
         return None
     return window

@@ -14,9 +14,9 @@ from argo_compiler.files.loading import FileError
 from argo_compiler.il import Mission
 from argo_compiler.ros.compression import (
     TooLargeError,
-    check_mcap_chunks,
-    check_metadata,
-    check_ros1_chunks,
+    require_small_mcap_chunks,
+    require_small_ros1_chunks,
+    require_uncompressed_bag,
 )
 from argo_compiler.ros.messages import Received, from_message, raise_error, to_message
 from argo_compiler.ros.package import SPECIFICATION
@@ -192,16 +192,16 @@ def _open_reader(path: Path, first: bytes) -> Iterator[Any]:
 
         with Ros1Reader(path) as reader:
             connections = {c.id for c in reader.connections if c.topic == TOPIC}
-            check_ros1_chunks(reader, connections)
+            require_small_ros1_chunks(reader, connections)
             yield reader
     else:
         from rosbags.rosbag2 import Reader as Ros2Reader
 
         if os.path.isdir(path):
-            check_metadata(path)
+            require_uncompressed_bag(path)
         for file in path.glob("*") if os.path.isdir(path) else [path]:
             if first_bytes_if_readable(file).startswith(MCAP):
-                check_mcap_chunks(file)
+                require_small_mcap_chunks(file)
         with Ros2Reader(path) as reader:
             yield reader
 

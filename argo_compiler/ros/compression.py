@@ -20,7 +20,7 @@ class TooLargeError(Exception):
     """Raised when a compressed part is too large, or might be; the message names the part."""
 
 
-def check_ros1_chunks(reader: Any, connections: set[int]) -> None:
+def require_small_ros1_chunks(reader: Any, connections: set[int]) -> None:
     """Raise TooLargeError if a chunk with messages of these connections is too large unpacked."""
     for info in reader.chunk_infos:
         chunk = reader.chunks[info.pos]
@@ -30,10 +30,10 @@ def check_ros1_chunks(reader: Any, connections: set[int]) -> None:
         _check(chunk.decompressor.__module__, reader.bio.read(chunk.datasize))
 
 
-def check_mcap_chunks(path: Path) -> None:
+def require_small_mcap_chunks(path: Path) -> None:
     """Raise TooLargeError if a chunk of an MCAP file is too large when it is unpacked.
 
-    A broken file is not an error here, as its reader reports it.
+    A file that is cut off is not an error here; a broken chunk raises its unpacker's error.
     """
     with path.open("rb") as file:
         file.seek(8)
@@ -51,7 +51,7 @@ def check_mcap_chunks(path: Path) -> None:
             file.seek(end)
 
 
-def check_metadata(folder: Path) -> None:
+def require_uncompressed_bag(folder: Path) -> None:
     """Raise TooLargeError if a rosbag2 folder is compressed by file or by message.
 
     The size of the unpacked data is unknown then.
@@ -72,7 +72,7 @@ def _check(compression: str, content: bytes) -> None:
 
 
 def _bounded_decompressor(compression: str) -> Callable[[bytes, int], bytes] | None:
-    """Return a function that unpacks bytes up to a limit; None for no known compression."""
+    """Return a function that unpacks bytes up to a limit; None for an unknown compression."""
     if "bz2" in compression:
         return bz2.BZ2Decompressor().decompress
     if "lz4" in compression:

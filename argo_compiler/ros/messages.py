@@ -38,7 +38,10 @@ from argo_compiler.il import (
     Transition,
     WaitRule,
 )
-from argo_compiler.il.velocities import with_approach_velocities, with_departure_velocities
+from argo_compiler.il.velocities import (
+    approach_to_departure_velocities,
+    departure_to_approach_velocities,
+)
 from argo_compiler.ros.types import RosTypes
 
 _MESSAGES: dict[type[Model], str] = {
@@ -116,8 +119,8 @@ def _with_onward_velocities(mission: Mission) -> Mission:
 
     Raises DiagnosticError if that is impossible without loss.
     """
-    onward, _ = with_departure_velocities(mission)
-    back, differ = with_approach_velocities(onward)
+    onward, _ = approach_to_departure_velocities(mission)
+    back, differ = departure_to_approach_velocities(onward)
     for task, returned in zip(mission.tasks, back.tasks, strict=True):
         if task.velocity != returned.velocity or task.name in differ:
             velocity = "no velocity" if task.velocity is None else f"{task.velocity:g} m/s"
@@ -229,7 +232,7 @@ def from_message(message: Any, types: RosTypes, source_name: str) -> Received:
         )
     data = _MessageReader(types, source_name).part(message, "")
     try:
-        mission, differ = with_approach_velocities(Mission.model_validate(data))
+        mission, differ = departure_to_approach_velocities(Mission.model_validate(data))
     except ValidationError as error:
         diagnostics = [
             diagnostic_of(

@@ -61,7 +61,7 @@ class RosTypes:
         return self._make("sensor_msgs/msg/JointState", {"name": list(names), **arrays})
 
     def enum_constants(self, message: str, enumeration: type[E], prefix: str = "") -> dict[E, int]:
-        """Return the message's constants for the members of an enumeration."""
+        """Return the message's constants for an enumeration: `prefix` and the member's name."""
         return {m: self.constant(message, prefix + m.name) for m in enumeration}
 
     def constant(self, message: str, name: str) -> int:

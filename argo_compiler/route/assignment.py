@@ -9,7 +9,7 @@ from argo_compiler.route.problem import NEVER
 from argo_compiler.route.pruning import Pruned, least_arc_times
 
 
-def assignment_bound(network: StepNetwork, pruned: Pruned) -> int | None:
+def assignment_time_bound(network: StepNetwork, pruned: Pruned) -> int | None:
     """Compute a lower bound on the time of all arcs and services of any route.
 
     It is the value of an assignment problem, in which each step is entered once and left once. The
@@ -24,13 +24,13 @@ def assignment_bound(network: StepNetwork, pruned: Pruned) -> int | None:
         direct = int(network.time[network.size, network.size])
         return direct if direct < NEVER else None
     times = least_arc_times(network) + np.append(network.service, 0)[None, :]
-    least = least_between_steps(network, pruned, times)
+    least = least_costs_between_steps(network, pruned, times)
     rows, columns = linear_sum_assignment(least.astype(np.float64))
     total = int(least[rows, columns].sum())
     return None if total >= NEVER else total
 
 
-def least_between_steps(
+def least_costs_between_steps(
     network: StepNetwork, pruned: Pruned, costs: NDArray[np.int64]
 ) -> NDArray[np.int64]:
     """Compute the least cost of the unpruned arcs from each step to each other.

@@ -170,8 +170,8 @@ class BeamSearch:
         """Return the undominated labels of the next layer that may lead to a better path.
 
         With them returns, for each, a lower bound on the cost of all paths that continue it.
-        Returns None if the time is up before the end. `upper` is the prize and cost of the best
-        known path.
+        Returns None if the time is up before the end. `labels` are those of the present layer,
+        whose paths have `size` steps. `upper` is the prize and cost of the best known path.
         """
         network, pruned = self._network, self._pruned
         rules = self._bits.layer(size)
@@ -202,7 +202,10 @@ class BeamSearch:
         return undominated, self._least_costs(size + 1, undominated)
 
     def _least_end_times(self, size: int, labels: _Labels) -> Vector:
-        """Return, for each label, a lower bound on the end time of all paths that continue it."""
+        """Return, for each label, a lower bound on the end time of all paths that continue it.
+
+        `size` is the number of steps in the paths of the labels.
+        """
         remaining = self._bound.remaining_cost(size, labels.mask, labels.last)
         end = labels.time + remaining[0]
         if len(remaining) > 1:

@@ -13,7 +13,7 @@ from itertools import permutations
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.route.evaluation import state_after_rounds
+from argo_compiler.route.evaluation import state_after_all_repetitions
 from argo_compiler.route.problem import NEVER, RouteProblem, Visit
 
 Locations = frozenset[int]
@@ -127,7 +127,7 @@ class Blocks:
         order_by_arrival: dict[Arrival, tuple[int, ...]] = {}
         for order in self._orders[block]:
             self._spend()
-            arrival = state_after_rounds(self.problem, number, order, origins)
+            arrival = state_after_all_repetitions(self.problem, number, order, origins)
             if arrival is not None:
                 order_by_arrival.setdefault(arrival, order)
         return list(order_by_arrival.items())
@@ -135,7 +135,7 @@ class Blocks:
     def _feasible_orders(self, members: tuple[int, ...]) -> list[tuple[int, ...]]:
         """Return the orders of a block's members that the precedences and inner rounds allow.
 
-        An order must not interrupt an inner round. Returns none for large rounds.
+        An order must not interrupt an inner round. Returns an empty list for large rounds.
         """
         if len(members) > _MOST_MEMBERS:
             return []
@@ -153,7 +153,8 @@ class Blocks:
     def _least_time(self, members: tuple[int, ...]) -> int:
         """Return a lower bound on the time of a large round.
 
-        It is the least time of one repetition, or the shortest duration that may interrupt it.
+        It is the least time of one repetition or, if less, the shortest duration that may
+        interrupt it.
         """
         inner = [r for r in self.problem.rounds if set(r.members) <= set(members)]
         once = sum(
@@ -163,8 +164,10 @@ class Blocks:
         return min([once, *(r.duration for r in inner if r.duration and not r.soft)])
 
     @cached_property
-    def least_times(self) -> NDArray[np.int64]:
-        """Least time from the end of each block to the end of each other, straight or by a charger.
+    def least_end_to_end_times(self) -> NDArray[np.int64]:
+        """Least time from the end of each block to the end of each other.
+
+        It includes the drive, straight or by a charger, and the execution of the latter block.
 
         Shape (n + 1, n + 1) with n blocks: the last row is the start, the last column the end.
         NEVER: the block can't follow.

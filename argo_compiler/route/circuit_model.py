@@ -40,8 +40,9 @@ class CircuitModel:
     def __init__(self, network: StepNetwork, pruned: Pruned, end: int | None = None) -> None:
         """Build the model.
 
-        `end`: latest time of the route's end, if precedences are to be constraints on begin times;
-        for plain networks only. The linear relaxation profits only if that limit is tight.
+        `end`: latest time of the route's end, for networks with `has_additive_times` only. It makes
+        precedences constraints on begin times, which are constraints on ranks otherwise. The linear
+        relaxation profits only if that limit is tight.
         """
         self.model = cp_model.CpModel()
         self._network, self._pruned = network, pruned
@@ -344,7 +345,7 @@ class CircuitModel:
     def solution_path(
         self, is_true: Callable[[cp_model.IntVar], bool]
     ) -> tuple[tuple[int, ...], dict[int, int]]:
-        """Return the nodes of a solution in order, and its charges by the position among them.
+        """Return the nodes of a solution in order, and its charges, as in `hint`.
 
         `is_true` returns the value of a literal in the solution.
         """

@@ -62,21 +62,21 @@ def sets_in_layers(network: StepNetwork, bits: StepBits, layers: list[Masks]) ->
     return _make_step_sets(layers, ends, MOST_BITS if bits.shared else len(network.prize))
 
 
-def subsets_of(goals: Masks, steps: int) -> StepSets:
+def subsets_of(goals: Masks, step_count: int) -> StepSets:
     """Return all subsets of `goals`, which are sets of steps; a route may end only with a goal.
 
-    `steps`: number of steps, which must be low enough for a table of all sets.
+    `step_count`: number of all steps, which must be low enough for a table of all sets.
     """
-    is_subset = np.zeros(1 << steps, np.bool_)
+    is_subset = np.zeros(1 << step_count, np.bool_)
     is_subset[goals] = True
     is_goal = is_subset.copy()
-    for s in range(steps):
+    for s in range(step_count):
         halves = is_subset.reshape(-1, 2, 1 << s)
         halves[:, 0, :] |= halves[:, 1, :]
     masks = np.flatnonzero(is_subset)
     size = np.bitwise_count(masks)
     layers = [masks[size == k] for k in range(int(size.max(initial=0)) + 1)]
-    return _make_step_sets(layers, [is_goal[layer] for layer in layers], steps)
+    return _make_step_sets(layers, [is_goal[layer] for layer in layers], step_count)
 
 
 def completion_costs(

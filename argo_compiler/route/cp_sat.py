@@ -9,7 +9,7 @@ from math import ceil, floor
 from ortools.sat.python import cp_model
 
 from argo_compiler.route.circuit_model import CircuitModel, time_to_build
-from argo_compiler.route.cp_solver import record_work, run_solver, solver_for
+from argo_compiler.route.cp_solver import run_solver, solver_for, spend_solver_work
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.problem import Objective, RouteProblem, Tour
 from argo_compiler.route.search import Search, Solution
@@ -91,7 +91,7 @@ class _Attempt:
             )
 
         status = run_solver(solver, model.model, _SolutionCallback(model, search), must_stop)
-        record_work(search, solver)
+        spend_solver_work(search, solver)
         if status == cp_model.INFEASIBLE:
             self._report_optimality(best)
         elif status == cp_model.OPTIMAL:

@@ -37,7 +37,7 @@ def solver_for(search: Search) -> cp_model.CpSolver:
     return solver
 
 
-def record_work(search: Search, solver: cp_model.CpSolver) -> None:
+def spend_solver_work(search: Search, solver: cp_model.CpSolver) -> None:
     """Add the solver's work to that of the search."""
     search.spend(_NOMINAL * solver.deterministic_time)
 

@@ -55,7 +55,9 @@ class Enumeration:
         self._incumbent = better_than
         limit = blocks.problem.max_duration
         self._limit: float = inf if limit is None else limit
-        self._leave, self._enter = _dual_prices(blocks.least_times, blocks.problem.selective)
+        self._leave, self._enter = _dual_prices(
+            blocks.least_end_to_end_times, blocks.problem.selective
+        )
         self._completions: dict[int, tuple[int, int, list[tuple[int, int]]]] = {}
         self.best: Tour | None = None
         """best route; None: none is better than `better_than`"""

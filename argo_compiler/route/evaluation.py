@@ -29,7 +29,7 @@ class RouteEvaluation:
         return not self.violations
 
     def cost(self, objective: Objective) -> int:
-        """Return the cost of the route in units: the value that the objective minimises."""
+        """Return the value that the objective minimises: a time in units of time; 0 for PRIZE."""
         match objective:
             case Objective.DURATION:
                 return self.duration
@@ -57,16 +57,17 @@ def evaluate(problem: RouteProblem, route: Tour) -> RouteEvaluation:
     return _Simulation(problem, route).evaluation()
 
 
-def state_after_rounds(
-    problem: RouteProblem, number: int, order: tuple[int, ...], locations: frozenset[int]
+def state_after_all_repetitions(
+    problem: RouteProblem, round_index: int, order: tuple[int, ...], locations: frozenset[int]
 ) -> tuple[int, int, frozenset[int]] | None:
     """Compute the robot's state after all repetitions of an outermost Round.
 
     Returns the time and the energy used since the robot left one of `locations`, and the possible
-    locations at the end; None if that is infeasible. `order`: the round's members in their order.
+    locations at the end; None if that is infeasible. `round_index`: position of the round in
+    `problem.rounds`. `order`: the round's members in their order.
     """
     simulation = _Simulation(problem, Tour(order))
-    state = simulation._rounds(_State(0, 0, locations), number, order)
+    state = simulation._rounds(_State(0, 0, locations), round_index, order)
     return None if simulation._violations else (state.time, state.used, state.locations)
 
 

@@ -7,7 +7,7 @@ from math import inf
 import numpy as np
 
 from argo_compiler.base.errors import Invalid
-from argo_compiler.route.assignment import assignment_bound
+from argo_compiler.route.assignment import assignment_time_bound
 from argo_compiler.route.infeasible_subset import find_infeasible_subset
 from argo_compiler.route.modes import Step
 from argo_compiler.route.network import build_network
@@ -87,7 +87,7 @@ def _run_search(
     search = Search(net, prune(net), limits, seed, clock, observers, begun)
     if not net.exact:
         search.add_reason("rounds have too many orders to check all of them: nothing is proven")
-    bound = assignment_bound(net, search.pruned)
+    bound = assignment_time_bound(net, search.pruned)
     if bound is None:
         search.add_reason("some visit can't be made at all, or not in the required order")
         with search.turn_of("pruning") as turn:

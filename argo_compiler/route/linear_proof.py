@@ -15,7 +15,7 @@ from ortools.sat.python import cp_model
 
 from argo_compiler.route.circuit_model import CircuitModel, time_to_build
 from argo_compiler.route.cp_sat import offer_empty_routes
-from argo_compiler.route.cp_solver import record_work, run_solver, solver_for
+from argo_compiler.route.cp_solver import run_solver, solver_for, spend_solver_work
 from argo_compiler.route.linear_relaxation import LinearRelaxation
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.problem import Objective, RouteProblem
@@ -149,7 +149,7 @@ class _Stage:
             model.set_cost_objective(self.least_prize or None, most)
         solver = solver_for(search)
         status = run_solver(solver, model.model, None, lambda: search.remaining_time() <= 0.0)
-        record_work(search, solver)
+        spend_solver_work(search, solver)
         if status == cp_model.INFEASIBLE:
             return most + 1
         bound = relaxation.bound or 0

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
-from argo_compiler.route.assignment import least_between_steps
+from argo_compiler.route.assignment import least_costs_between_steps
 from argo_compiler.route.completion_bounds import StepSets, completion_costs
 from argo_compiler.route.held_karp import can_end
 from argo_compiler.route.network import StepNetwork
@@ -78,7 +78,7 @@ class DualBound:
         self, network: StepNetwork, pruned: Pruned, bits: StepBits, costs: list[NDArray[np.int64]]
     ) -> None:
         self._network, self._bits = network, bits
-        prices = [_dual_prices(least_between_steps(network, pruned, kind)) for kind in costs]
+        prices = [_dual_prices(least_costs_between_steps(network, pruned, kind)) for kind in costs]
         self._leave = np.stack([leave for leave, _ in prices])
         self._enter = np.stack([enter for _, enter in prices])
         self._step = np.append(network.step, len(network.prize))

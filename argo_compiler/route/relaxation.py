@@ -37,7 +37,7 @@ class Relaxation:
 
     def __init__(self, blocks: Blocks, clock: Callable[[], float], deadline: float) -> None:
         self._blocks, self._clock, self._deadline = blocks, clock, deadline
-        self._least_times, n = blocks.least_times, blocks.count
+        self._least_times, n = blocks.least_end_to_end_times, blocks.count
         has_arc = self._least_times < NEVER
         self._origin, self._goal = np.nonzero(has_arc)
         self._arcs = len(self._origin)

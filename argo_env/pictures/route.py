@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from argo_compiler.base.model import Pose
-from argo_compiler.files.atomic_write import write_folder
+from argo_compiler.files.atomic_write import write_files_atomically
 from argo_compiler.il import Action, Task
 from argo_compiler.reorder.mission_problem import MissionProblem
 from argo_compiler.route.evaluation import evaluate
@@ -94,7 +94,7 @@ def write_route(
         Image.fromarray(image).save(content, "png")
         pictures[_name(plan.number)] = content.getvalue()
     with reporting_write_errors(folder, "the pictures", CHOOSE_ANOTHER_PLACE):
-        write_folder(folder, pictures)
+        write_files_atomically(folder, pictures)
     return [folder / name for name in pictures]
 
 

@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 from argo_compiler.base.errors import Conflict
-from argo_compiler.files.atomic_write import write_folder
+from argo_compiler.files.atomic_write import write_files_atomically
 from argo_env.files.folders import reporting_write_errors
 from argo_env.report.html import page
 from argo_env.run.record import RunRecord
@@ -27,7 +27,7 @@ def write_report(record: RunRecord, site: Site, folder: Path) -> Path:
         )
     contents = {RECORD: to_json(record).encode(), PAGE: page(record, site).encode()}
     with reporting_write_errors(folder, "the report", "; choose another folder"):
-        write_folder(folder, contents)
+        write_files_atomically(folder, contents)
     return folder / PAGE
 
 

@@ -10,7 +10,7 @@ from argo_compiler.files.atomic_write import (
     check_writable,
     is_stream,
     write_atomically,
-    write_folder,
+    write_files_atomically,
 )
 from argo_compiler.files.loading import read_bytes
 from argo_compiler.files.mission_file import read_mission_bytes
@@ -110,7 +110,7 @@ def write_content(path: Path, content: str | bytes | Mapping[str, bytes]) -> Non
     """
     try:
         if isinstance(content, Mapping):
-            write_folder(path, content)
+            write_files_atomically(path, content)
         elif path != STANDARD_OUTPUT:
             write_atomically(path, content)
     except OSError as error:

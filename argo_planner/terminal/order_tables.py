@@ -10,7 +10,7 @@ from rich.table import Table
 
 from argo_compiler.analysis.quantities import time_words
 from argo_compiler.il import Mission, Order
-from argo_compiler.reorder.mission_problem import late_visits
+from argo_compiler.reorder.mission_problem import late_visit_texts
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.robust_spread import TravelSpread
 from argo_compiler.route.tour_pauses import TourPause, pauses
@@ -109,7 +109,7 @@ def _lines(found: SuggestedOrder) -> Iterator[str]:
     for pause in chain.from_iterable(pauses(problem, found.route).values()):
         refused = "" if pause.charger is None else "; no mission can charge, so -o can't write it"
         yield f"Pause: {_pause(found, pause)}{refused}"
-    for words in late_visits(planned, found.route):
+    for words in late_visit_texts(planned, found.route):
         yield f"Note: {words}"
     if planned.mission.order is Order.PRECISE:
         yield "The mission requires its precise order: no task may change its place."

@@ -23,7 +23,7 @@ from argo_compiler.diagnostics import (
 from argo_compiler.files.loading import open_file
 from argo_compiler.files.mission_file import MissionFile, decode_mission
 from argo_compiler.il import Mission
-from argo_compiler.isar.recognition import find_definition
+from argo_compiler.isar.recognition import find_isar_data
 from argo_compiler.ros.recognition import is_bag_content
 from argo_compiler.script.syntax.text.source import Source as Script
 from argo_env.planning.opening import OpenedSite
@@ -97,7 +97,7 @@ def source_kind(upload: Upload) -> SourceKind:
     # A pipe has no name with a suffix, but no script begins with a brace.
     if Path(upload.name).suffix.lower() != ".json" and not _BRACE.match(upload.content):
         return SourceKind.SCRIPT
-    return SourceKind.MISSION if find_definition(upload.content) is None else SourceKind.ISAR
+    return SourceKind.MISSION if find_isar_data(upload.content) is None else SourceKind.ISAR
 
 
 @stage("reading the mission")
@@ -163,7 +163,7 @@ def _load_bag(content: bytes | Mapping[str, bytes] | Path, name: str) -> LoadedM
 def _load_isar(content: bytes, name: str, catalog: Catalog) -> LoadedMission:
     from argo_compiler.isar import from_isar
 
-    imported = from_isar(find_definition(content), name, catalog)
+    imported = from_isar(find_isar_data(content), name, catalog)
     return LoadedMission(imported.mission, imported.diagnostics, None)
 
 

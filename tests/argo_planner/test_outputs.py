@@ -7,7 +7,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid, Remedy
-from argo_compiler.files.atomic_write import write_folder
+from argo_compiler.files.atomic_write import write_files_atomically
 from argo_planner.terminal.words import error_text
 from tests.argo_compiler.files.test_atomic_write import contents
 from tests.argo_planner.conftest import argo
@@ -199,7 +199,7 @@ def test_unwritable_paths_are_reported_before_any_work(command: str, says: str) 
 def test_an_old_report_stays_whole_where_the_disk_is_full(room: int) -> None:
     with small_disk(30 * 4096) as disk:
         old = {"report/report.html": b"old", "report/report.json": b"old", "report/my.txt": b"old"}
-        write_folder(disk, old)
+        write_files_atomically(disk, old)
         filler = fill(disk, leave=room * 4096)
         report = disk / "report"
         result = invoke(f"run m.json --drive route --force --journal kept --report {report}")

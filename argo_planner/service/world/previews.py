@@ -15,7 +15,7 @@ from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, has_errors
 from argo_compiler.il import Action, Mission, OnFailure, Task
 from argo_compiler.il.grouping import group_ranges
-from argo_compiler.il.transitions import default_target, failure_targets, initial_task
+from argo_compiler.il.transitions import default_target, failure_targets_by_field, initial_task
 from argo_env.formatting import time_text
 from argo_env.navigation import Path
 from argo_env.planning.opening import OpenedSite
@@ -279,7 +279,7 @@ def _other_transitions(
             kind = WayKind.BRANCH if transition.conditions else WayKind.OTHER
             successors[task.name].append((transition.target, kind))
         successors[task.name] += [
-            (target, WayKind.FAILURE) for target in failure_targets(task).values()
+            (target, WayKind.FAILURE) for target in failure_targets_by_field(task).values()
         ]
     for around in group_ranges(mission):
         successors[around.group.end].append((around.group.start, WayKind.ROUND))

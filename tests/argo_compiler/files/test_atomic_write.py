@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from argo_compiler.files import atomic_write
-from argo_compiler.files.atomic_write import write_atomically, write_folder
+from argo_compiler.files.atomic_write import write_atomically, write_files_atomically
 from tests.conftest import examples
 from tests.disks import fill, small_disk
 
@@ -94,7 +94,7 @@ def test_files_of_a_folder_are_replaced_and_others_stay(tmp_path):
     (tmp_path / "page.html").write_text("old page")
     (tmp_path / "page.html").chmod(0o640)
     (tmp_path / "notes.txt").write_text("mine")
-    write_folder(tmp_path, FILES)
+    write_files_atomically(tmp_path, FILES)
     assert contents(tmp_path) == FILES | {"notes.txt": b"mine"}
     assert stat.S_IMODE((tmp_path / "page.html").stat().st_mode) == 0o640
     assert sorted(p.name for p in tmp_path.iterdir()) == [
@@ -103,21 +103,21 @@ def test_files_of_a_folder_are_replaced_and_others_stay(tmp_path):
 
 
 def test_a_folder_is_created_with_its_parents(tmp_path):
-    write_folder(tmp_path / "a" / "b", FILES)
+    write_files_atomically(tmp_path / "a" / "b", FILES)
     assert contents(tmp_path / "a" / "b") == FILES
 
 
 def test_a_folder_with_the_name_of_a_file_stays(tmp_path):
     (tmp_path / "page.html").mkdir()
     with pytest.raises(IsADirectoryError, match="directory"):
-        write_folder(tmp_path, FILES)
+        write_files_atomically(tmp_path, FILES)
     assert [p.name for p in tmp_path.iterdir()] == ["page.html"]
 
 
 @pytest.mark.parametrize("steps", range(8))
 def test_an_interruption_leaves_all_old_or_all_new(tmp_path, monkeypatch, steps):
     old = {"data.json": b"old data", "page.html": b"old page"}
-    write_folder(tmp_path, old)
+    write_files_atomically(tmp_path, old)
     replace, moves = Path.replace, []
 
     def interrupted(self, target):
@@ -130,7 +130,7 @@ def test_an_interruption_leaves_all_old_or_all_new(tmp_path, monkeypatch, steps)
 
     monkeypatch.setattr(Path, "replace", interrupted)
     try:
-        write_folder(tmp_path, FILES)
+        write_files_atomically(tmp_path, FILES)
     except KeyboardInterrupt:
         assert contents(tmp_path) == old
         assert sorted(p.name for p in tmp_path.iterdir()) == ["data.json", "page.html"]
@@ -144,7 +144,7 @@ def test_an_interruption_leaves_all_old_or_all_new(tmp_path, monkeypatch, steps)
 def test_a_second_interruption_loses_nothing(tmp_path, monkeypatch, steps, more):
     """The second interruption comes while the old files are moved back."""
     old = {"data.json": b"old data", "page.html": b"old page"}
-    write_folder(tmp_path, old)
+    write_files_atomically(tmp_path, old)
     replace, moves = Path.replace, []
 
     def interrupted(self, target):
@@ -154,7 +154,7 @@ def test_a_second_interruption_loses_nothing(tmp_path, monkeypatch, steps, more)
 
     monkeypatch.setattr(Path, "replace", interrupted)
     with pytest.raises(KeyboardInterrupt):
-        write_folder(tmp_path, FILES)
+        write_files_atomically(tmp_path, FILES)
     assert contents(tmp_path) == old
     assert sorted(p.name for p in tmp_path.iterdir()) == ["data.json", "page.html"]
 
@@ -170,11 +170,11 @@ def test_a_full_disk_leaves_all_old_or_all_new():
     @given(room=st.integers(0, 30), sizes=st.lists(st.integers(0, 9), min_size=3, max_size=3))
     def check(room, sizes):
         new = {name: b"n" * size * _PAGE for name, size in zip(FILES, sizes, strict=True)}
-        write_folder(disk, old)
+        write_files_atomically(disk, old)
         filler = fill(disk, leave=room * _PAGE)
         modes = {path: path.stat().st_mode for path in disk.rglob("*")}
         try:
-            write_folder(disk, new)
+            write_files_atomically(disk, new)
         except OSError:
             outcomes.add("old")
             assert contents(disk) == old | {"filler": filler.read_bytes()}

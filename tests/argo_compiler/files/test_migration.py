@@ -11,9 +11,9 @@ from argo_compiler.files.mission_file import decode_mission
 from argo_compiler.il import Group, Mission, Stop
 from argo_compiler.il.velocities import (
     MISSION_START,
+    approach_to_departure_velocities,
+    departure_to_approach_velocities,
     transition_pairs,
-    with_approach_velocities,
-    with_departure_velocities,
 )
 from tests.mission_writing import drive
 
@@ -161,7 +161,7 @@ def routes(draw):
 @settings(max_examples=200)
 @given(routes())
 def test_each_path_keeps_its_velocity_or_its_task_is_reported(mission):
-    there, differ = with_approach_velocities(mission)
+    there, differ = departure_to_approach_velocities(mission)
     old_velocities, new_velocities = velocities(mission), velocities(there)
     for source, target in transition_pairs(mission):
         old = None if source == MISSION_START else old_velocities[source]
@@ -171,8 +171,8 @@ def test_each_path_keeps_its_velocity_or_its_task_is_reported(mission):
 @settings(max_examples=200)
 @given(routes())
 def test_converting_velocities_to_version_2_and_back_changes_nothing(mission):
-    on, differ = with_departure_velocities(mission)
+    on, differ = approach_to_departure_velocities(mission)
     if not differ:
-        there, _ = with_approach_velocities(on)
+        there, _ = departure_to_approach_velocities(on)
         reached = {target for _, target in transition_pairs(mission)}
         assert all(velocities(there)[t] == velocities(mission)[t] for t in reached)

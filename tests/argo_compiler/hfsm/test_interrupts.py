@@ -25,7 +25,7 @@ from argo_compiler.hfsm import (
     Tick,
     lower,
 )
-from argo_compiler.hfsm.interrupt_state import InterruptState, take_rows
+from argo_compiler.hfsm.interrupt_state import InterruptState, rows_taken_at
 from argo_compiler.hfsm.interrupts import ROWS, TABLE, InterruptGuard, Stage, Trigger
 from argo_compiler.hfsm.progress import Waiting
 from argo_compiler.il import Afterwards, EventKind, Mission, Reaction, Response, Task
@@ -135,7 +135,7 @@ def explore(reactions, taken):
     for before in states:
         for trigger, event in everything:
             plan = Outcome.COMPLETED if trigger is Trigger.DONE else Outcome.RETURNED
-            rows = take_rows(before, known, trigger, event, plan)
+            rows = rows_taken_at(before, known, trigger, event, plan)
             taken.update((row.row, row.before.stage) for row in rows)
             after = rows[-1].after
             expected = by_rules(rules, as_alarmed(before), trigger, event)
@@ -178,23 +178,23 @@ def assert_invariants(known, before, trigger, event, rows):
     if own is not None and own.response is not Response.REPORT:
         active = known.get(before.active)
         ends_a_hold = active is not None and active.until is event
-        if not (ends_a_hold and own.rank <= active.rank):
+        if not (ends_a_hold and own.urgency <= active.urgency):
             assert event in {*pending, *had_its_turn, *(p.event for p in before.pending)}
     # Whoever has the robot ranks highest, unless a person has to let it go on.
     if not after.paused:
-        ranks = [known[one.event].rank for one in after.waiting]
+        ranks = [known[one.event].urgency for one in after.waiting]
         if after.active is None:
             assert not ranks
         else:
-            assert all(rank <= known[after.active].rank for rank in ranks)
-            equal = [e for e in pending if known[e].rank == known[after.active].rank]
+            assert all(rank <= known[after.active].urgency for rank in ranks)
+            equal = [e for e in pending if known[e].urgency == known[after.active].urgency]
             assert equal[0] is after.active
     # A hold ends by its event, a person, its limit, or one of higher rank.
     left = before.stage is Stage.HOLDING and after.active is not before.active
     if left:
         hold = known[before.active]
         awaited = trigger is Trigger.EVENT and hold.until is event and not before.paused
-        higher = own is not None and own.rank > hold.rank
+        higher = own is not None and own.urgency > hold.urgency
         assert awaited or higher or trigger in (Trigger.RESUME, Trigger.LIMIT)
 
 

@@ -21,7 +21,7 @@ from argo_compiler.il import (
     TimeWindow,
     Transition,
 )
-from argo_compiler.reorder.mission_problem import late_visits, route_problem
+from argo_compiler.reorder.mission_problem import late_visit_texts, route_problem
 from argo_compiler.reorder.requirements import Requirements, parse_seconds
 from argo_compiler.reorder.rewriting import apply_route
 from argo_compiler.reorder.travel_matrix import TravelMatrix
@@ -286,7 +286,7 @@ def test_a_mission_states_optional_tasks_and_windows():
     planned = make_problem(mission)
     assert prizes(planned) == [(False, 7), (True, 0), (True, 0)]
     assert windows(planned) == [(0, None), (20, 38), (0, None)]
-    assert list(late_visits(planned, planned.written)) == [
+    assert list(late_visit_texts(planned, planned.written)) == [
         "checkpoint 3 is done at 32 s, after its soft time window: 30 s"
     ]
 

@@ -104,7 +104,7 @@ class Powertrain:
 
     @property
     def can_batch_steps(self) -> bool:
-        """True if the robot can touch nothing at its pose, so that steps can be made in batches."""
+        """True if the robot can touch nothing where it is now: steps can be made in batches."""
         return isinstance(self._drive, TimedDrive) and self._drive.can_batch_steps
 
     def steps_ahead(self, limit: int) -> StepsAhead:

@@ -83,7 +83,7 @@ class TimedDrive(ABC):
     @property
     @abstractmethod
     def can_batch_steps(self) -> bool:
-        """True if the robot can touch nothing at its pose, so that steps can be made in batches."""
+        """True if the robot can touch nothing where it is now: steps can be made in batches."""
 
     def _times_ahead(self, count: int) -> NDArray[np.float64]:
         """Return the time (s) since the start of the path after each of the next `count` steps."""

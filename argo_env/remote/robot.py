@@ -174,14 +174,14 @@ class RemoteAction:
     def task(self) -> Task:
         return self._command.task
 
-    def cancel(self, reason: str, interrupted: bool) -> None:
+    def cancel(self, reason: str, is_interruption: bool) -> None:
         """Order the robot to stop the action, which ends only with the robot's report.
 
-        Only the first call has an effect. `reason` is a text for people; `interrupted` is True if
-        the record is to name the action interrupted and not cancelled.
+        Only the first call has an effect. `reason` is a text for people; `is_interruption` is True
+        if the record is to name the action interrupted and not cancelled.
         """
         if self.cancelled is None:
-            self.cancelled, self._interrupted = reason, interrupted
+            self.cancelled, self._interrupted = reason, is_interruption
             self._order_to_cancel()
 
     def detour_if_blocked(self, setup: RunSetup) -> None:

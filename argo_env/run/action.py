@@ -102,14 +102,14 @@ class SimulatedAction:
                 self._setup.drive.halt()
         return end
 
-    def cancel(self, reason: str, interrupted: bool) -> None:
+    def cancel(self, reason: str, is_interruption: bool) -> None:
         """Cancel the action: the following steps clean up, then the action ends.
 
-        `interrupted` states that the mission goes on afterwards. A second call does nothing.
+        `is_interruption` states that the mission goes on afterwards. A second call does nothing.
         """
         if self.cancelled is not None:
             return
-        self.cancelled, self.interrupted = reason, interrupted
+        self.cancelled, self.interrupted = reason, is_interruption
         if self._phase in (self._start_driving, self._wait_to_begin):
             self._phase = self._stop
         elif self._phase in (self._brake_unread, self._stow_unread):

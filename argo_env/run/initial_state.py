@@ -76,7 +76,9 @@ def progress_now(machine: Machine, now: float, by_hand: Sequence[ByHand]) -> Pro
     return hand_over(progress, by_hand, max(0.0, now - progress.elapsed))
 
 
-def match_progress(progress: Progress, mission: Mission) -> tuple[Progress, tuple[Diagnostic, ...]]:
+def match_progress_to_edited_mission(
+    progress: Progress, mission: Mission
+) -> tuple[Progress, tuple[Diagnostic, ...]]:
     """Return the progress as one of an edited mission, and diagnostics of what no longer fits.
 
     Raises DiagnosticError if the mission has errors, or can't continue from this progress.

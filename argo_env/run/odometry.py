@@ -103,7 +103,7 @@ class Odometry:
     def add_new_incidents(self, all_incidents: Sequence[Incident], now: float) -> None:
         """Add the incidents of the drive that are new since the last call as mishaps at `now` (s).
 
-        `all_incidents` are all that the drive has recorded, also those of earlier calls.
+        `all_incidents` are all since the robot was placed for this run, also earlier ones.
         """
         for incident in all_incidents[self._incident_count :]:
             pose = incident.pose

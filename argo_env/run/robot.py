@@ -42,7 +42,7 @@ class RobotAction(Protocol):
     def path(self) -> Path | None:
         """Path to the pose of the task, if known."""
 
-    def cancel(self, reason: str, interrupted: bool) -> None:
+    def cancel(self, reason: str, is_interruption: bool) -> None:
         """Cancel the action: it cleans up, and a following step reports its end."""
 
     def detour_if_blocked(self, setup: RunSetup) -> None:

@@ -165,7 +165,7 @@ class SimulationState:
             self.supervision.acting = True
             self._start_action(StartAction(entry.by_hand))
         if entry.stop_by_hand and self.action:
-            self.action.cancel("a person stopped it", interrupted=False)
+            self.action.cancel("a person stopped it", is_interruption=False)
         if closed and self.action:
             self.action.detour_if_blocked(self._vehicle.setup)
 
@@ -183,7 +183,7 @@ class SimulationState:
                 case CancelAction(_, reason):
                     if self.action:
                         interrupted = self.machine.paused or self.machine.reaction is not None
-                        self.action.cancel(reason, interrupted=interrupted)
+                        self.action.cancel(reason, is_interruption=interrupted)
 
     def replay_entry(self, entry: Entry) -> None:
         """Apply an entry of a journal, with the time and the robot's odometry of that entry.
@@ -213,7 +213,7 @@ class SimulationState:
         that was running ends.
         """
         if self.supervision.acting and self.action:
-            self.action.cancel("the process that carried it out died", interrupted=True)
+            self.action.cancel("the process that carried it out died", is_interruption=True)
             self.lost_task_run = self.task_run(ActionStopped(self.action.task.name))
             self.action, self.supervision.acting = None, False
         if arrival_path := find_recent_path(self.log):
@@ -235,7 +235,7 @@ class SimulationState:
         """
         if self.action is None:
             return None
-        self.action.cancel("the run was stopped", interrupted=False)
+        self.action.cancel("the run was stopped", is_interruption=False)
         return self.task_run(ActionStopped(self.action.task.name))
 
     def initial_state(self, progress: Progress) -> InitialState:

@@ -17,7 +17,7 @@ from argo_env.planning.opening import OpenedSite
 from argo_env.planning.start import start_pose
 from argo_env.robot.pose import BodyPose, PoseArray
 from argo_env.run import termination
-from argo_env.run.initial_state import match_progress, progress_now
+from argo_env.run.initial_state import match_progress_to_edited_mission, progress_now
 from argo_env.run.log import Entry, LoggedEvent
 from argo_env.run.machine import Machine, OpenMachine
 from argo_env.run.observer import Observer, overrides
@@ -42,7 +42,7 @@ from argo_env.run.run_commands import (
 from argo_env.run.run_setup import RunSetup, check_spec, make_run_setup
 from argo_env.run.run_state import SimulationState
 from argo_env.run.spec import RunSpec, validate_spec
-from argo_env.run.termination import exhaustion_reason, standstill_reason
+from argo_env.run.termination import reason_run_cannot_continue, standstill_reason
 from argo_env.run.validation import (
     CheckedRun,
     require_initial_state,
@@ -315,7 +315,7 @@ class Simulation(Closing):
         marked = mark_abnormal(site, self._spec.mission, GiveBack(tuple(by_hand)))
         assert isinstance(marked, GiveBack)
         progress = progress_now(self.machine, self.now, marked.by_hand)
-        progress, diagnostics = match_progress(progress, mission)
+        progress, diagnostics = match_progress_to_edited_mission(progress, mission)
         spec = self._spec.model_copy(
             update={
                 "mission": mission,
@@ -378,7 +378,7 @@ class Simulation(Closing):
             return
         if self._state.machine.finished:
             self._end_run(None)
-        elif why := exhaustion_reason(self._state.now, self._vehicle.supply):
+        elif why := reason_run_cannot_continue(self._state.now, self._vehicle.supply):
             self._end_run(why)
 
     def close(self) -> None:

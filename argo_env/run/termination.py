@@ -13,7 +13,7 @@ TIME_LIMIT = 4 * 3600.0  # s of simulated time after which a run is stopped
 SETTLING = 120.0  # s that a robot at a standstill waits for findings of the last fault
 
 
-def exhaustion_reason(now: float, supply: RobotPower) -> str | None:
+def reason_run_cannot_continue(now: float, supply: RobotPower) -> str | None:
     """Return why the run can't continue at time `now` (s), whatever event occurs; None if it can.
 
     The reason is the time limit of a run, or an empty battery.

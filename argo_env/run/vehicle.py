@@ -210,7 +210,7 @@ class Vehicle:
 
     @property
     def can_batch_steps(self) -> bool:
-        """True if steps can be made in batches, because the robot can touch nothing at its pose."""
+        """True if the robot can touch nothing where it is now: steps can be made in batches."""
         drive = self.setup.drive
         return isinstance(drive, Powertrain) and drive.can_batch_steps
 

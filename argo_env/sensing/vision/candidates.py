@@ -93,7 +93,7 @@ def _point_at(photo: Photo, spot: NDArray[np.float64], distance: float) -> NDArr
 def _patch(
     photo: Photo, instrument: Instrument, pose: FacePose, scale: float
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]] | None:
-    """Return the appearance of the face at `pose` in the picture resized by the factor `scale`.
+    """Render the face at `pose` as in the photo resized by the factor `scale` (at most 1).
 
     Returns the brightness and a mask of the pixels that belong to the instrument, or None if the
     face is too thin to be seen. A round face is averaged over all rolls.

@@ -15,7 +15,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from argo_compiler.base.model import Pose
 from argo_env.navigation import Blockage, Navigator, Path
-from argo_env.planning.generated import generate
+from argo_env.planning.generated import generate_navigator
 from argo_env.planning.opening import open_site
 from argo_env.robot.spec import load_robot
 from argo_env.site.family import TEST_SEEDS, Family, parse_family
@@ -156,7 +156,7 @@ def measure_matrices(navigator: Navigator, generated_site: str) -> None:
     )
     print(f"{generated_site}:")
     started = time.process_time()
-    large = generate(parse_family(generated_site))
+    large = generate_navigator(parse_family(generated_site))
     print(f"  generated and checked in {time.process_time() - started:.1f} s; {memory_text()}")
     ids = [c.id for c in large.site.checkpoints]
     print(f"  {large.lattice.size} states, {large.lattice.costs.nnz} moves")

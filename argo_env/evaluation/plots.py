@@ -21,7 +21,7 @@ from argo_env.evaluation.results import (
 from argo_env.evaluation.row import RunOutcome
 from argo_env.formatting import clock
 from argo_env.pictures.drawing.floors import floor_plans
-from argo_env.report.svg import clean, shorten
+from argo_env.report.svg import replace_non_xml_characters, shorten
 from argo_env.seeding import generator
 from argo_env.site import Site
 from argo_env.site.shapes import Role
@@ -110,7 +110,7 @@ def fit_label(name: str, width: float = 1.65) -> str:
     from matplotlib.textpath import TextToPath
 
     font = FontProperties(size=FONT)
-    name = shorten(" ".join(clean(name).split()), 80)
+    name = shorten(" ".join(replace_non_xml_characters(name).split()), 80)
     while len(name) > 1 and (
         TextToPath().get_text_width_height_descent(name, font, False)[0] > 72.0 * width
     ):

@@ -35,7 +35,7 @@ from argo_env.navigation.regions import find_cut_heights, make_partition, repart
 from argo_env.navigation.smoothing import FlatMap, smooth
 from argo_env.navigation.stencil import HEADINGS, heading_angle
 from argo_env.navigation.surface import Surface, find_surface, surface_arrays
-from argo_env.navigation.views import find_views
+from argo_env.navigation.views import find_view_states_and_costs
 from argo_env.robot.spec import RobotSpec
 from argo_env.site import Site
 
@@ -225,8 +225,8 @@ class Navigator:
         """Return the path to the pose from which to read a checkpoint.
 
         It is the pose with the lowest sum of the cost of the path and of the view: oblique and far
-        views cost more (`find_views`). The checkpoint's face is assumed to be turned by `turned`
-        (rad) from its planned heading.
+        views cost more (`find_view_states_and_costs`). The checkpoint's face is assumed to be
+        turned by `turned` (rad) from its planned heading.
 
         Raises:
             Unreachable: There is no such pose, or no path to one.
@@ -383,7 +383,7 @@ class Navigator:
         if key not in self._cached_views:
             planned = self.site.checkpoint(checkpoint_id)
             face = replace(planned, yaw=planned.yaw + turned)
-            self._cached_views[key] = find_views(self.site, face, self.lattice)
+            self._cached_views[key] = find_view_states_and_costs(self.site, face, self.lattice)
         return self._cached_views[key]
 
     def _flat_map(self, z: float) -> FlatMap:
@@ -431,7 +431,7 @@ def nearest_state(lattice: Lattice, pose: Pose) -> int | None:
     Each 45 degrees between its heading and that of the pose count as 5 cm of distance.
     """
     surface = lattice.surface
-    around = surface.cells_near(pose.x, pose.y, SNAP_DISTANCE)
+    around = surface.cells_in_square(pose.x, pose.y, SNAP_DISTANCE)
     x, y = surface.grid.centers(surface.i[around], surface.j[around])
     step = np.hypot(x - pose.x, y - pose.y) + np.abs(surface.z[around] - pose.z)
     near, step = around[step <= SNAP_DISTANCE], step[step <= SNAP_DISTANCE]

@@ -50,7 +50,7 @@ def find_path_within(
         The cost, `extra` included, and the states in the lattice's numbers; None if there is no
         path or it costs more than `max_cost`.
     """
-    bounds = area.landmarks.lower_bounds(source, ends, extra)
+    bounds = area.landmarks.lower_bounds_from_all_states(source, ends, extra)
     if bounds is None:
         bounds = np.zeros(len(area.members))
         limits, towards = [np.inf], area.forward
@@ -95,11 +95,11 @@ class Portals:
     times: NDArray[np.float64]
     before: NDArray[np.int32]
 
-    def entry_rows(self, area: Region) -> NDArray[np.int64]:
+    def indices_of_entries(self, area: Region) -> NDArray[np.int64]:
         """Return the indices in `states` of the region's entries."""
         return np.searchsorted(self.states, area.members[area.entries])
 
-    def exit_rows(self, area: Region) -> NDArray[np.int64]:
+    def indices_of_exits(self, area: Region) -> NDArray[np.int64]:
         """Return the indices in `states` of the region's exits."""
         return np.searchsorted(self.states, area.members[area.exits])
 
@@ -120,7 +120,7 @@ def find_portals(lattice: Lattice, part: Partition) -> Portals:
     states = np.unique(np.concatenate([sources, targets]))
     moves = [(sources, targets, costs, lattice.move_times(costs, sources, targets))]
     for area in part.regions:
-        between, times = entry_costs_and_times(lattice, area, area.exits)
+        between, times = costs_and_times_from_entries(lattice, area, area.exits)
         entry, leave = np.nonzero(
             np.isfinite(between) & (area.entries[:, None] != area.exits[None, :])
         )
@@ -147,7 +147,7 @@ def find_portals(lattice: Lattice, part: Partition) -> Portals:
     return Portals(states, total, times, before)
 
 
-def entry_costs_and_times(
+def costs_and_times_from_entries(
     lattice: Lattice, area: Region, ends: NDArray[np.int64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the costs and times (s) from each entry of a region to each of its states `ends`.
@@ -256,12 +256,12 @@ class PathSearch:
         area = part.regions[here]
         costs = np.full(len(part.region), np.inf)
         inside = shortest_path_trees(area.forward, part.local[[source]])[0][0]
-        exits = portals.exit_rows(area)
+        exits = portals.indices_of_exits(area)
         to_portals = (inside[area.exits][:, None] + portals.costs[exits]).min(
             axis=0, initial=np.inf
         )
         for number, there in enumerate(part.regions):
-            entries = portals.entry_rows(there)
+            entries = portals.indices_of_entries(there)
             over = to_portals[entries][:, None] + there.trees_from_entries[0]
             costs[there.members] = over.min(axis=0, initial=np.inf)
             if number == here:
@@ -269,24 +269,24 @@ class PathSearch:
         return costs
 
     def travel_times(
-        self, states: NDArray[np.int64], rows: int | None = None
+        self, states: NDArray[np.int64], source_count: int | None = None
     ) -> NDArray[np.float64]:
-        """Return the time (s) of the cheapest path between `states`, shape (rows, n).
+        """Return the time (s) of the cheapest path between `states`, shape (source_count, n).
 
-        If `rows` is given, paths start from the first `rows` states only. The time is inf where
-        there is no path.
+        If `source_count` is given, paths start from the first `source_count` states only. The time
+        is inf where there is no path.
         """
         part, portals = self.partition, self._portals
-        rows = len(states) if rows is None else rows
-        result = np.full((rows, len(states)), np.inf)
+        source_count = len(states) if source_count is None else source_count
+        result = np.full((source_count, len(states)), np.inf)
         region, local = part.region[states], part.local[states]
         present = np.unique(region).tolist()
         columns = {r: np.flatnonzero(region == r) for r in present}
         onwards = {
-            r: entry_costs_and_times(self._lattice, part.regions[r], local[columns[r]])
+            r: costs_and_times_from_entries(self._lattice, part.regions[r], local[columns[r]])
             for r in present
         }
-        sources = zip(region[:rows].tolist(), local[:rows].tolist(), strict=True)
+        sources = zip(region[:source_count].tolist(), local[:source_count].tolist(), strict=True)
         for row, (here, source) in enumerate(sources):
             area = part.regions[here]
             tree = shortest_path_trees(area.forward, np.array([source]))
@@ -294,12 +294,12 @@ class PathSearch:
             costs, times = tree[0][0, ends], tree_times(self._lattice, area, tree, ends)[0]
             inside = len(columns[here])
             # To each portal of the site, by the best of the region's exits.
-            exits = portals.exit_rows(area)
+            exits = portals.indices_of_exits(area)
             over = costs[inside:, None] + portals.costs[exits]
             best = over.argmin(axis=0) if len(exits) else np.empty(0, dtype=np.int64)
             every = np.arange(len(portals.states))
             for there in present:
-                entries = portals.entry_rows(part.regions[there])
+                entries = portals.indices_of_entries(part.regions[there])
                 cost = np.full(len(columns[there]), np.inf)
                 time = cost.copy()
                 if len(exits) and len(entries):
@@ -323,7 +323,7 @@ class PathSearch:
         """
         part, portals = self.partition, self._portals
         area, start = part.regions[part.region[source]], int(part.local[source])
-        exits = portals.exit_rows(area)
+        exits = portals.indices_of_exits(area)
         if not len(exits):
             return None
         over = area.trees_to_exits[0][:, start, None] + portals.costs[exits]
@@ -332,7 +332,7 @@ class PathSearch:
         region = part.region[goals[0]]
         for there in np.unique(region).tolist():
             goal_area, chosen = part.regions[there], region == there
-            entries = portals.entry_rows(goal_area)
+            entries = portals.indices_of_entries(goal_area)
             if not len(entries):
                 continue
             ends = part.local[goals[0][chosen]]
@@ -350,7 +350,7 @@ class PathSearch:
         """Return the states of a path over portals."""
         part, portals = self.partition, self._portals
         area = part.regions[part.region[source]]
-        first = int(portals.exit_rows(area)[portal_path.leaving])
+        first = int(portals.indices_of_exits(area)[portal_path.leaving])
         after = area.trees_to_exits[1][portal_path.leaving]
         states = area.members[[*walk_tree(after, int(part.local[source]))]].tolist()
         visited = [*walk_tree(portals.before[first], portal_path.last)][::-1]

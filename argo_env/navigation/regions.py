@@ -52,8 +52,8 @@ class Landmarks:
     name: str = ""
     """name of the part of the disk cache that has the costs from and to the landmarks"""
 
-    def lower_bounds(
-        self, source: int, ends: NDArray[np.int64], extra: NDArray[np.float64]
+    def lower_bounds_from_all_states(
+        self, source: int, ends: NDArray[np.int64], end_costs: NDArray[np.float64]
     ) -> NDArray[np.float64] | None:
         """Return for each state a lower bound (s) on the cost to reach one of `ends`.
 
@@ -63,7 +63,7 @@ class Landmarks:
         Args:
             source: State from which the search starts.
             ends: States to reach.
-            extra: Additional cost (s) of each of `ends`.
+            end_costs: Additional cost (s) of each of `ends`.
 
         Returns:
             Bounds of shape (n,), or None for a small graph.
@@ -72,8 +72,8 @@ class Landmarks:
             return None
         onto, away = self._distances
         # Costs from the goals on to each landmark, and from each landmark to the goals.
-        behind = (onto[:, ends] - extra).max(axis=1).astype(np.float32)
-        before = (away[:, ends] + extra).min(axis=1).astype(np.float32)
+        behind = (onto[:, ends] - end_costs).max(axis=1).astype(np.float32)
+        before = (away[:, ends] + end_costs).min(axis=1).astype(np.float32)
         with np.errstate(invalid="ignore"):
             worth = np.concatenate([onto[:, source] - behind, before - away[:, source]])
         usable = np.isfinite(np.concatenate([behind, before]))

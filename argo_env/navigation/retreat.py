@@ -82,19 +82,20 @@ def _opposite_pose(pose: Pose) -> Pose:
     return pose.model_copy(update={"yaw": wrap(pose.yaw + math.pi)})
 
 
-def path_back(path: Path, pose: Pose, length: float) -> Path:
-    """Return the path back along `path` from its pose nearest to `pose`, for at most `length` m.
+def path_back(driven_path: Path, pose: Pose, length: float) -> Path:
+    """Return the path back along `driven_path` from its pose nearest to `pose`.
 
-    The motions are those of `path` in reverse, so what was driven forwards is driven backwards. It
-    is shorter if the start of `path` is nearer, and without motions if it is there.
+    It is at most `length` m long. The motions are those of `driven_path` in reverse, so what was
+    driven forwards is driven backwards. It is shorter if the start of `driven_path` is nearer, and
+    without motions if it is there.
     """
-    if not path.motions:
+    if not driven_path.motions:
         return Path(pose, ())
-    index, share = _nearest_point_on(path, pose)
+    index, share = _nearest_point_on(driven_path, pose)
     motions: list[Motion] = []
     left = length
     for k in range(index, -1, -1):
-        motion = path.motions[k]
+        motion = driven_path.motions[k]
         done = share if k == index else 1.0
         back = min(done, left / motion.length) if motion.length else done
         if back > 0.0:

@@ -92,26 +92,26 @@ class FlatMap:
         near = self._beside_free | np.pad(self.rims, 2)
         return np.where(np.pad(self.free, 2), _distances(near), 0.0)
 
-    def classify_drives(
-        self, a: NDArray[np.float64], ends: NDArray[np.float64], footprint: Footprint
+    def surely_clear_and_surely_blocked(
+        self, start: NDArray[np.float64], ends: NDArray[np.float64], footprint: Footprint
     ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
         """Return masks of the drives that are certainly clear, and certainly blocked.
 
         The distance to the border along a drive decides; the other drives need `is_drive_clear`.
 
         Args:
-            a: Start x, y (m) of all drives, shape (2,).
+            start: Start x, y (m) of all drives, shape (2,).
             ends: End x, y (m) of each drive, shape (n, 2).
             footprint: Footprint of the robot.
 
         Returns:
             Two masks of shape (n,).
         """
-        away = ends - a
+        away = ends - start
         longest = float(np.hypot(away[:, 0], away[:, 1]).max(initial=0.0))
         shares = np.arange(2 + int(longest / CELL)) / (1 + int(longest / CELL))
-        i = ((a[0] - self.grid.x0 + away[:, :1] * shares) / CELL).astype(np.int64) + 2
-        j = ((a[1] - self.grid.y0 + away[:, 1:] * shares) / CELL).astype(np.int64) + 2
+        i = ((start[0] - self.grid.x0 + away[:, :1] * shares) / CELL).astype(np.int64) + 2
+        j = ((start[1] - self.grid.y0 + away[:, 1:] * shares) / CELL).astype(np.int64) + 2
         room = self._border_distance[i, j].min(axis=1)
         outer = footprint.radius + MARGIN
         return room > outer + 2 * _ASIDE + CELL / 2, room < _inner_radius(footprint) - _ASIDE
@@ -208,7 +208,9 @@ def _shorten(
     while at < len(poses) - 1:
         to, motions = at + 1, pieces[at]
         worth = at + 2 + np.flatnonzero(saved[at, at + 2 :] > 1e-9)[::-1]
-        clear, blocked = cells.classify_drives(table[at, :2], table[worth, :2], robot.footprint)
+        clear, blocked = cells.surely_clear_and_surely_blocked(
+            table[at, :2], table[worth, :2], robot.footprint
+        )
         for further, sure in zip(worth[~blocked].tolist(), clear[~blocked].tolist(), strict=True):
             # The drive is checked first, as it is blocked most often.
             if not sure and not cells.is_drive_clear(poses[at], poses[further], robot.footprint):

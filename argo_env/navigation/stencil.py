@@ -32,18 +32,20 @@ class Stencil:
     parent: tuple[int, ...]
     step: tuple[int, ...]
 
-    def surface_heights(self, surface: Surface, middle: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Return the heights (m) of the surface at all offsets from each of the cells `middle`.
+    def surface_heights(
+        self, surface: Surface, middle_cells: NDArray[np.int64]
+    ) -> NDArray[np.float64]:
+        """Return the heights (m) of the surface at all offsets from each of `middle_cells`.
 
-        The shape is (len(offsets), len(middle)); nan where the surface does not continue.
+        The shape is (len(offsets), len(middle_cells)); nan where the surface does not continue.
         """
         # An extra cell stands for "nowhere": its height is nan, and all its links lead to itself.
         nowhere = surface.size
         links = np.vstack([surface.links, np.full((1, len(DIRECTIONS)), nowhere)])
         links = np.ascontiguousarray(np.where(links < 0, nowhere, links).T)
         z = np.append(surface.z, np.nan)
-        cells = np.empty((len(self.offsets), len(middle)), dtype=np.int64)
-        cells[0] = middle
+        cells = np.empty((len(self.offsets), len(middle_cells)), dtype=np.int64)
+        cells[0] = middle_cells
         for k in range(1, len(self.offsets)):
             np.take(links[self.step[k]], cells[self.parent[k]], out=cells[k])
         return z[cells]
@@ -133,7 +135,7 @@ def touches_rectangles(
     )
 
 
-def offsets_in_reach(footprint: Footprint, margin: float) -> NDArray[np.int64]:
+def axis_offsets_in_reach(footprint: Footprint, margin: float) -> NDArray[np.int64]:
     """Return the offsets, from -k to k cells, that include all cells a robot at 0 may touch.
 
     They hold along both axes and for all headings. `margin` (m) is added on all sides.
@@ -148,7 +150,7 @@ def covered_cells(footprint: Footprint, yaw: float, margin: float) -> set[tuple[
     The robot is at the centre of its cell with heading `yaw` (rad). `margin` (m) is added on all
     sides.
     """
-    around = offsets_in_reach(footprint, margin)
+    around = axis_offsets_in_reach(footprint, margin)
     i, j = np.meshgrid(around, around, indexing="ij")
     x, y = i.astype(np.float64) * CELL, j.astype(np.float64) * CELL
     touched = overlaps_cells(footprint, margin, yaw, x, y)

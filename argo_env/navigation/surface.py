@@ -52,17 +52,17 @@ class Surface:
     def _columns(self) -> NDArray[np.int64]:
         return self.i * self.grid.ny + self.j
 
-    def cells_near(self, x: float, y: float, distance: float) -> NDArray[np.int64]:
+    def cells_in_square(self, x: float, y: float, half_side: float) -> NDArray[np.int64]:
         """Return the numbers of the surface's cells in a square about (x, y), ascending.
 
-        The sides of the square are `distance` (m) away from (x, y); cells at all heights count.
+        The sides of the square are `half_side` (m) away from (x, y); cells at all heights count.
         """
         # Poses may be anywhere, even at coordinates that exceed the size of any array.
         i0, i1 = (
-            _floor_within_limits((x + d - self.grid.x0) / CELL) for d in (-distance, distance)
+            _floor_within_limits((x + d - self.grid.x0) / CELL) for d in (-half_side, half_side)
         )
         j0, j1 = (
-            _floor_within_limits((y + d - self.grid.y0) / CELL) for d in (-distance, distance)
+            _floor_within_limits((y + d - self.grid.y0) / CELL) for d in (-half_side, half_side)
         )
         low, high = (min(max(i, 0), self.grid.nx) for i in (i0, i1 + 1))
         rows = np.arange(low, high) * self.grid.ny

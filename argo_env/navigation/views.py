@@ -37,7 +37,7 @@ def camera_positions(poses: NDArray[np.float64], robot: RobotSpec) -> NDArray[np
     return np.column_stack([poses[:, :2] + shift, poses[:, 2] + up])
 
 
-def find_views(
+def find_view_states_and_costs(
     site: Site, checkpoint: SiteCheckpoint, lattice: Lattice
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Return the states from which the checkpoint can be read, and the cost of each view in s.
@@ -74,7 +74,7 @@ def candidate_views(checkpoint: SiteCheckpoint, lattice: Lattice) -> CandidateVi
     """
     sensor, target = lattice.robot.sensor, sight_target(checkpoint)
     reach = sensor.max_range + math.hypot(*sensor.offset[:2])
-    states = lattice.state_of[lattice.surface.cells_near(target[0], target[1], reach)]
+    states = lattice.state_of[lattice.surface.cells_in_square(target[0], target[1], reach)]
     states = states[states >= 0]
     states = states[np.abs(lattice.rise[states]) <= LEVEL]
     cameras = camera_positions(lattice.state_poses(states), lattice.robot)

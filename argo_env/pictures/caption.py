@@ -25,10 +25,10 @@ def add_caption(frame: Image.Image, record: RunRecord, t: float, floor: int) -> 
 
     `floor` is the number of the floor that the robot is on.
     """
-    return add_bar(frame, *_caption_texts(record, t, floor))
+    return add_bottom_bar(frame, *_caption_texts(record, t, floor))
 
 
-def add_bar(frame: Image.Image, left: Sequence[Text], right: Sequence[Text]) -> Image.Image:
+def add_bottom_bar(frame: Image.Image, left: Sequence[Text], right: Sequence[Text]) -> Image.Image:
     """Return a copy of the RGB frame with a bar at its bottom that has texts at both ends."""
     width, height = frame.size
     bar = Image.new("RGBA", (width, round(height * HEIGHT)), _BAR)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from argo_env.pictures.camera import Camera
-from argo_env.pictures.caption import BRIGHT, DIM, HEIGHT, add_bar
+from argo_env.pictures.caption import BRIGHT, DIM, HEIGHT, add_bottom_bar
 from argo_env.pictures.scene import CameraView
 
 GOAL = (251, 191, 36)
@@ -46,7 +46,7 @@ def draw_drive(
     )
     left = [(f"{time:.1f} s", BRIGHT), (f"floor {here}", DIM)]
     right = [(remaining, BRIGHT), (f"floor {there}", DIM)]
-    return np.asarray(add_bar(frame, left, right), dtype=np.uint8)
+    return np.asarray(add_bottom_bar(frame, left, right), dtype=np.uint8)
 
 
 def _mark(

@@ -54,7 +54,7 @@ class LitView:
     """mask of the view's pixels in the shadow, shape (height, width)"""
 
 
-def site_view(site: Site, robot: RobotSpec, camera: Camera, sun: Camera) -> LitView:
+def view_without_robot(site: Site, robot: RobotSpec, camera: Camera, sun: Camera) -> LitView:
     """Return the view of the site without the robot, from the cache if it was rendered before."""
     key = (_digest_of_code(), repr(site.elements), repr(site.checkpoints), repr((camera, sun)))
 
@@ -149,7 +149,7 @@ def write_overview(record: RunRecord, site: Site, robot: RobotSpec, file: Path) 
     motion = RecordedMotion(record, robot)
     camera = site_camera(site, (SIZE[0] * _FINER, SIZE[1] * _FINER))
     sun = sun_camera(site, _SHADOW_MAP)
-    site_only = site_view(site, robot, camera, sun)
+    site_only = view_without_robot(site, robot, camera, sun)
     with Scene(None, robot) as scene:
         scene.place_robot(motion.pose_at(motion.end_time), motion.joints_at(motion.end_time))
         lit = add_robot(site_only, scene, camera, sun)

@@ -36,7 +36,12 @@ from argo_env.pictures.drawing.sheet import (
     font,
     make_sheet,
 )
-from argo_env.pictures.drawing.style import draw_disc, draw_headline, paint_disc, paint_station
+from argo_env.pictures.drawing.style import (
+    draw_disc,
+    draw_headline,
+    paint_checkpoint,
+    paint_station,
+)
 from argo_env.planning.travel import SiteTravel
 from argo_env.report.track import colour
 from argo_env.site import Site
@@ -177,7 +182,7 @@ def _draw_floor(
     thin, bold = path_lines(sheet, old), path_lines(sheet, new)
     draw_thin_lines(draw, thin, _OLD)
     for line in bold:
-        labels.avoid_path(line.points)
+        labels.avoid_path_if_possible(line.points)
     draw_lines(draw, bold)
     number_of = {visit: k + 1 for k, visit in enumerate(route.order)}
     for x, y, own_floor, _ in stations:
@@ -188,7 +193,7 @@ def _draw_floor(
             draw.line([true, position], fill=INK, width=2 * FINER)
             draw_disc(draw, true, 3.0 * FINER, INK)
         state = "open" if visit in number_of else "closed"
-        paint_disc(draw, position, _RADIUS, state, str(number_of.get(visit, "")))
+        paint_checkpoint(draw, position, _RADIUS, state, str(number_of.get(visit, "")))
     for visit, _, position in marks:
         draw_plate(draw, labels, position, planned.visits.names[visit], floor)
     for x, y, own_floor, name in stations:
@@ -243,8 +248,8 @@ def _draw_legend(draw: ImageDraw.ImageDraw, old: bool, new: bool, dropped: bool)
     if old:
         draw.line((x, y, x + 30 * FINER, y), fill=_OLD, width=round(1.5 * FINER))
         x = draw_entry("as written", x + 36 * FINER)
-    paint_disc(draw, (x + 8 * FINER, y), 8.0, "open", "3")
+    paint_checkpoint(draw, (x + 8 * FINER, y), 8.0, "open", "3")
     x = draw_entry("position in the order", x + 21 * FINER)
     if dropped:
-        paint_disc(draw, (x + 8 * FINER, y), 8.0, "closed", "")
+        paint_checkpoint(draw, (x + 8 * FINER, y), 8.0, "closed", "")
         draw_entry("left out", x + 21 * FINER)

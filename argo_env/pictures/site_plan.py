@@ -25,7 +25,12 @@ from argo_env.pictures.drawing.sheet import (
     font,
     make_sheet,
 )
-from argo_env.pictures.drawing.style import STYLES, draw_headline, draw_length_scale, paint_disc
+from argo_env.pictures.drawing.style import (
+    STYLES,
+    draw_headline,
+    draw_length_scale,
+    paint_checkpoint,
+)
 from argo_env.planning.flaws import Flaw, SafeStates
 from argo_env.site import Site
 
@@ -52,7 +57,7 @@ def draw_site_plan(
     """
     sheet = make_sheet(floor_plans(site))
     image = sheet.image.copy()
-    shaded = safe_states is not None and safe_states.first_dock is not None
+    shaded = safe_states is not None and safe_states.lowest_usable_dock is not None
     if safe_states is not None and shaded:
         for number in sheet.panels:
             _shade(image, sheet, number, safe_states)
@@ -163,7 +168,7 @@ def _draw_marks(
         if position != true:
             draw.line([true, position], fill=STYLES["open"].rim, width=FINER)
         _draw_face(draw, true, checkpoint.yaw)
-        paint_disc(draw, position, _RADIUS, "open", str(checkpoint.id))
+        paint_checkpoint(draw, position, _RADIUS, "open", str(checkpoint.id))
     named += _stairs(sheet, site)
     for position, floor, name in named:
         draw_plate(draw, labels, position, name, floor)
@@ -233,7 +238,7 @@ def _draw_legend(
         x += 2 * r + draw.textlength(text, font=face) + 16 * FINER
 
     _draw_face(draw, (x + r / 2, y), 0.0)
-    paint_disc(draw, (x + r / 2, y), 7.0, "open", "3")
+    paint_checkpoint(draw, (x + r / 2, y), 7.0, "open", "3")
     x += r
     draw_entry("checkpoint, and where it looks")
     draw.rectangle((x, y - r + FINER, x + 2 * r - 2 * FINER, y + r - FINER), fill=INK)

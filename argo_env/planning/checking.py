@@ -3,7 +3,7 @@
 from argo_compiler.base.errors import ArgoError
 from argo_compiler.base.stages import stage_items
 from argo_env.navigation.navigator import Navigator
-from argo_env.planning.patrols import patrol
+from argo_env.planning.patrols import require_patrol
 
 
 def unpatrolled_floors(navigator: Navigator) -> list[int]:
@@ -17,7 +17,7 @@ def unpatrolled_floors(navigator: Navigator) -> list[int]:
 
 def _has_patrol(navigator: Navigator, floor: int) -> bool:
     try:
-        patrol(navigator, floor)
+        require_patrol(navigator, floor)
     except ArgoError:
         return False
     return True

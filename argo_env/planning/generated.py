@@ -12,7 +12,7 @@ _LAYOUTS = 5  # maximum number of layouts that are drawn
 _ROUNDS = 8  # maximum number of times that unreadable checkpoints are moved, for each layout
 
 
-def generate(family: Family, robot: RobotSpec | None = None) -> Navigator:
+def generate_navigator(family: Family, robot: RobotSpec | None = None) -> Navigator:
     """Generate the site that a family's parameters define, and return its navigator.
 
     The robot can get from every docking station to every floor and to a viewing pose of every

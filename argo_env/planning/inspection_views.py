@@ -6,7 +6,9 @@ from argo_compiler.isar import InspectionView
 from argo_env.navigation import Navigator
 
 
-def inspection_views(mission: Mission, navigator: Navigator) -> dict[str, InspectionView]:
+def inspection_views_by_object_id(
+    mission: Mission, navigator: Navigator
+) -> dict[str, InspectionView]:
     """Return the viewing pose for each checkpoint that a mission measures, by its `object_id`.
 
     They are the poses of a robot that executes the tasks in the order of the list and chooses by

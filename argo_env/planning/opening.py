@@ -19,7 +19,7 @@ from argo_env.files import cache
 from argo_env.files.parts import NO_CACHE, Parts
 from argo_env.planning.catalog import load_catalog, make_catalog
 from argo_env.planning.code import code_digest
-from argo_env.robot.spec import RobotSpec, load_robot, validate_robot
+from argo_env.robot.spec import RobotSpec, load_robot, revalidated_robot
 from argo_env.site import Site, make_site
 from argo_env.site.family import Family, is_generated_name, parse_family
 from argo_env.site.site import site_file
@@ -162,7 +162,7 @@ def open_site(reference: str = "umad", robot: RobotSpec | None = None) -> Opened
     """
     if not isinstance(reference, str):
         raise Invalid(f"{reference!r} is not text: a site is opened by its name or its file's path")
-    robot = validate_robot(robot) if robot else load_robot()
+    robot = revalidated_robot(robot) if robot else load_robot()
     if is_generated_name(reference):
         family = parse_family(reference)
         if parse_family(str(family)) == family:  # the text may have too few digits
@@ -249,9 +249,9 @@ def _open_new(
 
 
 def _generate(family: Family, robot: RobotSpec) -> "Navigator":
-    from argo_env.planning.generated import generate
+    from argo_env.planning.generated import generate_navigator
 
-    return generate(family, robot)
+    return generate_navigator(family, robot)
 
 
 def _open_again(reference: str, robot: RobotSpec, digest: str) -> OpenedSite:

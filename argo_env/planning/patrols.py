@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 MIN_SPACING = 2.0  # m, minimum distance between two poses of a patrol
 
 
-def patrol(navigator: "Navigator", floor: int) -> tuple[Pose, ...]:
+def require_patrol(navigator: "Navigator", floor: int) -> tuple[Pose, ...]:
     """Return the poses of a floor's patrol, from the disk cache or computed and stored there.
 
     They are at the positions of `patrol_corners`, counter-clockwise from the south-west, and each

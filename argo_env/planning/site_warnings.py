@@ -62,7 +62,7 @@ def _find_obstruction(task: Task, pose: Pose, navigator: "Navigator") -> str | N
     return None
 
 
-def speed_warnings(mission: Mission, robot: "RobotSpec") -> Iterator[Diagnostic]:
+def above_own_speed_warnings(mission: Mission, robot: "RobotSpec") -> Iterator[Diagnostic]:
     """Yield a warning for each task whose velocity is above the robot's own speed.
 
     The robot's own speed is the one with which travel times are computed for tasks without a

@@ -55,12 +55,12 @@ class BestEffortRecorder(Observer):
     def on_end(self, record: RunRecord) -> None:
         self._try(lambda: self._recorder.on_end(record))
 
-    def close(self) -> None:
+    def complete_recording(self) -> None:
         """Complete the recording: write what is pending, and the index; do not close the file.
 
         If it can't be written, no error is raised: a warning is given, and `loss` has the reason.
         """
-        self._try(self._recorder.close)
+        self._try(self._recorder.complete_recording)
 
     def _try(self, write: Callable[[], None]) -> None:
         """Call the function, unless the recording has ended; end the recording if it fails."""
@@ -69,10 +69,10 @@ class BestEffortRecorder(Observer):
         try:
             write()
         except UnwritableRecording as error:
-            until = self._recorder.until
+            until = self._recorder.readable_until
             end = "it has nothing of the run" if until is None else f"it ends at {until:g} s"
             self.loss = f"{end}: {error.reason}"
-            self._recorder.stop_recording()
+            self._recorder.discard_pending_and_further_pictures()
             self._warn(f"{error}; {end}, and the run continues without it")
 
 
@@ -126,4 +126,4 @@ def recording_to(
         try:
             yield recorder
         finally:
-            recorder.close()
+            recorder.complete_recording()

@@ -37,10 +37,10 @@ class LiveWriter(TopicWriter):
         self._lock = Lock()
         self._last: dict[int, tuple[foxglove.Channel, bytes, int]] = {}
 
-    def resend_last(self, channel: int) -> None:
+    def resend_last(self, channel_id: int) -> None:
         """Send the last message of a channel again, for a new subscriber."""
         with self._lock:
-            last = self._last.get(channel)
+            last = self._last.get(channel_id)
         if last is not None:
             last[0].log(last[1], log_time=last[2])
 

@@ -62,7 +62,7 @@ class MotionTopics:
         for name in self._names:
             self._joints.joints.add(name=name)
 
-    def write_static(self, t: float) -> None:
+    def write_fixed_transforms(self, t: float) -> None:
         """Write the transforms of the fixed joints, at the time t (s)."""
         static = FrameTransforms(
             transforms=[_transform(joint, *joint.child_pose(0.0)) for joint in self._fixed]

@@ -81,25 +81,27 @@ def read_data_section(content: ContentStream) -> "Iterator[McapRecord]":
                 yield record
 
 
-def has_intact_end(content: bytes, start: int) -> bool:
-    """Return True if the content from byte `start` on is just an index and footer, both intact."""
+def has_intact_end(content: bytes, index_start: int) -> bool:
+    """Return True if the content from byte `index_start` on is just an intact index and footer."""
     position = len(content) - len(MAGIC) - _FOOTER.size
-    if position < start or not content.endswith(MAGIC):
+    if position < index_start or not content.endswith(MAGIC):
         return False
     opcode, _, index, _, checksum = _FOOTER.unpack_from(content, position)
-    summed = content[start : -len(MAGIC) - 4]
-    return bool(opcode == _FOOTER_OPCODE and index == start and zlib.crc32(summed) == checksum)
+    summed = content[index_start : -len(MAGIC) - 4]
+    return bool(
+        opcode == _FOOTER_OPCODE and index == index_start and zlib.crc32(summed) == checksum
+    )
 
 
-def count_trailing_bytes(content: bytes, start: int) -> int | None:
-    """Return the number of bytes after the intact end of a file whose index begins at byte `start`.
+def count_bytes_after_end(content: bytes, index_start: int) -> int | None:
+    """Return the number of bytes after the intact end of a file.
 
-    None means that the content has no intact end.
+    The file's index begins at byte `index_start`. None means that the content has no intact end.
     """
-    position = start
+    position = index_start
     while (position := content.find(MAGIC, position)) >= 0:
         position += len(MAGIC)
-        if has_intact_end(content[:position], start):
+        if has_intact_end(content[:position], index_start):
             return len(content) - position
     return None
 
@@ -155,14 +157,15 @@ class Recording:
         """Return the run's record; raise ArgoError if the recording has none."""
         if self.record is None:
             raise Invalid(
-                f"{self.name} has no record of the run, which is written at its end: {self.loss}. "
+                f"{self.name} has no record of the run, which is written at its end: "
+                f"{self.missing_record_reason}. "
                 "No report and no film can be made of it; what is there can be shown",
                 remedies=(Remedy.SHOW_REST,),
             )
         return self.record
 
     @property
-    def loss(self) -> str:
+    def missing_record_reason(self) -> str:
         """Reason why the record is missing, in words; meaningless if `record` is not None."""
         if self.flaw is None:
             return f"the run broke off after {self.until:g} s"
@@ -271,7 +274,7 @@ def _read_parts(name: str, content: bytes, parts: _Parts) -> str | None:
         return f"is damaged {until} {why}, and has no end"
     if has_intact_end(content, stream.tell()):
         return None
-    extra = count_trailing_bytes(content, stream.tell())
+    extra = count_bytes_after_end(content, stream.tell())
     if extra is None:
         return "has a missing or damaged index"
     return f"has {extra} more byte{'s' if extra > 1 else ''} after its end"

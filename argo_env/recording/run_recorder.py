@@ -163,7 +163,7 @@ class RunRecorder(Observer):
         self._writer.put("/robot", scene.robot_scene(model, 0.0), 0.0)
         self._draw_checkpoints(0.0)
         self._motion = MotionTopics(self._writer, model, _joint_positions(setup))
-        self._motion.write_static(0.0)
+        self._motion.write_fixed_transforms(0.0)
         if isinstance(setup.world, World):
             # Pictures are written at the end of the step in which they are taken.
             setup.world.on_shot = self._shots.append
@@ -236,16 +236,16 @@ class RunRecorder(Observer):
         self._log(str(headline), _LEVELS[headline.tone], "verdict", now)
         self._writer.attach("record.json", "application/json", to_json(record), now)
 
-    def close(self) -> None:
+    def complete_recording(self) -> None:
         """Complete the recording: the writer writes what is pending and, in a file, the index."""
-        self._writer.close()
+        self._writer.complete_recording()
 
     @property
-    def until(self) -> float | None:
+    def readable_until(self) -> float | None:
         """Time in s up to which all stays readable if the process dies; None: nothing does."""
-        return self._writer.until if self._begun else None
+        return self._writer.readable_until if self._begun else None
 
-    def stop_recording(self) -> None:
+    def discard_pending_and_further_pictures(self) -> None:
         """Discard the pictures that are not written yet, and receive no more from the world."""
         self._shots.clear()
         if self._setup is not None and isinstance(self._setup.world, World):

@@ -23,7 +23,7 @@ class TopicWriter:
     It holds the channels of the topics. Subclasses decide what they store besides, and when.
     """
 
-    until: float | None = None
+    readable_until: float | None = None
     """time in s up to which all messages stay readable if the process dies; None: none does"""
 
     def __init__(self) -> None:
@@ -57,7 +57,7 @@ class TopicWriter:
     def flush(self, t: float) -> None:
         """Store all messages; t (s) is the present time. Without an override, do nothing."""
 
-    def close(self) -> None:
+    def complete_recording(self) -> None:
         """Write what is pending and completes the recording; do nothing without an override."""
 
     @abstractmethod

@@ -62,7 +62,7 @@ class RecordingWriter(TopicWriter):
         self._writer.flush()  # type: ignore[no-untyped-call]
         self._mark_intact()
 
-    def close(self) -> None:
+    def complete_recording(self) -> None:
         """Write the index, which completes the file."""
         self.flush(self._latest)
         self._writer.finish()  # type: ignore[no-untyped-call]
@@ -83,7 +83,7 @@ class RecordingWriter(TopicWriter):
             self._mark_intact()
 
     def _mark_intact(self) -> None:
-        self.until = self._latest
+        self.readable_until = self._latest
         self._stream.mark_intact()
 
 

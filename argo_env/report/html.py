@@ -14,13 +14,13 @@ from argo_env.formatting import clock
 from argo_env.report.machine import draw_machine, is_drawable
 from argo_env.report.plan import draw_floor, draw_side_view, visited_floors
 from argo_env.report.rounds import (
+    all_waits,
     blocks_by_group,
     merge_waits,
     repeat_rules,
-    rounds_with_readings,
-    waits,
+    timed_and_conditional_rounds,
 )
-from argo_env.report.svg import Node, clean, drawing, markup, node
+from argo_env.report.svg import Node, drawing, markup, node, replace_non_xml_characters
 from argo_env.report.timeline import draw_charge_curve, draw_timeline, lacks_measuring_times
 from argo_env.report.track import colour
 from argo_env.run.record import Anomaly, Reading, RunRecord
@@ -34,7 +34,7 @@ def page(record: RunRecord, site: Site) -> str:
     """Return the whole report as one HTML page that needs no other file."""
     floors = visited_floors(record)
     task_blocks = blocks_by_group(record)
-    idle_times = waits(record)
+    idle_times = all_waits(record)
     others = [str(f.number) for f in site.spec.floors if f.number not in floors]
     return _template().render(
         style=_style(),
@@ -48,7 +48,7 @@ def page(record: RunRecord, site: Site) -> str:
         readings=[(reading, markup(_bar(reading))) for reading in record.readings],
         timeline=markup(draw_timeline(record)) if record.tasks or record.waits else None,
         waits=idle_times,
-        rounds=rounds_with_readings(record),
+        rounds=timed_and_conditional_rounds(record),
         rules=repeat_rules(record),
         charge=None if (curve := draw_charge_curve(record)) is None else markup(curve),
         plans=[(n, markup(draw_floor(site, record, n))) for n in floors],
@@ -80,7 +80,7 @@ def _template() -> Template:
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
-        finalize=lambda value: clean(value) if type(value) is str else value,
+        finalize=lambda value: replace_non_xml_characters(value) if type(value) is str else value,
     )
     environment.filters["clock"] = clock
     text = Path(__file__).with_name("report.html.j2").read_text(encoding="utf-8")

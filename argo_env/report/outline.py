@@ -53,7 +53,7 @@ def height_range(solid: Solid) -> tuple[float, float]:
     return solid.center[2] - half, solid.center[2] + half
 
 
-def solids_on_floor(element: Element, z: float, storey: float) -> tuple[Solid, ...]:
+def solids_shown_on_floor(element: Element, z: float, storey: float) -> tuple[Solid, ...]:
     """Return the solids of the element that a plan of the floor at height `z` (m) shows.
 
     Decks and the ground are shown on the floor whose height range contains their top: from 0.2 m

@@ -6,10 +6,16 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from argo_compiler.il import EventKind
-from argo_env.report.outline import DRAWING_ORDER, Point, height_range, outline, solids_on_floor
+from argo_env.report.outline import (
+    DRAWING_ORDER,
+    Point,
+    height_range,
+    outline,
+    solids_shown_on_floor,
+)
 from argo_env.report.svg import Node, drawing, node, polyline
 from argo_env.report.timeline import draw_finding
-from argo_env.report.track import draw_arrow_heads, draw_flag, draw_track, stretches
+from argo_env.report.track import draw_arrow_heads, draw_letter_mark, draw_track, stretches
 from argo_env.run.record import PathSample, RunRecord
 from argo_env.site import Site, SiteCheckpoint
 from argo_env.site.shapes import Element, Role, Solid
@@ -52,7 +58,7 @@ class Canvas:
         )
         return node("path", d="".join(shapes), class_=f"site-{role}")
 
-    def draw_elements(
+    def draw_in_drawing_order(
         self, shown: Iterable[tuple[Role, tuple[Solid, ...]]], axes: tuple[int, int]
     ) -> list[Node]:
         """Draw all solids, given with their roles: one path for each role, by `DRAWING_ORDER`."""
@@ -122,7 +128,7 @@ def draw_floor(site: Site, record: RunRecord, number: int) -> Node:
     Start and end of the path, contacts and findings are marked.
     """
     floor_z = next(f.z for f in site.spec.floors if f.number == number)
-    shown = [(e.role, solids_on_floor(e, floor_z, site.spec.storey)) for e in site.elements]
+    shown = [(e.role, solids_shown_on_floor(e, floor_z, site.spec.storey)) for e in site.elements]
     parts = stretches(record.path, number)
     corners = [p for _, solids in shown for s in solids for p in outline(s, (0, 1))]
     corners += [(s.x, s.y) for part in parts for s in part]
@@ -143,7 +149,7 @@ def draw_floor(site: Site, record: RunRecord, number: int) -> Node:
         canvas.height,
         f"Plan of floor {number} with the driven path",
         *canvas.draw_axes(("x", "y")),
-        *canvas.draw_elements(shown, (0, 1)),
+        *canvas.draw_in_drawing_order(shown, (0, 1)),
         *_path(canvas, parts, record),
         *marks,
         *contacts,
@@ -169,11 +175,11 @@ def _flags(canvas: Canvas, parts: list[list[PathSample]], record: RunRecord) -> 
     first, last = record.path[0], record.path[-1]
     flags = []
     if parts and parts[0][0] is first:
-        flags.append(draw_flag(canvas.to_pixels(first.x, first.y), "S", "start"))
+        flags.append(draw_letter_mark(canvas.to_pixels(first.x, first.y), "S", "start"))
     if parts and parts[-1][-1] is last:
         x, y = canvas.to_pixels(last.x, last.y)
         near = flags and math.dist((first.x, first.y), (last.x, last.y)) < 0.4
-        flags.append(draw_flag((x + (20 if near else 0), y), "E", "end"))
+        flags.append(draw_letter_mark((x + (20 if near else 0), y), "E", "end"))
     return flags
 
 
@@ -246,14 +252,14 @@ def draw_side_view(site: Site, record: RunRecord) -> Node:
         first, last = record.path[0], record.path[-1]
         end_at = canvas.to_pixels(last.x, last.z)
         near = abs(first.x - last.x) < 0.5 and abs(first.z - last.z) < 0.5
-        drawn.append(draw_flag(canvas.to_pixels(first.x, first.z), "S", "start"))
-        drawn.append(draw_flag((end_at[0] + (20 if near else 0), end_at[1]), "E", "end"))
+        drawn.append(draw_letter_mark(canvas.to_pixels(first.x, first.z), "S", "start"))
+        drawn.append(draw_letter_mark((end_at[0] + (20 if near else 0), end_at[1]), "E", "end"))
     return drawing(
         canvas.width,
         canvas.height,
         "Side view from the south with the driven path",
         *canvas.draw_axes(("x", "z")),
-        *canvas.draw_elements(shown, (0, 2)),
+        *canvas.draw_in_drawing_order(shown, (0, 2)),
         *labels,
         *drawn,
         canvas.draw_scale_bar(),

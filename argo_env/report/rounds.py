@@ -30,7 +30,7 @@ class Wait:
     """end of the wait, in words"""
 
 
-def waits(record: RunRecord) -> tuple[Wait, ...]:
+def all_waits(record: RunRecord) -> tuple[Wait, ...]:
     """Return all waits of a run, sorted by their start.
 
     They are those of WAIT tasks, those for time windows and rounds, and those in pauses and
@@ -183,7 +183,7 @@ def merge_waits(
     return tuple(result)
 
 
-def rounds_with_readings(record: RunRecord) -> list[tuple[RoundRun, str]]:
+def timed_and_conditional_rounds(record: RunRecord) -> list[tuple[RoundRun, str]]:
     """Return the rounds with a due time or an end condition, each with a text of the known values.
 
     The text has the last value up to the end of the round for each checkpoint in the condition that

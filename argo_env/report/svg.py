@@ -27,8 +27,10 @@ def node(
     element = ElementTree.Element(tag)
     for name, value in attributes.items():
         key = "viewBox" if name == "viewBox" else name.rstrip("_").replace("_", "-")
-        element.set(key, clean(value) if isinstance(value, str) else number(value))
-    element.text = clean(text) or None
+        element.set(
+            key, replace_non_xml_characters(value) if isinstance(value, str) else number(value)
+        )
+    element.text = replace_non_xml_characters(text) or None
     element.extend(children)
     if title:
         element.append(node("title", text=title))
@@ -54,7 +56,7 @@ def markup(element: Node) -> Markup:
     return Markup(ElementTree.tostring(element, encoding="unicode"))
 
 
-def clean(text: str) -> str:
+def replace_non_xml_characters(text: str) -> str:
     """Return the text with a replacement character for each one that XML can't contain."""
     return _CONTROL.sub("\ufffd", text)
 

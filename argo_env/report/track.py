@@ -41,7 +41,7 @@ def draw_track(
     plane: Callable[[PathSample], Point],
     at: Callable[[float, float], Point],
     end: float,
-    aside: float = 0.0,
+    aside_metres: float = 0.0,
 ) -> list[Node]:
     """Draw the parts of a path as lines, coloured by time.
 
@@ -50,12 +50,12 @@ def draw_track(
         plane: Returns the two coordinates (m) of a sample in the drawing's plane.
         at: Returns the position in px of such coordinates.
         end: Time of the last colour in s.
-        aside: Distance of the lines to the right of the path in m.
+        aside_metres: Distance of the lines to the right of the path in m.
     """
     lines = []
     for samples in parts:
         shades = [min(int(SHADES * s.t / end), SHADES - 1) if end else 0 for s in samples]
-        line = shift_right(np.array([plane(s) for s in samples]), aside)
+        line = shift_right(np.array([plane(s) for s in samples]), aside_metres)
         cuts = [i for i in range(1, len(samples)) if shades[i] != shades[i - 1]]
         for first, last in pairwise([0, *cuts, len(samples)]):
             # Each line reaches the first sample of the next one, so that there is no gap.
@@ -68,14 +68,14 @@ def draw_track(
     return lines
 
 
-def shift_right(points: NDArray[np.float64], aside: float) -> NDArray[np.float64]:
-    """Return the points of a path in plan, shape (n, 2), moved by `aside` (m) to its right.
+def shift_right(points: NDArray[np.float64], aside_metres: float) -> NDArray[np.float64]:
+    """Return the points of a path in plan, shape (n, 2), moved by `aside_metres` to its right.
 
     So two passes in opposite directions do not cover each other.
     """
     steps = np.hypot(*np.diff(points, axis=0).T)
     driven = np.concatenate([[0.0], steps.cumsum()])
-    if not aside or driven[-1] == 0.0:
+    if not aside_metres or driven[-1] == 0.0:
         return points
     distinct = np.concatenate([[True], steps > 0.0])  # np.interp needs ascending distances
 
@@ -91,22 +91,25 @@ def shift_right(points: NDArray[np.float64], aside: float) -> NDArray[np.float64
     ahead[turning] = (points - along(-_AROUND))[turning]
     length = np.maximum(np.hypot(*ahead.T), 1e-9)
     right = np.column_stack([ahead[:, 1], -ahead[:, 0]]) / length[:, None]
-    return np.asarray(points + aside * right)
+    return np.asarray(points + aside_metres * right)
 
 
 def draw_arrow_heads(
     samples: Sequence[PathSample],
     at: Callable[[float, float], Point],
-    spacing: float,
-    aside: float = 0.0,
+    spacing_metres: float,
+    aside_metres: float = 0.0,
 ) -> list[Node]:
-    """Draw arrow heads along the path in plan, one every `spacing` m, `aside` (m) to its right."""
-    heads, since = [], spacing / 2
-    line = shift_right(np.array([(s.x, s.y) for s in samples]), aside).tolist()
+    """Draw arrow heads along the path in plan, one every `spacing_metres`.
+
+    They are `aside_metres` to the right of the path.
+    """
+    heads, since = [], spacing_metres / 2
+    line = shift_right(np.array([(s.x, s.y) for s in samples]), aside_metres).tolist()
     for k, (a, b) in enumerate(pairwise(samples), start=1):
         step = math.hypot(b.x - a.x, b.y - a.y)
         since += step
-        if since < spacing or step < 0.02:
+        if since < spacing_metres or step < 0.02:
             continue
         since = 0.0
         (ax, ay), (bx, by) = at(a.x, a.y), at(b.x, b.y)
@@ -117,7 +120,7 @@ def draw_arrow_heads(
     return heads
 
 
-def draw_flag(center: Point, text: str, class_: str) -> Node:
+def draw_letter_mark(center: Point, text: str, class_: str) -> Node:
     """Draw a round mark with a letter, for the start or end of the path, about a position in px."""
     return node(
         "g",

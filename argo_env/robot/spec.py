@@ -222,7 +222,7 @@ def _joints(urdf: str) -> frozenset[str]:
     return frozenset(names)
 
 
-def validate_robot(robot: RobotSpec) -> RobotSpec:
+def revalidated_robot(robot: RobotSpec) -> RobotSpec:
     """Return the robot, validated again: pydantic's `model_copy` does not validate its changes.
 
     Raises Invalid if the description makes no sense.

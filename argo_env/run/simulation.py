@@ -14,7 +14,7 @@ from argo_compiler.hfsm.events import ReadingGiven
 from argo_compiler.il import Mission, Task
 from argo_env.closing import Closing
 from argo_env.planning.opening import OpenedSite
-from argo_env.planning.start import start_pose
+from argo_env.planning.start import start_pose_or_lowest_dock
 from argo_env.robot.pose import BodyPose, PoseArray
 from argo_env.run import termination
 from argo_env.run.initial_state import match_progress_to_edited_mission, progress_now
@@ -426,7 +426,9 @@ class Simulation(Closing):
             start = beginning.body_pose
             navigator.snap(Pose(x=start.x, y=start.y, z=start.z, yaw=start.yaw))
             return start
-        pose = navigator.snap(self._spec.conditions.actual_start_pose(start_pose(mission, docks)))
+        pose = navigator.snap(
+            self._spec.conditions.actual_start_pose(start_pose_or_lowest_dock(mission, docks))
+        )
         return BodyPose(pose.x, pose.y, pose.z, pose.yaw)
 
     def _ensure_begun(self) -> bool:

@@ -7,7 +7,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from argo_env.formatting import clock, where
-from argo_env.report.rounds import waits
+from argo_env.report.rounds import all_waits
 from argo_env.run.record import RunRecord, WindowOutcome
 from argo_env.run.verdict_line import Tone
 
@@ -131,7 +131,7 @@ def _missed(record: RunRecord) -> list[tuple[str, float]]:
 
 def _wait_rows(record: RunRecord) -> Iterator[tuple[float, tuple[str, ...]]]:
     """Yield the rows of waits, each with the time in s of its first start."""
-    found = waits(record)
+    found = all_waits(record)
     for what in dict.fromkeys(wait.what for wait in found):
         same = [wait for wait in found if wait.what == what]
         yield (

@@ -9,7 +9,7 @@ from argo_compiler.export import EXPORTERS, Exporter
 from argo_compiler.hfsm import lower
 from argo_compiler.isar import to_isar
 from argo_compiler.script import format_script
-from argo_env.planning.inspection_views import inspection_views
+from argo_env.planning.inspection_views import inspection_views_by_object_id
 from argo_env.planning.opening import OpenedSite
 from argo_planner.use_cases.importing import ImportedMission
 
@@ -32,7 +32,9 @@ def exporters(site: OpenedSite) -> dict[str, Exporter]:
     isar = Exporter(
         "isar mission definition",
         (".json",),
-        lambda mission, hfsm: to_isar(mission, hfsm, inspection_views(mission, site.navigator)),
+        lambda mission, hfsm: to_isar(
+            mission, hfsm, inspection_views_by_object_id(mission, site.navigator)
+        ),
     )
     return EXPORTERS | {"isar": isar}
 

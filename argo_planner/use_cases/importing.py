@@ -27,7 +27,7 @@ from argo_compiler.isar.recognition import find_isar_data
 from argo_compiler.ros.recognition import is_bag_content
 from argo_compiler.script.syntax.text.source import Source as Script
 from argo_env.planning.opening import OpenedSite
-from argo_env.planning.site_warnings import speed_warnings
+from argo_env.planning.site_warnings import above_own_speed_warnings
 
 _log = logging.getLogger(__name__)
 
@@ -197,7 +197,7 @@ def import_mission(
     """
     loaded = load_unchecked_mission(upload, site.catalog, start_area, end_area)
     found = check(loaded.mission, site.catalog)
-    found += tuple(speed_warnings(loaded.mission, site.robot))
+    found += tuple(above_own_speed_warnings(loaded.mission, site.robot))
     found = by_position((*loaded.diagnostics, *loaded.diagnostics_with_positions(found)))
     if has_errors(found):
         raise DiagnosticError(upload.name, found)

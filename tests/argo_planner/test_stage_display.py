@@ -108,7 +108,7 @@ def argo_on_new_sites(tmp_path, monkeypatch):
         assert navigator.lattice
         return navigator
 
-    monkeypatch.setattr("argo_env.planning.generated.generate", drawn)
+    monkeypatch.setattr("argo_env.planning.generated.generate_navigator", drawn)
     monkeypatch.setattr(stage_display, "AFTER", 0.0)
     monkeypatch.setattr(stage_display, "EVERY", 0.0)
 

@@ -46,7 +46,7 @@ from argo_env.evaluation.row import RunOutcome
 from argo_env.evaluation.worlds import Variation
 from argo_env.files.folders import make_folder
 from argo_env.formatting import clock
-from argo_env.report.svg import clean
+from argo_env.report.svg import replace_non_xml_characters
 
 _MAX_RUNS, _SHOWN_RUNS, _MAX_REASONS, _MAX_CLUSTERS = 100, 12, 15, 12
 """largest numbers of lines in tables; the runs after the first `_SHOWN_RUNS` are in a section that
@@ -206,7 +206,7 @@ def _template(name: str) -> Template:
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
-        finalize=lambda value: clean(value) if type(value) is str else value,
+        finalize=lambda value: replace_non_xml_characters(value) if type(value) is str else value,
     )
     filters: dict[str, Callable[..., Any]] = {
         "clock": clock, "percent": in_percent, "chance": format_p_value,

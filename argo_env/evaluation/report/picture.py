@@ -12,7 +12,7 @@ from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from argo_env.evaluation import plots
-from argo_env.report.svg import clean, markup
+from argo_env.report.svg import markup, replace_non_xml_characters
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -76,7 +76,7 @@ def _inline(svg: ElementTree.Element, alt: str) -> Markup:
         "viewBox": svg.attrib["viewBox"],
         "style": f"max-width: {_MAX_SCALE * width:.0f}px",
         "role": "img",
-        "aria-label": clean(alt),
+        "aria-label": replace_non_xml_characters(alt),
     }
     return markup(svg)
 

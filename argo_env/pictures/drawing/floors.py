@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
-from argo_env.report.outline import DRAWING_ORDER, Point, outline, solids_on_floor
+from argo_env.report.outline import DRAWING_ORDER, Point, outline, solids_shown_on_floor
 from argo_env.site import Site
 from argo_env.site.shapes import Role
 
@@ -71,7 +71,7 @@ def _shapes(site: Site, number: int) -> Shapes:
     z = next(f.z for f in site.spec.floors if f.number == number)
     outlines: dict[Role, list[tuple[Point, ...]]] = {role: [] for role in DRAWING_ORDER}
     for element in site.elements:
-        solids = solids_on_floor(element, z, site.spec.storey)
+        solids = solids_shown_on_floor(element, z, site.spec.storey)
         outlines[element.role] += [tuple(outline(solid, (0, 1))) for solid in solids]
     return tuple((role, tuple(shapes)) for role, shapes in outlines.items() if shapes)
 

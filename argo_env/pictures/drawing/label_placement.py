@@ -18,8 +18,8 @@ class LabelPlacer:
     """Placement of labels on a sheet.
 
     It holds the occupied area and the robot's path. Positions are those of the middle of a label,
-    in px of the enlarged picture (see `FINER`); so are `wide` and `high`, which are half of its
-    width and of its height.
+    in px of the enlarged picture (see `FINER`); so are `half_width` and `half_height`, which are
+    half of its width and of its height.
     """
 
     def __init__(self, sheet: FloorSheet) -> None:
@@ -28,32 +28,41 @@ class LabelPlacer:
         self._taken = np.zeros(shape, np.bool_)
         self._path = np.zeros(shape, np.bool_)
 
-    def occupy(self, position: Pixel, wide: float, high: float) -> None:
+    def occupy(self, position: Pixel, half_width: float, half_height: float) -> None:
         """Mark a rectangle about a position as occupied.
 
-        The rectangle extends `wide` px to each side, and `high` px up and down.
+        The rectangle extends `half_width` px to each side, and `half_height` px up and down.
         """
-        self._taken[_cells(position, wide, high)] = True
+        self._taken[_cells(position, half_width, half_height)] = True
 
-    def avoid_path(self, points: NDArray[np.float64]) -> None:
+    def avoid_path_if_possible(self, points: NDArray[np.float64]) -> None:
         """Add points of the path, shape (n, 2), which labels avoid as far as possible."""
         columns, rows = (points / _CELL).astype(np.int64).T
         height, width = self._path.shape
         self._path[rows.clip(0, height - 1), columns.clip(0, width - 1)] = True
 
-    def reserve_nearest(self, position: Pixel, wide: float, high: float, floor: int) -> Pixel:
+    def reserve_nearest(
+        self, position: Pixel, half_width: float, half_height: float, floor: int
+    ) -> Pixel:
         """Return `position` if a label fits there, else a position beside it; mark it as occupied.
 
-        A label fits where the rectangle about the position, `wide` px to each side and `high` px up
-        and down, is free.
+        A label fits where the rectangle about the position, `half_width` px to each side and
+        `half_height` px up and down, is free.
         """
-        if self._taken[_cells(position, wide, high)].any():
-            return self.reserve_beside(position, wide, high, floor, min(wide, high))
-        self.occupy(position, wide, high)
+        if self._taken[_cells(position, half_width, half_height)].any():
+            return self.reserve_beside(
+                position, half_width, half_height, floor, min(half_width, half_height)
+            )
+        self.occupy(position, half_width, half_height)
         return position
 
     def reserve_beside(
-        self, position: Pixel, wide: float, high: float, floor: int, away: float = 10.0 * FINER
+        self,
+        position: Pixel,
+        half_width: float,
+        half_height: float,
+        floor: int,
+        away: float = 10.0 * FINER,
     ) -> Pixel:
         """Return a free position, `away` px or more beside `position`, and mark it as occupied.
 
@@ -65,28 +74,28 @@ class LabelPlacer:
             out = away + _STEP * (k // _AROUND)
             turn = 2 * math.pi * (k % _AROUND) / _AROUND
             spot = (
-                position[0] + (out + wide) * math.cos(turn),
-                position[1] - (out + high) * math.sin(turn),
+                position[0] + (out + half_width) * math.cos(turn),
+                position[1] - (out + half_height) * math.sin(turn),
             )
-            if self._inside(spot, wide, high, floor):
-                cells = _cells(spot, wide, high)
+            if self._inside(spot, half_width, half_height, floor):
+                cells = _cells(spot, half_width, half_height)
                 # Covering the path is as bad as being three steps farther out.
                 worse = 3 * _AROUND * bool(self._path[cells].any())
                 tried.append((bool(self._taken[cells].any()), k + worse, spot))
                 if tried[-1][:2] == (False, k):
                     break
         _, _, best = min(tried, default=(True, 0, position))
-        self.occupy(best, wide, high)
+        self.occupy(best, half_width, half_height)
         return best
 
-    def _inside(self, position: Pixel, wide: float, high: float, floor: int) -> bool:
+    def _inside(self, position: Pixel, half_width: float, half_height: float, floor: int) -> bool:
         panel = self._sheet.panels[floor]
         x, y = position
         return (
-            panel.left <= x - wide
-            and x + wide <= panel.left + panel.width
-            and panel.top <= y - high
-            and y + high <= panel.top + panel.height
+            panel.left <= x - half_width
+            and x + half_width <= panel.left + panel.width
+            and panel.top <= y - half_height
+            and y + half_height <= panel.top + panel.height
         )
 
 
@@ -104,17 +113,17 @@ def draw_plate(
     """
     size, rim = (12, INK) if large else (11, SOFT)
     face = font(size)
-    wide = draw.textlength(text, font=face) / 2 + (size - 7.0) * FINER
-    high = (size - 3.0) * FINER
-    x, y = labels.reserve_beside(position, wide, high, floor)
-    box = (x - wide, y - high, x + wide, y + high)
+    half_width = draw.textlength(text, font=face) / 2 + (size - 7.0) * FINER
+    half_height = (size - 3.0) * FINER
+    x, y = labels.reserve_beside(position, half_width, half_height, floor)
+    box = (x - half_width, y - half_height, x + half_width, y + half_height)
     draw.rounded_rectangle(box, (size - 8) * FINER, fill=PAPER, outline=rim, width=FINER)
     draw.text((x, y), text, fill=INK, font=face, anchor="mm")
 
 
-def _cells(position: Pixel, wide: float, high: float) -> tuple[slice, slice]:
+def _cells(position: Pixel, half_width: float, half_height: float) -> tuple[slice, slice]:
     x, y = position
     return (
-        slice(max(0, int((y - high) / _CELL)), int((y + high) / _CELL) + 1),
-        slice(max(0, int((x - wide) / _CELL)), int((x + wide) / _CELL) + 1),
+        slice(max(0, int((y - half_height) / _CELL)), int((y + half_height) / _CELL) + 1),
+        slice(max(0, int((x - half_width) / _CELL)), int((x + half_width) / _CELL) + 1),
     )

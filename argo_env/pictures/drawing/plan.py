@@ -17,8 +17,8 @@ from argo_env.pictures.drawing.style import (
     draw_disc,
     draw_headline,
     draw_legend,
-    paint_disc,
-    paint_point,
+    paint_checkpoint,
+    paint_point_robot,
     paint_ring,
     paint_robot,
     paint_station,
@@ -89,7 +89,7 @@ def draw_plan(sheet: FloorSheet, plan: PlanDrawing) -> NDArray[np.uint8]:
     discs = [_place_disc(sheet, labels, marker) for marker in plan.markers]
     path = path_lines(sheet, plan.path)
     for line in path:
-        labels.avoid_path(line.points)
+        labels.avoid_path_if_possible(line.points)
     draw_lines(draw, path)
     for position in stations:
         paint_station(draw, position, _STATION)
@@ -98,12 +98,12 @@ def draw_plan(sheet: FloorSheet, plan: PlanDrawing) -> NDArray[np.uint8]:
     if plan.footprint:
         paint_robot(draw, robot, plan.footprint, scale, plan.heading)
     else:
-        paint_point(draw, robot)
+        paint_point_robot(draw, robot)
     stairs = draw_stairs_taken(draw, sheet, labels, plan.path)
     for marker, position in zip(plan.markers, discs, strict=True):
         if marker.chosen:
             paint_ring(draw, position, marker.radius)
-        paint_disc(draw, position, marker.radius, marker.state, marker.name)
+        paint_checkpoint(draw, position, marker.radius, marker.state, marker.name)
     for station, position in zip(plan.stations, stations, strict=True):
         draw_plate(draw, labels, position, station.name, station.floor, large=True)
     draw_headline(draw, plan.headline)

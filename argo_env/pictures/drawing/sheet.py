@@ -71,8 +71,8 @@ class FloorSheet:
         return panel.left + (x - x0) * self.scale, panel.top + (y1 - y) * self.scale
 
 
-def make_sheet(plans: Sequence[FloorPlan], dim: Sequence[int] = ()) -> FloorSheet:
-    """Arrange and draw the plans of floors in their order; those numbered in `dim` are pale."""
+def make_sheet(plans: Sequence[FloorPlan], pale_floors: Sequence[int] = ()) -> FloorSheet:
+    """Arrange and draw the plans of floors in their order, pale if numbered in `pale_floors`."""
     grid = max((_Grid.arrange(plans, n) for n in range(1, len(plans) + 1)), key=lambda g: g.scale)
     scale = grid.scale
     beside = (_WIDTH - scale * sum(grid.widths)) / (len(grid.widths) + 1)
@@ -87,7 +87,7 @@ def make_sheet(plans: Sequence[FloorPlan], dim: Sequence[int] = ()) -> FloorShee
         top += scale * height + below
     image = Image.new("RGB", (SIZE[0] * FINER, SIZE[1] * FINER), PAPER)
     for panel in panels.values():
-        _draw(image, panel, scale, panel.plan.number in dim)
+        _draw(image, panel, scale, panel.plan.number in pale_floors)
     return FloorSheet(panels, scale, image)
 
 
@@ -154,13 +154,13 @@ def _draw(image: Image.Image, panel: Panel, scale: float, dim: bool) -> None:
 
 
 @lru_cache(maxsize=4)  # a sheet takes 11 MB
-def site_sheet(scenario: str, low: int, high: int, requested: tuple[int, ...]) -> FloorSheet:
+def site_sheet(scenario: str, low: int, high: int, requested_floors: tuple[int, ...]) -> FloorSheet:
     """Return a sheet of the floors numbered `low` to `high` of a scenario's site.
 
-    Floors that are not in `requested` are pale.
+    Floors that are not in `requested_floors` are pale.
     """
     plans = [plan for plan in _plans(scenario) if low <= plan.number <= high]
-    return make_sheet(plans, [p.number for p in plans if p.number not in requested])
+    return make_sheet(plans, [p.number for p in plans if p.number not in requested_floors])
 
 
 # The key is a name, as a cache of navigators would keep them alive.

@@ -53,7 +53,7 @@ STYLES = {
 """styles by the state of the checkpoint, with different lightness, for prints without colour"""
 
 
-def paint_disc(
+def paint_checkpoint(
     draw: ImageDraw.ImageDraw, position: Pixel, radius: float, state: str, name: str
 ) -> None:
     """Draw the disc of a checkpoint with its name, in the style of its state (see `STYLES`).
@@ -101,7 +101,7 @@ def paint_robot(
     draw.polygon(rotate_shape(nose, position, -heading), fill=PAPER)
 
 
-def paint_point(draw: ImageDraw.ImageDraw, position: Pixel) -> None:
+def paint_point_robot(draw: ImageDraw.ImageDraw, position: Pixel) -> None:
     """Draw a diamond, which stands for a robot without extent."""
     for share, ink in ((1.3, PAPER), (1.0, ROBOT), (0.4, PAPER)):
         r = share * POINT * FINER
@@ -176,7 +176,7 @@ def draw_legend(draw: ImageDraw.ImageDraw, sheet: FloorSheet, content: LegendCon
     """Draw the legend of states and marks, and the scales of time and length."""
     x, y = _LEFT, (SIZE[1] - FOOT / 2) * FINER
     for state, meaning in content.states.items():
-        paint_disc(draw, (x + 7 * FINER, y), 7.0, state, "")
+        paint_checkpoint(draw, (x + 7 * FINER, y), 7.0, state, "")
         x = _draw_entry(draw, meaning, x + 19 * FINER, y)
     if content.chosen:
         paint_ring(draw, (x + 7 * FINER, y), 4.0)
@@ -185,7 +185,7 @@ def draw_legend(draw: ImageDraw.ImageDraw, sheet: FloorSheet, content: LegendCon
         length = content.footprint.front + content.footprint.rear
         paint_robot(draw, (x + 9 * FINER, y), content.footprint, _ROBOT / length, 0.0)
     else:
-        paint_point(draw, (x + POINT * FINER, y))
+        paint_point_robot(draw, (x + POINT * FINER, y))
     x = _draw_entry(draw, "robot", x + 22 * FINER, y)
     if content.stairs:
         paint_stairs(draw, (x + STAIRS[0] * FINER, y), 2, True, colour(0.5))

@@ -11,7 +11,7 @@ from argo_compiler.base.errors import ArgoError
 from argo_compiler.base.listing import listed
 from argo_env.navigation import Navigator
 from argo_env.navigation.stencil import HEADINGS
-from argo_env.navigation.views import candidate_views, find_views, sight_target
+from argo_env.navigation.views import candidate_views, find_view_states_and_costs, sight_target
 from argo_env.planning.checking import unpatrolled_floors, unseen_checkpoints
 from argo_env.planning.flaws.flaw import (
     Flaw,
@@ -38,8 +38,8 @@ def dock_flaws(states: SafeStates) -> list[Flaw]:
     for number, state in states.docks.items():
         if state is not None and not states.reached[state]:
             flaws.append(_unconnected_dock(states, number))
-    if not flaws and states.first_dock is not None and not _can_turn(states):
-        flaws.append(_cramped_dock(states, states.first_dock))
+    if not flaws and states.lowest_usable_dock is not None and not _can_turn(states):
+        flaws.append(_cramped_dock(states, states.lowest_usable_dock))
     return flaws
 
 
@@ -84,7 +84,7 @@ def _unusable_dock(states: SafeStates, number: int) -> Flaw:
 
 def _unconnected_dock(states: SafeStates, number: int) -> Flaw:
     dock = states.site.docks[number]
-    first = states.first_dock
+    first = states.lowest_usable_dock
     message = f"there is no path from docking station {first} to docking station {number} and back"
     nearest = states.nearest_reached(dock.x, dock.y, dock.z)
     marks = [Mark(1, dock.x, dock.y)]
@@ -108,7 +108,7 @@ _SAMPLED = 100  # camera positions from which hidden faces are checked
 
 
 def checkpoint_flaws(
-    states: SafeStates, navigator: Navigator, unreached: Collection[int]
+    states: SafeStates, navigator: Navigator, merged_floors: Collection[int]
 ) -> list[Flaw]:
     """Return the flaws of checkpoints that can't be read.
 
@@ -119,9 +119,9 @@ def checkpoint_flaws(
     flaws = [
         _checkpoint_flaw(states, navigator, checkpoint)
         for checkpoint in unseen
-        if checkpoint.floor not in unreached
+        if checkpoint.floor not in merged_floors
     ]
-    for floor in unreached:
+    for floor in merged_floors:
         on_floor = [checkpoint for checkpoint in unseen if checkpoint.floor == floor]
         if on_floor:
             noun = "checkpoints" if len(on_floor) > 1 else "checkpoint"
@@ -158,7 +158,7 @@ def _explain_unseen(states: SafeStates, navigator: Navigator, checkpoint: SiteCh
             f"{looks}, and {element} hides it from each of the {len(views.states)} poses before "
             "it; turn it, move it, or move what hides it"
         )
-    unreached_views, _ = find_views(site, checkpoint, states.lattice)
+    unreached_views, _ = find_view_states_and_costs(site, checkpoint, states.lattice)
     if len(unreached_views):
         view = states.positions[unreached_views[0]]
         return (

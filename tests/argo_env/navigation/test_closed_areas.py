@@ -123,7 +123,7 @@ def test_exactly_the_states_over_a_blockage_are_closed(hall, robot):
     rect = (4.03, 3.02, 4.31, 3.24)
     closed = hall.with_blockages([Blockage(rect, 0.0, "a brick")]).lattice
     lattice = hall.lattice
-    near = lattice.surface.cells_near(4.2, 3.1, 1.0)
+    near = lattice.surface.cells_in_square(4.2, 3.1, 1.0)
     states = lattice.state_of[near]
     gone = (states >= 0) & (closed.state_of[near] < 0)
     assert gone.sum() > 100

@@ -18,7 +18,7 @@ from argo_env.pictures.camera import Camera
 from argo_env.pictures.chase import ChaseCamera
 from argo_env.pictures.light import shadow_mask, sun_camera
 from argo_env.pictures.motion import RecordedMotion
-from argo_env.pictures.overview import add_robot, site_camera, site_view
+from argo_env.pictures.overview import add_robot, site_camera, view_without_robot
 from argo_env.pictures.scene import Scene
 from argo_env.pictures.site_plan import draw_site_plan
 from argo_env.planning.flaws.flaw import Flaw, Mark
@@ -279,7 +279,7 @@ def alone(robot):
 )  # fmt: skip
 def test_a_composed_view_is_equal_to_a_rendered_one(umad, robot, whole, alone, x, y, z, yaw):
     camera, sun = site_camera(umad, SIZE), sun_camera(umad, MAP)
-    site_only = site_view(umad, robot, camera, sun)
+    site_only = view_without_robot(umad, robot, camera, sun)
     for scene in (whole, alone):
         scene.place_robot(BodyPose(x, y, z, yaw), robot.arm_raised)
     composed = add_robot(site_only, alone, camera, sun)
@@ -296,9 +296,9 @@ def test_a_composed_view_is_equal_to_a_rendered_one(umad, robot, whole, alone, x
 def test_the_view_of_a_site_is_rendered_once(umad, robot, tmp_path, monkeypatch):
     monkeypatch.setenv(cache.VARIABLE, str(tmp_path))
     camera, sun = site_camera(umad, (80, 60)), sun_camera(umad, 50)
-    first = site_view(umad, robot, camera, sun)
+    first = view_without_robot(umad, robot, camera, sun)
     monkeypatch.setattr("argo_env.pictures.overview.Scene", None)  # no further scene can be made
-    again = site_view(umad, robot, camera, sun)
+    again = view_without_robot(umad, robot, camera, sun)
     assert (again.view.colours == first.view.colours).all()
     assert (again.view.depth == first.view.depth).all()
     assert (again.dark == first.dark).all()
@@ -307,7 +307,10 @@ def test_the_view_of_a_site_is_rendered_once(umad, robot, tmp_path, monkeypatch)
 def test_another_site_or_camera_has_another_view(umad, robot, tmp_path, monkeypatch):
     monkeypatch.setenv(cache.VARIABLE, str(tmp_path))
     camera, sun = site_camera(umad, (80, 60)), sun_camera(umad, 50)
-    first = site_view(umad, robot, camera, sun)
+    first = view_without_robot(umad, robot, camera, sun)
     fewer = umad.replacing_elements(umad.elements[: len(umad.elements) // 2])
-    assert (site_view(fewer, robot, camera, sun).view.colours != first.view.colours).any()
-    assert site_view(umad, robot, site_camera(umad, (60, 80)), sun).view.depth.shape == (80, 60)
+    assert (view_without_robot(fewer, robot, camera, sun).view.colours != first.view.colours).any()
+    assert view_without_robot(umad, robot, site_camera(umad, (60, 80)), sun).view.depth.shape == (
+        80,
+        60,
+    )

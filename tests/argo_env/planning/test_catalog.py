@@ -13,8 +13,8 @@ from argo_compiler.il import Action, Mission, Task
 from argo_compiler.isar import from_isar, to_isar
 from argo_env.navigation import Navigator
 from argo_env.planning.catalog import make_catalog
-from argo_env.planning.inspection_views import inspection_views
-from argo_env.planning.patrols import patrol
+from argo_env.planning.inspection_views import inspection_views_by_object_id
+from argo_env.planning.patrols import require_patrol
 from tests.yard import site_of
 
 
@@ -90,12 +90,12 @@ def test_floor_that_is_too_small_to_patrol(robot):
     )
     navigator = Navigator(nook, robot)
     with pytest.raises(ArgoError, match="site nook: floor 1 has no three places"):
-        patrol(navigator, 1)
+        require_patrol(navigator, 1)
 
 
 def test_views_are_places_that_the_robot_reads_from(shipped, navigator):
     mission = shipped("mission_1.txt", start_area=1, end_area=2).mission
-    views = inspection_views(mission, navigator)
+    views = inspection_views_by_object_id(mission, navigator)
     measured = [task.object_id for task in mission.tasks if task.action is Action.MEASURE]
     assert list(views) == measured
     for id, view in views.items():
@@ -110,4 +110,4 @@ def test_views_are_places_that_the_robot_reads_from(shipped, navigator):
 
 def test_unknown_checkpoints_have_no_view(navigator):
     task = Task(name="A", action=Action.MEASURE, object_id="none")
-    assert inspection_views(Mission(tasks=(task,)), navigator) == {}
+    assert inspection_views_by_object_id(Mission(tasks=(task,)), navigator) == {}

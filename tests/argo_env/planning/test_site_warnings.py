@@ -5,7 +5,7 @@ import math
 import pytest
 
 from argo_compiler.base.model import Pose
-from argo_env.planning.site_warnings import speed_warnings, view_warnings
+from argo_env.planning.site_warnings import above_own_speed_warnings, view_warnings
 from argo_env.robot.spec import load_robot
 from tests.yard import measure, mission
 
@@ -38,11 +38,13 @@ def test_without_poses_nothing_is_looked_at(site):
 
 @pytest.mark.parametrize("speed", [None, 0.1, 0.4])
 def test_a_speed_that_the_robot_drives_at(speed):
-    assert list(speed_warnings(mission(measure(1, velocity=speed)), load_robot())) == []
+    assert list(above_own_speed_warnings(mission(measure(1, velocity=speed)), load_robot())) == []
 
 
 def test_one_that_it_is_not_known_to_drive_at():
-    (finding,) = speed_warnings(mission(measure(1, velocity=5.0), measure(2)), load_robot())
+    (finding,) = above_own_speed_warnings(
+        mission(measure(1, velocity=5.0), measure(2)), load_robot()
+    )
     assert finding.code == "site.faster-than-robot"
     assert finding.severity == "warning"
     assert "at 5 m/s" in finding.message

@@ -14,7 +14,7 @@ from argo_compiler.hfsm import Cancel, Occurred, Outcome, Pause, Resume
 from argo_compiler.il import Afterwards, EventKind, Group, OnFailure, Response
 from argo_env.formatting import clock
 from argo_env.report import write_report
-from argo_env.report.rounds import waits
+from argo_env.report.rounds import all_waits
 from argo_env.run.record import RunRecord
 from argo_env.run.spec import logged_events
 from argo_env.run.verdict_line import Tone
@@ -177,10 +177,10 @@ class TestReactions:
         record = run(yard, plan, (4.0, Occurred(EventKind.GAS_LEAK)))
         end = record.interruptions[0].end
         assert record.interruptions[0].limit_over
-        assert waits(record)[0].outcome == f"the limit of the hold was over at {clock(end)}"
+        assert all_waits(record)[0].outcome == f"the limit of the hold was over at {clock(end)}"
         cleared = (10.0, Occurred(EventKind.ALL_CLEAR))
         record = run(yard, plan, (4.0, Occurred(EventKind.GAS_LEAK)), cleared)
-        assert [w.outcome for w in waits(record)] == ["over"]
+        assert [w.outcome for w in all_waits(record)] == ["over"]
 
     def test_report_interrupts_nothing(self, yard):
         plan = mission(measure(1), reactions=(react(EventKind.HOT_SPOT, Response.REPORT),))

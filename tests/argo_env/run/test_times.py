@@ -5,7 +5,7 @@ import pytest
 from argo_compiler.hfsm import ByHand, GiveBack, Occurred, Outcome, Pause, Resume, TakeOver
 from argo_compiler.hfsm.events import ReadingGiven
 from argo_compiler.il import Condition, ConditionType, EventKind, Group, Mode, OnFailure, TimeWindow
-from argo_env.report.rounds import rounds_with_readings, waits
+from argo_env.report.rounds import all_waits, timed_and_conditional_rounds
 from argo_env.run.journal import open_journal
 from argo_env.run.record import RunRecord, WindowOutcome
 from argo_env.run.spec import logged_events
@@ -44,7 +44,7 @@ class TestWaits:
         assert record.tasks[1].start == pytest.approx(rest.end, abs=0.11)
         assert record.result.success
         assert record.headline.text == "everything was done as planned"
-        assert [w.what for w in waits(record)] == ["30 s (REST)"]
+        assert [w.what for w in all_waits(record)] == ["30 s (REST)"]
         during = [(s.x, s.y) for s in record.path if rest.start < s.t < rest.end]
         assert len(during) > 30
         assert len(set(during)) == 1
@@ -80,7 +80,7 @@ class TestWaits:
         assert waited.failure == waited.why
         assert record.result.outcome is Outcome.COMPLETED_WITH_FAILURES
         assert record.result.verdict == "failed: REST"
-        assert [w.outcome for w in waits(record)] == ["failed: waited 20 s in vain"]
+        assert [w.outcome for w in all_waits(record)] == ["failed: waited 20 s in vain"]
 
     @pytest.mark.rule("C8")
     def test_until_somebody_tells_a_value(self, yard):
@@ -108,7 +108,7 @@ class TestRounds:
         assert starts == pytest.approx([0.0, 60.0, 120.0], abs=0.11)
         assert [r.ended is not None for r in record.rounds] == [True] * 3
         assert record.result.success
-        assert [w.what for w in waits(record)] == ["the next round (Watch)"] * 2
+        assert [w.what for w in all_waits(record)] == ["the next round (Watch)"] * 2
 
     def test_a_round_that_is_late_begins_at_once_and_the_plan_stays(self, yard):
         plan = mission(HERE, THERE, groups=(self.group(every=40.0, max_repeat_count=4),))
@@ -144,14 +144,14 @@ class TestRounds:
         )
         plan = mission(first, THERE, groups=(group,))
         record = run(yard, plan, (0.5, ReadingGiven("1", 3.0)), values={1: 3.0})
-        ((_, said),) = rounds_with_readings(record)
+        ((_, said),) = timed_and_conditional_rounds(record)
         assert said.startswith("#1: failed at ")
 
     def test_a_run_that_ends_before_a_round_is_due(self, yard):
         plan = mission(HERE, THERE, groups=(self.group(every=600.0, max_repeat_count=2),))
         record = run_with(plan, fast_setup(yard), interrupted=iter([False] * 500 + [True]).__next__)
         assert [(r.number, r.began) for r in record.rounds] == [(1, 0.0), (2, None)]
-        assert waits(record)[-1].outcome == "still waiting at the end"
+        assert all_waits(record)[-1].outcome == "still waiting at the end"
 
 
 class TestWindows:
@@ -164,7 +164,7 @@ class TestWindows:
         assert task.early[1] == 60.0
         assert task.measuring[0][0] == pytest.approx(60.0, abs=0.11)
         assert [w.kept for w in record.windows] == [WindowOutcome.KEPT]
-        assert [w.what for w in waits(record)] == ["the time window (MEASURE 1)"]
+        assert [w.what for w in all_waits(record)] == ["the time window (MEASURE 1)"]
 
     def test_it_stands_at_a_waypoint_as_well(self, yard):
         plan = mission(waypoint("A", 2.05, 2.05, window=TimeWindow(earliest=60.0)))

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from argo_compiler.base.errors import ArgoError
 from argo_compiler.base.model import Pose
 from argo_env.planning import open_site
-from argo_env.planning.generated import generate
+from argo_env.planning.generated import generate_navigator
 from argo_env.site import make_site
 from argo_env.site.families import draw_site_and_slots
 from argo_env.site.family import TEST_SEEDS, Family, Stairs, parse_family
@@ -58,9 +58,9 @@ def test_a_draw_keeps_the_norms_and_has_the_requested_properties(family):
 @settings(max_examples=examples(5), deadline=None)
 @given(family=small_families)
 def test_every_place_is_reached_from_every_dock_and_back(family, robot, tmp_path_factory):
-    navigator = generate(family)
+    navigator = generate_navigator(family)
     site = navigator.site
-    assert generate(family).site.spec == site.spec
+    assert generate_navigator(family).site.spec == site.spec
     file = tmp_path_factory.mktemp("generated") / "site.yaml"
     file.write_text(to_yaml(site.spec), encoding="utf-8")
     assert read_site_spec(file) == site.spec
@@ -81,7 +81,7 @@ def test_every_place_is_reached_from_every_dock_and_back(family, robot, tmp_path
 
 
 def test_a_site_without_stairs_to_the_upper_floor_is_refused(monkeypatch):
-    """`generate` checks the site that `draw_site_and_slots` returns."""
+    """`generate_navigator` checks the site that `draw_site_and_slots` returns."""
 
     def without_stairs(family, attempt=0, refused=()):
         spec, slots = draw_site_and_slots(family, attempt, refused)
@@ -90,7 +90,7 @@ def test_a_site_without_stairs_to_the_upper_floor_is_refused(monkeypatch):
     monkeypatch.setattr("argo_env.planning.generated.draw_site_and_slots", without_stairs)
     monkeypatch.setattr("argo_env.planning.generated._LAYOUTS", 1)
     with pytest.raises(ArgoError, match="no draw of this seed can be driven"):
-        generate(Family(floors=2, size=(12, 12), clutter=0.0, checkpoints=0, seed=5))
+        generate_navigator(Family(floors=2, size=(12, 12), clutter=0.0, checkpoints=0, seed=5))
 
 
 @pytest.mark.long
@@ -110,7 +110,7 @@ def test_checkpoints_that_can_not_be_read_are_moved(monkeypatch):
     family = Family(floors=1, size=(12, 12), clutter=0.0, checkpoints=3, seed=6)
     first_slot = draw_site_and_slots(family)[1][1]
     monkeypatch.setattr("argo_env.planning.generated.draw_site_and_slots", raised)
-    navigator = generate(family)
+    navigator = generate_navigator(family)
     assert all(navigator.can_view(id) for id in (1, 2, 3))
     moved = draw_site_and_slots(family, refused_slots={first_slot})[0]
     assert navigator.site.spec == moved

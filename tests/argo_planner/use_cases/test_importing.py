@@ -8,7 +8,7 @@ from argo_compiler.files.mission_file import mission_text
 from argo_compiler.hfsm import lower
 from argo_compiler.isar import to_isar
 from argo_compiler.ros import Storage, to_ros1_bag, to_ros2_bag
-from argo_env.planning.inspection_views import inspection_views
+from argo_env.planning.inspection_views import inspection_views_by_object_id
 from argo_planner.use_cases.importing import (
     SourceKind,
     Upload,
@@ -28,7 +28,7 @@ PLAN = mission(measure(1), measure(2), start_area=1, end_area=1)
 
 @pytest.fixture(scope="module")
 def uploads(site):
-    views = inspection_views(PLAN, site.navigator)
+    views = inspection_views_by_object_id(PLAN, site.navigator)
     return {
         SourceKind.SCRIPT: [
             Upload("plan.txt", SCRIPT),

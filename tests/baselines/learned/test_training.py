@@ -186,7 +186,7 @@ def test_the_batch_reports_the_returns_of_its_routes() -> None:
 def test_training_does_not_use_the_test_instances() -> None:
     source, other = TrainingRoutes(6, sites=()), TrainingRoutes(6, sites=(), offset=4096)
     first = [source.draw(number) for number in range(30)]
-    assert {one.size for one in first} == {7}
+    assert {one.node_count for one in first} == {7}
     assert not np.array_equal(first[0].arrival, other.draw(0).arrival)
     shifted = TrainingRoutes(6, sites=(), plain=1.0, offset=TEST.start)
     test = RandomRoutes(6).draw(TEST[0])

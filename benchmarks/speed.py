@@ -168,7 +168,7 @@ def prepare_proofs() -> Work:
 
 
 @contextmanager
-def open_edit_work() -> Iterator[Work]:
+def edit_work_in_own_service() -> Iterator[Work]:
     """Yield a function that makes ten durable edits of a mission in a service of its own."""
     import httpx
 
@@ -193,7 +193,7 @@ def open_edit_work() -> Iterator[Work]:
 
 def compare_edits_with_fixed_work(repeats: int) -> float:
     """Return the time of ten edits over that of three fixed works and ten durable writes."""
-    with open_edit_work() as work, tempfile.TemporaryFile() as file:
+    with edit_work_in_own_service() as work, tempfile.TemporaryFile() as file:
 
         def fixed() -> None:
             for _ in range(3):  # about as much as the service does for ten edits

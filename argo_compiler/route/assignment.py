@@ -6,7 +6,7 @@ from scipy.optimize import linear_sum_assignment
 
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.problem import NEVER
-from argo_compiler.route.pruning import Pruned, least_arc_times
+from argo_compiler.route.pruning import Pruned, least_arc_times_without_service
 
 
 def assignment_time_bound(network: StepNetwork, pruned: Pruned) -> int | None:
@@ -23,7 +23,7 @@ def assignment_time_bound(network: StepNetwork, pruned: Pruned) -> int | None:
     if not len(network.prize):
         direct = int(network.time[network.size, network.size])
         return direct if direct < NEVER else None
-    times = least_arc_times(network) + np.append(network.service, 0)[None, :]
+    times = least_arc_times_without_service(network) + np.append(network.service, 0)[None, :]
     least = least_costs_between_steps(network, pruned, times)
     rows, columns = linear_sum_assignment(least.astype(np.float64))
     total = int(least[rows, columns].sum())

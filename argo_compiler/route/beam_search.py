@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.route.held_karp import INF, set_prizes
+from argo_compiler.route.held_karp import INF, prizes_of_sets
 from argo_compiler.route.lower_bounds import CompletionBound
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.order_ideals import StepBits
@@ -244,7 +244,7 @@ class BeamSearch:
             fits = time <= network.limit
             if not fits.any():
                 continue
-            prizes = set_prizes(network, masks[origin[fits]])
+            prizes = prizes_of_sets(network, masks[origin[fits]])
             costs = (second if self._counts_travel else time)[fits]
             if network.objective is Objective.PRIZE:
                 costs = np.zeros_like(costs)

@@ -182,7 +182,7 @@ def _exchange(network: KernelNetwork, state: State, first: int, second: int, thi
 
 @compiled
 def _best_exchange(network: KernelNetwork, state: State, a: int) -> tuple[int, int, int, int]:
-    """Return the exchange that saves most among those that give node `a` a shorter arc.
+    """Return the exchange that saves most among those that shorten the arc from node `a`.
 
     An exchange swaps the two stretches of the line between three cuts. The first number is the
     change of the sum of arcs, which is negative, or 0 if there is no such exchange; the others are
@@ -299,9 +299,9 @@ def _ruin(network: KernelNetwork, state: State) -> None:
 
 @compiled
 def _best_insertion(network: KernelNetwork, state: State, s: int) -> tuple[int, int, int]:
-    """Return the insertion of a step that costs least: extra cost, node, and position before it.
+    """Return the cheapest insertion of a step: extra cost, node, index of the node before it.
 
-    Without a possible insertion, the node is -1.
+    The index is one in the line. Without a possible insertion, the node is -1.
     """
     line, time = state[LINE], network.time
     best = NO_ARC, -1, -1
@@ -376,13 +376,14 @@ def _recreate(network: KernelNetwork, state: State) -> None:
 
 
 @compiled
-def run(network: KernelNetwork, state: State, budget: int, warm: float) -> None:
-    """Search by simulated annealing until `budget` units of work are done.
+def anneal(network: KernelNetwork, state: State, work: int, temperature: float) -> None:
+    """Search by simulated annealing, and change `state`, until its count of work is `work` higher.
 
-    `warm`: temperature, the average increase in cost of an accepted line.
+    `temperature` (constant): the mean of the random limits on the increase in cost of a line that
+    is accepted.
     """
     numbers, values = state[NUMBERS], state[VALUES]
-    end = numbers[WORK] + budget
+    end = numbers[WORK] + work
     while numbers[WORK] < end:
         count = numbers[COUNT]
         if count < 4 or _random_below(state, 1000) < 1000 * network.ruins:
@@ -397,7 +398,7 @@ def run(network: KernelNetwork, state: State, budget: int, warm: float) -> None:
         numbers[WORK] += 200 + 4 * network.time.shape[0]
         numbers[ITERATIONS] += 1
         worse = length - values[1] + network.weight * (missed - values[2])
-        if worse <= -warm * np.log((1 + _random_below(state, 1 << 30)) / (1 << 30)):
+        if worse <= -temperature * np.log((1 + _random_below(state, 1 << 30)) / (1 << 30)):
             state[CURRENT] = state[LINE]
             values[0], values[1], values[2] = count, length, missed
             if missed < values[5] or (missed == values[5] and length < values[4]):

@@ -64,7 +64,7 @@ class ExchangeSearch:
             ):
                 cost, missed = state[kernel.VALUES, 4:6].tolist()
                 mean = state[kernel.VALUES, 1] / max(1, state[kernel.VALUES, 0])
-                kernel.run(
+                kernel.anneal(
                     kernel_network, state, _WORK_SLICE, _HOT * mean * (_COLD / _HOT) ** passed
                 )
                 done, tried = state[kernel.NUMBERS, [kernel.WORK, kernel.ITERATIONS]].tolist()
@@ -103,7 +103,7 @@ class _Kernel:
         kernel_network = _kernel_network(kernel, net, prune(net))
         state = _initial_state(kernel, kernel_network, 0)
         kernel.set_line(kernel_network, state, state[kernel.LINE], 0)
-        kernel.run(kernel_network, state, 1, 1.0)
+        kernel.anneal(kernel_network, state, 1, 1.0)
         cls._module = kernel
 
 

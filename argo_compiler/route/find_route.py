@@ -13,7 +13,7 @@ from argo_compiler.route.modes import Step
 from argo_compiler.route.network import build_network
 from argo_compiler.route.portfolio import solve
 from argo_compiler.route.problem import NEVER, Objective, RouteProblem
-from argo_compiler.route.pruning import prune, unlimited_horizon
+from argo_compiler.route.pruning import horizon_without_limit, prune
 from argo_compiler.route.search import Observers, Search, SearchLimits
 from argo_compiler.route.solvers import RouteSolver
 from argo_compiler.route.stop import FirstFeasible
@@ -80,7 +80,7 @@ def _run_search(
 
     seconds = inf if limits.seconds is None else limits.seconds
     net = build_network(problem, cyclic_order, lambda: clock() - begun > _ROUNDS_SHARE * seconds)
-    if unlimited_horizon(net) >= NEVER // 2:
+    if horizon_without_limit(net) >= NEVER // 2:
         raise Invalid(
             "the times of this route problem are too long to be added up: use a larger unit"
         )

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from argo_compiler.route.path_timing import PathTiming
 from argo_compiler.route.problem import RouteProblem
-from argo_compiler.route.pruning import horizon, least_arc_times
+from argo_compiler.route.pruning import horizon, least_arc_times_without_service
 from argo_compiler.route.search import Search
 
 Vector = NDArray[np.int64]
@@ -33,7 +33,7 @@ class FirstRules:
 
     def solve(self, search: Search, /) -> None:
         network, m = search.network, search.network.size
-        onward = least_arc_times(network)[:, :m] + network.service
+        onward = least_arc_times_without_service(network)[:, :m] + network.service
         latest = np.minimum(search.pruned.latest, horizon(network))
         earliest = network.earliest[network.step]
         rules: list[Rule] = [

@@ -20,7 +20,11 @@ from scipy.sparse.csgraph import connected_components
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.order_ideals import Masks, StepBits
 from argo_compiler.route.problem import RouteProblem
-from argo_compiler.route.pruning import Pruned, least_arc_times, unlimited_horizon
+from argo_compiler.route.pruning import (
+    Pruned,
+    horizon_without_limit,
+    least_arc_times_without_service,
+)
 from argo_compiler.route.search import Search
 
 INF = np.int32(1 << 29)
@@ -93,7 +97,7 @@ def _count(bits: StepBits, nodes: list[int], most: int, is_time_up: Callable[[],
 def layers_if_few(search: Search) -> list[Layer] | None:
     """Compute the layers of a search's network, or return None if they have too many sets.
 
-    Adds a reason to the search that names the number of sets, or the lack of time.
+    Always adds a reason to the search: the number of sets, or why there are no layers.
     """
     network, pruned = search.network, search.pruned
     most = min(_MOST_SETS, _MOST_STATES // max(1, network.size))
@@ -104,7 +108,7 @@ def layers_if_few(search: Search) -> list[Layer] | None:
     is_ordered = network.has_windows or pruned.before.any() or network.problem.battery is not None
     # Windows may leave much fewer sets than the precedences do.
     is_few = sets <= (most if is_ordered else _FEW_SETS) or network.has_windows
-    if not is_few or unlimited_horizon(network) >= INF or not StepBits(network, pruned).fits:
+    if not is_few or horizon_without_limit(network) >= INF or not StepBits(network, pruned).fits:
         search.add_reason(f"{int(pruned.steps.sum())} steps allow too many sets to check all")
         return None
     layers = compute_layers(network, pruned, most, lambda: share.remaining_time() <= 0.0)
@@ -158,7 +162,7 @@ def compute_layers(
 
     Returns None if they have more than `most` sets, or if the time is up before the end.
     """
-    arcs = allowed_arcs(network, pruned, least_arc_times(network))
+    arcs = times_of_allowed_arcs(network, pruned, least_arc_times_without_service(network))
     latest = np.minimum(pruned.latest, INF - 1)
     earliest = network.earliest[network.step]
     layers, total = [], 0
@@ -182,11 +186,11 @@ def best_path(network: StepNetwork, layers: list[Layer], pruned: Pruned) -> Best
     if best is None:
         return None
     prize, end, number, row, node = best
-    arcs = allowed_arcs(network, pruned, least_arc_times(network))
+    arcs = times_of_allowed_arcs(network, pruned, least_arc_times_without_service(network))
     return BestPath(_trace_path(network, arcs, layers, number, row, node), prize, end)
 
 
-def allowed_arcs(
+def times_of_allowed_arcs(
     network: StepNetwork, pruned: Pruned, times: NDArray[np.int64]
 ) -> NDArray[np.int32]:
     """Return `times` for the unpruned arcs and that from start to end, and INF for the others."""
@@ -201,8 +205,8 @@ def iter_layers(
     network: StepNetwork,
     bits: StepBits,
     arcs: NDArray[np.int32],
-    earliest: Masks,
-    latest: Masks,
+    earliest: NDArray[np.int64],
+    latest: NDArray[np.int64],
     is_time_up: Callable[[], bool] = lambda: False,
 ) -> Iterator[Layer]:
     """Yield the layers, from that of single steps on, until there are no more or the time is up.
@@ -244,8 +248,13 @@ def iter_layers(
         onward = arcs[:m, :]
 
 
-def end_times(network: StepNetwork, arcs: NDArray[np.int32], layer: Layer) -> Masks:
-    """Return for each set of a layer the earliest end of a route that makes only its steps."""
+def earliest_ends_of_sets(
+    network: StepNetwork, arcs: NDArray[np.int32], layer: Layer
+) -> NDArray[np.int64]:
+    """Return for each set of a layer the earliest end of a route that makes only its steps.
+
+    It is at least INF if there is no such route.
+    """
     to_end = arcs[: network.size, network.size]
     return np.asarray((layer.times + to_end).min(axis=1), np.int64)
 
@@ -253,7 +262,7 @@ def end_times(network: StepNetwork, arcs: NDArray[np.int32], layer: Layer) -> Ma
 def _can_complete(
     network: StepNetwork,
     bits: StepBits,
-    latest: Masks,
+    latest: NDArray[np.int64],
     size: int,
     masks: Masks,
     times: NDArray[np.int32],
@@ -263,7 +272,7 @@ def _can_complete(
     keep = np.ones(len(masks), np.bool_)
     last = np.full(len(network.prize), -1, np.int64)
     np.maximum.at(last, network.step, latest)
-    undecided, certain = bits.undecided_steps(size), bits.certain_steps(size)
+    undecided, certain = bits.steps_in_only_some_sets(size), bits.steps_in_all_sets(size)
     ahead = network.mandatory & ~certain & (last < INF - 1)
     keep &= earliest <= last[ahead & ~undecided].min(initial=int(INF))
     for s in np.flatnonzero(ahead & undecided).tolist():
@@ -271,8 +280,11 @@ def _can_complete(
     return keep
 
 
-def set_prizes(network: StepNetwork, masks: Masks) -> Masks:
-    """Return the sum of prizes of each set of steps; that of all steps if no step is optional."""
+def prizes_of_sets(network: StepNetwork, masks: Masks) -> NDArray[np.int64]:
+    """Return the sum of the prizes of each set of steps, shape (n,).
+
+    If no step is optional, each sum is that of all steps, whatever the set.
+    """
     if not network.selective:
         return np.full(len(masks), network.prize.sum())
     total = np.zeros(len(masks), np.int64)
@@ -297,7 +309,7 @@ def _best_end(
     Layer -1 means that the path has no nodes.
     """
     m = network.size
-    to_end = np.minimum(least_arc_times(network)[:, m], INF).astype(np.int32)
+    to_end = np.minimum(least_arc_times_without_service(network)[:, m], INF).astype(np.int32)
     limit = min(network.limit, int(INF) - 1)
     may_be_empty = can_end(network, bits, 0, np.zeros(1, np.int64)).all()
     best = (0, -int(to_end[m]), -1, 0, 0) if may_be_empty and to_end[m] <= limit else None
@@ -308,7 +320,7 @@ def _best_end(
         rows = np.flatnonzero(can_end(network, bits, number + 1, layer.masks) & (end <= limit))
         if not len(rows):
             continue
-        prizes = set_prizes(network, layer.masks[rows])
+        prizes = prizes_of_sets(network, layer.masks[rows])
         pick = int(np.lexsort((end[rows], -prizes))[0])
         row = int(rows[pick])
         candidate = (int(prizes[pick]), -int(end[row]), number, row, int(nodes[row]))

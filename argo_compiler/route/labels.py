@@ -19,21 +19,25 @@ from argo_compiler.route.completion_bounds import StepSets, sets_in_layers, subs
 from argo_compiler.route.held_karp import (
     INF,
     Layer,
-    allowed_arcs,
     best_path,
     can_end,
-    end_times,
+    earliest_ends_of_sets,
     iter_layers,
     layers_if_few,
-    set_prizes,
+    prizes_of_sets,
+    times_of_allowed_arcs,
 )
 from argo_compiler.route.lower_bounds import DualBound, TableBound
-from argo_compiler.route.modes import add_capped
+from argo_compiler.route.modes import add_capped_at_never
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.order_ideals import StepBits
 from argo_compiler.route.path_timing import PathTiming
 from argo_compiler.route.problem import Objective, RouteProblem
-from argo_compiler.route.pruning import Pruned, least_arc_times, unlimited_horizon
+from argo_compiler.route.pruning import (
+    Pruned,
+    horizon_without_limit,
+    least_arc_times_without_service,
+)
 from argo_compiler.route.search import Search
 from argo_compiler.route.solution import LabelSolution, make_solution, no_solution
 
@@ -84,7 +88,7 @@ class LabelBeams:
 
     def solve(self, search: Search, /) -> None:
         network, pruned = search.network, search.pruned
-        if unlimited_horizon(network) < INF and StepBits(network, pruned).fits:
+        if horizon_without_limit(network) < INF and StepBits(network, pruned).fits:
             _report(search, solve_with_dual_prices(network, pruned, search, None))
 
 
@@ -150,18 +154,20 @@ def solve_with_dual_prices(
 def _cost_matrices(network: StepNetwork) -> list[Vector]:
     """Return the arc costs for bounds: times, and, with chargers, times plus energies."""
     service = np.append(network.service, 0)[None, :]
-    matrices = [add_capped(least_arc_times(network), service)]
+    matrices = [add_capped_at_never(least_arc_times_without_service(network), service)]
     if network.problem.battery is not None and network.chargers:
-        matrices.append(add_capped(_times_and_energies(network), service))
+        matrices.append(add_capped_at_never(_times_and_energies(network), service))
     return matrices
 
 
 def _search_with_tables(network: StepNetwork, pruned: Pruned, sets: StepSets) -> BeamSearch:
     bits = StepBits(network, pruned)
-    costs = np.stack([allowed_arcs(network, pruned, matrix) for matrix in _cost_matrices(network)])
+    costs = np.stack(
+        [times_of_allowed_arcs(network, pruned, matrix) for matrix in _cost_matrices(network)]
+    )
     bound = TableBound(network, bits, sets, costs)
     layers = zip(sets.layers, sets.can_end, strict=True)
-    prizes = np.concatenate([set_prizes(network, layer[ends]) for layer, ends in layers])
+    prizes = np.concatenate([prizes_of_sets(network, layer[ends]) for layer, ends in layers])
     return BeamSearch(network, pruned, bits, bound, equal_prizes=bool((prizes == prizes[:1]).all()))
 
 
@@ -217,7 +223,7 @@ def _solve_by_prize(
         for width in WIDTHS:
             # With a path at hand, only goals with a higher prize matter.
             if best is not None and best.path is not None:
-                group = group[set_prizes(network, group) > best.prize]
+                group = group[prizes_of_sets(network, group) > best.prize]
             if not len(group):
                 complete = True
                 break
@@ -269,14 +275,14 @@ def _goal_sets(network: StepNetwork, pruned: Pruned, layers: list[Layer]) -> tup
     charge the energy used.
     """
     limit, m = min(network.limit, int(INF) - 1), network.size
-    arcs = allowed_arcs(network, pruned, least_arc_times(network))
+    arcs = times_of_allowed_arcs(network, pruned, least_arc_times_without_service(network))
     goals, end = _earliest_ends(network, arcs, layers)
     may = can_end(network, StepBits(network, pruned), 0, goals)
     goals = goals[may & (end <= limit)]
     battery = network.problem.battery
     if battery is not None and network.limit < INF:
         available = battery.capacity - battery.used
-        arcs = allowed_arcs(network, pruned, _times_and_energies(network))
+        arcs = times_of_allowed_arcs(network, pruned, _times_and_energies(network))
         latest = np.full(m, min(limit + available, int(INF) - 1), np.int64)
         charged = iter_layers(
             network, StepBits(network, pruned), arcs, np.zeros(m, np.int64), latest
@@ -284,7 +290,7 @@ def _goal_sets(network: StepNetwork, pruned: Pruned, layers: list[Layer]) -> tup
         masks, end = _earliest_ends(network, arcs, charged)
         goals = np.intersect1d(goals, masks[end - available <= limit], assume_unique=True)
     goals = np.sort(goals)
-    prizes = set_prizes(network, goals)
+    prizes = prizes_of_sets(network, goals)
     order = np.argsort(-prizes, kind="stable")
     return goals[order], prizes[order]
 
@@ -300,7 +306,7 @@ def _earliest_ends(
     masks, at_end = [np.zeros(1, np.int64)], [arcs[m:, m].astype(np.int64)]
     for layer in layers:
         masks.append(layer.masks)
-        at_end.append(end_times(network, arcs, layer))
+        at_end.append(earliest_ends_of_sets(network, arcs, layer))
     return np.concatenate(masks), np.concatenate(at_end)
 
 
@@ -309,9 +315,9 @@ def _times_and_energies(network: StepNetwork) -> NDArray[np.int64]:
     battery = network.problem.battery
     assert battery is not None
     assert network.energy is not None
-    both = add_capped(network.time, network.energy)
+    both = add_capped_at_never(network.time, network.energy)
     for station in network.chargers:
-        inbound = add_capped(station.to, station.to_energy)[:, None]
-        outbound = add_capped(station.out, station.out_energy)[None, :]
-        both = np.minimum(both, add_capped(inbound + outbound, battery.overhead))
+        inbound = add_capped_at_never(station.to, station.to_energy)[:, None]
+        outbound = add_capped_at_never(station.out, station.out_energy)[None, :]
+        both = np.minimum(both, add_capped_at_never(inbound + outbound, battery.overhead))
     return both

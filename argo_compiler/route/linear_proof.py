@@ -19,7 +19,7 @@ from argo_compiler.route.cp_solver import run_solver, solver_for, spend_solver_w
 from argo_compiler.route.linear_relaxation import LinearRelaxation
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.problem import Objective, RouteProblem
-from argo_compiler.route.pruning import horizon, least_arc_times
+from argo_compiler.route.pruning import horizon, least_arc_times_without_service
 from argo_compiler.route.search import Search
 
 _FIRST_MARGIN = 0.005
@@ -57,7 +57,7 @@ class LinearProof:
             best is not None and best.prize >= search.prize_bound
         )
         if network.objective is not Objective.PRIZE and prize_proven:
-            times = least_arc_times(network) + np.append(network.service, 0)
+            times = least_arc_times_without_service(network) + np.append(network.service, 0)
             least = best.prize if best is not None and network.selective else 0
             _Stage(search, times, least).run(to_optimality=to_optimality)
 
@@ -96,7 +96,7 @@ class _Stage:
         return 0 if self.least_prize is None else horizon(self.search.network)
 
     def _best_value(self) -> int | None:
-        """Return the objective of the best route; None if none with the least prize is known."""
+        """Return the best route's objective; None if no known route wins `least_prize` or more."""
         best = self.search.best
         if best is None or best.prize < (self.least_prize or 0):
             return None
@@ -125,7 +125,8 @@ class _Stage:
     def _solve_within(self, relaxation: LinearRelaxation, most: int) -> int:
         """Offer the best route with an objective of at most `most`, and return a lower bound.
 
-        The bound is above `most` if there is no such route.
+        The bound is above `most` only if it is proven that there is no such route, and not if the
+        time ends before one is found.
         """
         search, network, pruned = self.search, self.search.network, self.search.pruned
         arcs, mandatory = relaxation.possible_arcs_and_required_steps(most)
@@ -139,7 +140,7 @@ class _Stage:
         if search.remaining_time() < time_to_build(restricted, pruned):
             return min(relaxation.bound or 0, most)
         model = CircuitModel(restricted, pruned)
-        for cut in relaxation.cuts:
+        for cut in relaxation.binding_cuts:
             model.require_at_least(cut.coefficients, cut.least)
         if _is_symmetric(network):
             model.require_at_least(_one_direction(network.size), 0)

@@ -18,7 +18,7 @@ from ortools.linear_solver import pywraplp
 
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.problem import NEVER
-from argo_compiler.route.pruning import Pruned, least_arc_times
+from argo_compiler.route.pruning import Pruned, least_arc_times_without_service
 from argo_compiler.route.search import Search
 
 Numbers = NDArray[np.int64]
@@ -91,7 +91,7 @@ class LinearRelaxation:
         self._network = network
         self._step = np.append(network.step, len(network.prize))
         self._mandatory = np.append(network.mandatory, True)
-        times = least_arc_times(network) + np.append(network.service, 0)[None, :]
+        times = least_arc_times_without_service(network) + np.append(network.service, 0)[None, :]
         self._arcs = pruned.arcs.copy()
         # The arc from the start straight to the end.
         self._arcs[m, m] = not network.mandatory.any() and times[m, m] < NEVER
@@ -124,27 +124,30 @@ class LinearRelaxation:
         return None if self._best is None else -(-self._best.total // self._scale)
 
     @property
-    def cuts(self) -> list[LinearRow]:
+    def binding_cuts(self) -> list[LinearRow]:
         """Cuts with a positive dual price, on which the bound rests."""
         prices = [] if self._best is None else self._best.prices.tolist()
         pairs = zip(prices, self._rows, strict=False)
         return [row for p, row in pairs if p > 0 and not row.equal and row.weights is None]
 
-    def possible_arcs_and_required_steps(self, most: int) -> tuple[Mask, Mask]:
-        """Return the arcs that routes with a cost up to `most` may have, and the steps they need.
+    def possible_arcs_and_required_steps(self, most_cost: int) -> tuple[Mask, Mask]:
+        """Return the arcs that routes up to a cost of `most_cost` may have, and steps they need.
 
         A step is returned if each of these routes must make it. This is variable fixing by reduced
         costs.
         """
         if self._best is None:
             return self._arcs.copy(), self._mandatory[:-1]
-        spare = most * self._scale - self._best.total
+        spare = most_cost * self._scale - self._best.total
         entered = self._best.entered
         arcs = self._arcs & (self._best.reduced - entered[self._step][None, :] <= spare)
         return arcs, (self._mandatory | (-entered > spare))[:-1]
 
-    def solve(self, search: Search, enough: int | None) -> None:
-        """Raise the bound until it is at least `enough`, no cut is violated, or the time is up."""
+    def solve(self, search: Search, enough_bound: int | None) -> None:
+        """Raise the bound until it is `enough_bound`, no cut is violated, or the time is up.
+
+        `enough_bound`: value from which on the bound is not raised further; None: no such value.
+        """
         has_new_rows = False
         while search.remaining_time() > 0.0:
             simplex = "true" if has_new_rows else "false"
@@ -162,7 +165,7 @@ class LinearRelaxation:
                 return
             if self._best is None or dual.total > self._best.total:
                 self._best = dual
-            if enough is not None and self.bound is not None and self.bound >= enough:
+            if enough_bound is not None and self.bound is not None and self.bound >= enough_bound:
                 return
             improving = self._improving_arcs(dual)
             has_new_rows = not improving.any()
@@ -304,9 +307,10 @@ class LinearRelaxation:
                 yield self._cut(large, made)
 
     def _cut(self, steps: Mask, made: NDArray[np.float64]) -> LinearRow:
-        """Return the constraint that a set of steps is entered, at least if one step is made.
+        """Return the constraint that a route enters a set of steps as often as it should.
 
-        That step is the one made most often in the current solution.
+        That is at least once if the set has a mandatory step, else at least as often as the route
+        makes that step of the set which the current solution makes most often.
         """
         inside, zeros = steps[self._step], np.zeros(len(self._step), np.int64)
         if (self._mandatory & steps).any():

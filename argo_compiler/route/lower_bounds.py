@@ -30,8 +30,8 @@ class CompletionBound(Protocol):
     def remaining_cost(self, size: int, masks: Masks, last: Vector) -> NDArray[np.int64]:
         """Return lower bounds on the cost from each label's last node to the end of the route.
 
-        Each label has a set of `size` steps in `masks`, and a node in `last`. The shape is (kinds,
-        labels).
+        Each label has a set of `size` steps in `masks`, and a node in `last`. The shape is (kinds
+        of costs, labels); the costs are times or, as a second kind, times plus energies.
         """
         ...
 
@@ -40,7 +40,7 @@ class CompletionBound(Protocol):
         ...
 
     def contains(self, size: int, masks: Masks) -> NDArray[np.bool_]:
-        """Return, for each set of `size`, whether the search considers it."""
+        """Return, for each set of `size`, whether a route may have it; others are not searched."""
         ...
 
 
@@ -94,13 +94,13 @@ class DualBound:
     def _sums(self, size: int, both: NDArray[np.int64]) -> list[NDArray[np.int64]]:
         """Return tables of the sum of the steps' prices, for each value of each chunk of a mask.
 
-        A chunk has `_CHUNK` bits; `both` has the two prices of each step together. The first table
-        includes the steps that all sets of `size` contain.
+        A chunk has `_CHUNK` bits; `both` has the sum of the two prices of each step. The first
+        table includes the steps that all sets of `size` contain.
         """
         if size not in self._tables_by_size:
-            undecided, tables = self._bits.undecided_steps(size), []
+            undecided, tables = self._bits.steps_in_only_some_sets(size), []
             step_of_bit = {int(self._bits.bit(s)): s for s in np.flatnonzero(undecided).tolist()}
-            certain = both[:, self._bits.certain_steps(size)].sum(axis=1, keepdims=True)
+            certain = both[:, self._bits.steps_in_all_sets(size)].sum(axis=1, keepdims=True)
             for first in range(0, MOST_BITS, _CHUNK):
                 table = certain if first == 0 else np.zeros_like(certain)
                 for number in range(first, first + _CHUNK):

@@ -54,14 +54,15 @@ class StepMode:
         """Return the times and energies of drives to the step, with those of the step added.
 
         `times` and `energies` are those of several drives to the first visit. A resulting time is
-        NEVER if there is no such drive, or if the round has another exit after it.
+        NEVER if the drive is not one to the first visit, or if after that drive the round ends at
+        other visits than `exit`.
         """
         if self.entries is None or self.time is None or self.energy is None:
-            return add_capped(times, self.service), energies
+            return add_capped_at_never(times, self.service), energies
         index = np.minimum(np.searchsorted(self.entries, times), len(self.entries) - 1)
         known = self.entries[index] == times
         time = np.where(known, self.time[index], NEVER)
-        return time, add_capped(energies, self.energy[index])
+        return time, add_capped_at_never(energies, self.energy[index])
 
 
 @dataclass
@@ -110,7 +111,7 @@ def candidate_modes(
     ], exact
 
 
-def add_capped(times: Vector, more: int | Vector) -> Vector:
+def add_capped_at_never(times: Vector, more: int | Vector) -> Vector:
     """Return the sum of times, at most NEVER."""
     total: Vector = np.minimum(times + more, NEVER)
     return total
@@ -129,8 +130,8 @@ class StepOrder(Protocol):
         """Visits in the order of their first repetition."""
         ...
 
-    def outcome_after_drive(self, drive: int) -> "StepOutcome":
-        """Return the outcome of all repetitions after a drive to `first` that takes `drive` units.
+    def outcome_after_drive(self, drive_time: int) -> "StepOutcome":
+        """Return the outcome of all repetitions after a drive to `first` of this time (units).
 
         The time includes the drive; the energy does not.
         """
@@ -155,8 +156,8 @@ class _SingleVisit:
     def order(self) -> tuple[int, ...]:
         return (self.first,)
 
-    def outcome_after_drive(self, drive: int) -> StepOutcome:
-        return StepOutcome(min(drive + self.service, NEVER), 0, (self.first,))
+    def outcome_after_drive(self, drive_time: int) -> StepOutcome:
+        return StepOutcome(min(drive_time + self.service, NEVER), 0, (self.first,))
 
 
 class _RoundOrder:
@@ -213,13 +214,13 @@ class _RoundOrder:
             rows = [(end.time, end.energy, exits.index(end.exit)) for end in outcomes]
             time, energy, exit_index = np.array(rows, np.int64).reshape(-1, 3).T
             return time, energy, exits, exit_index
-        time = add_capped(drives, once.time)
+        time = add_capped_at_never(drives, once.time)
         repetitions = np.full(len(time), round_.repeat - 1 if round_.repeat else NEVER)
         if round_.duration:
             until_duration = -((time - round_.duration) // more.time)
             repetitions = np.minimum(repetitions, np.maximum(until_duration, 0))
         time, energy = (
-            add_capped(time, repetitions * more.time),
+            add_capped_at_never(time, repetitions * more.time),
             np.minimum(once.energy + repetitions * more.energy, NEVER),
         )
         interrupted = (
@@ -228,9 +229,9 @@ class _RoundOrder:
         time[interrupted] = round_.duration
         return time, energy, [once.exit, tuple(sorted(self.order))], interrupted.astype(np.int64)
 
-    def outcome_after_drive(self, drive: int) -> StepOutcome:
+    def outcome_after_drive(self, drive_time: int) -> StepOutcome:
         round_ = self._round
-        outcome, count = self.first_repetition(drive), 1
+        outcome, count = self.first_repetition(drive_time), 1
         while outcome.time < NEVER and (not round_.repeat or count < round_.repeat):
             if round_.duration and outcome.time >= round_.duration:
                 break

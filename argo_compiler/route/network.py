@@ -213,7 +213,7 @@ def _worst_drives(matrix: NDArray[np.int64], exits: list[tuple[int, ...]]) -> ND
 def _enter_nodes(
     nodes: list[StepMode], times: NDArray[np.int64], used: NDArray[np.int64], end: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return times and energies until each node's begin (a round's end), and until the end.
+    """Return times and energies until each single visit begins, each round ends, and the end.
 
     `times` and `used` have a row for each origin and a column for each location.
     """

@@ -88,11 +88,11 @@ class StepBits:
                 break  # they don't fit, whatever follows
         return numbers
 
-    def undecided_steps(self, size: int) -> NDArray[np.bool_]:
+    def steps_in_only_some_sets(self, size: int) -> NDArray[np.bool_]:
         """Return, for each step, whether only some sets of `size` contain it: then it has a bit."""
         return np.asarray((self._from < size) & (size < self._to))
 
-    def certain_steps(self, size: int) -> NDArray[np.bool_]:
+    def steps_in_all_sets(self, size: int) -> NDArray[np.bool_]:
         """Return, for each step, whether all sets of `size` contain it."""
         return np.asarray(size >= self._to)
 
@@ -114,8 +114,8 @@ class StepBits:
 
     def _rules(self, size: int) -> LayerRules:
         network, pruned = self._network, self._pruned
-        undecided, certain = self.undecided_steps(size), self.certain_steps(size)
-        undecided_next = self.undecided_steps(size + 1)
+        undecided, certain = self.steps_in_only_some_sets(size), self.steps_in_all_sets(size)
+        undecided_next = self.steps_in_only_some_sets(size + 1)
         bit, needs, ruled = (np.zeros(len(undecided), np.int64) for _ in range(3))
         may = pruned.steps & ~certain & (self._from <= size)
         may[may] &= ~pruned.needs[~undecided & ~certain][:, may].any(axis=0)

@@ -35,7 +35,7 @@ class Pruned:
 def prune(network: StepNetwork) -> Pruned:
     """Return what travel times, precedences, windows and the limit leave possible in a network."""
     m, step = network.size, network.step
-    best = least_arc_times(network)
+    best = least_arc_times_without_service(network)
     earliest, latest = _windows(network, best)
     arcs: NDArray[np.bool_] = best < NEVER
     needs, before = _orders(network, earliest, latest)
@@ -69,7 +69,7 @@ def prune(network: StepNetwork) -> Pruned:
 def _orders(
     network: StepNetwork, earliest: NDArray[np.int64], latest: NDArray[np.int64]
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Return the needs and the order between steps, with those that follow from the windows.
+    """Return `needs` and `before` of the network, with what follows from the windows.
 
     If `column` is too late even after `row` at its earliest, it must come before `row`.
     """
@@ -91,7 +91,7 @@ def _orders(
         needs = wider
 
 
-def least_arc_times(network: StepNetwork) -> NDArray[np.int64]:
+def least_arc_times_without_service(network: StepNetwork) -> NDArray[np.int64]:
     """Return the least time of each arc, straight or by a charger without the time of charging.
 
     It is a lower bound on the time from row to column, shape (m + 1, m + 1).
@@ -107,12 +107,12 @@ def least_arc_times(network: StepNetwork) -> NDArray[np.int64]:
 
 def horizon(network: StepNetwork) -> int:
     """Return an upper bound on the end of all routes that wait no longer than necessary."""
-    return min(network.limit, unlimited_horizon(network))
+    return min(network.limit, horizon_without_limit(network))
 
 
-def unlimited_horizon(network: StepNetwork) -> int:
+def horizon_without_limit(network: StepNetwork) -> int:
     """Return the horizon of a network without its limit on the duration."""
-    arcs = least_arc_times(network)
+    arcs = least_arc_times_without_service(network)
     arcs = np.where(arcs >= NEVER, 0, arcs)
     total = int(np.append(network.service, 0).sum() + arcs.max(axis=0).sum())
     battery = network.problem.battery
@@ -169,7 +169,7 @@ def least_path_times(network: StepNetwork) -> NDArray[np.int64]:
     Shape (m, m), by paths over any nodes. The bounds are exact for up to _MOST_NODES nodes.
     """
     m = network.size
-    least = least_arc_times(network)[:m, :m]
+    least = least_arc_times_without_service(network)[:m, :m]
     if m > _MOST_NODES:  # a path over another node has at least two arcs
         np.fill_diagonal(least, NEVER)
         out = least.min(axis=1) + network.service.min()

@@ -53,18 +53,19 @@ class Relaxation:
         if (limit := blocks.problem.max_duration) is not None:
             self._rows.append((np.arange(n + self._arcs), self._times, -inf, limit + 0.5))
 
-    def prize_bound(self, claimed: int) -> int | None:
+    def prize_bound(self, stop_at: int) -> int | None:
         """Return an upper bound on the prize of any route, or None if the relaxation has no route.
 
-        The search ends when the bound is at most the claimed one.
+        The search ends when the bound is at most `stop_at`.
         """
-        least = self._minimum(-self._prizes, 0, -claimed)
+        least = self._minimum(-self._prizes, 0, -stop_at)
         return None if least is None else -least
 
-    def cost_bound(self, prize: int, claimed: int) -> int | None:
-        """Return a lower bound on the cost of routes that win at least `prize`; None: none wins it.
+    def cost_bound(self, least_prize: int, stop_at: int) -> int | None:
+        """Return a lower bound on the cost of routes that win at least `least_prize`.
 
-        The search ends when the bound is at least the claimed one.
+        Returns None if there is no such route. The search ends when the bound is at least
+        `stop_at`.
         """
         if self._blocks.problem.objective is Objective.PRIZE:
             return 0
@@ -72,16 +73,16 @@ class Relaxation:
         if not self._blocks.problem.selective:
             rows, columns = linear_sum_assignment(self._least_times)
             cost = int(self._least_times[rows, columns].sum())
-            if cost >= claimed:
+            if cost >= stop_at:
                 return None if cost >= NEVER else cost
-        least = self._minimum(self._times, prize, claimed)
+        least = self._minimum(self._times, least_prize, stop_at)
         return None if least is None else max(least, cost)
 
     def _row(self, arcs: NDArray[np.bool_], block: int, least: float, most: float) -> Row:
-        """Return a constraint on how many of some arcs a route has, less 1 if it makes a block.
+        """Return a constraint on how many of some arcs a route has.
 
-        The number lies from `least` to `most`. Nothing is taken off for the start and end, which
-        have the number after the last block's.
+        Their number, minus 1 if the route makes the block, lies from `least` to `most`. Nothing is
+        subtracted for the start and end, which have the number after the last block's.
         """
         variables = np.flatnonzero(arcs)
         coefficients = np.ones(len(variables))

@@ -49,7 +49,7 @@ class RobustSuggestion:
 
     @property
     def dropped(self) -> tuple[int, ...]:
-        """Visits of the nominal route that this route leaves out."""
+        """Visits that this route leaves out, but the best route without any spread makes."""
         return tuple(sorted(set(self.nominal.order) - set(self.route.order)))
 
 
@@ -167,7 +167,10 @@ class _Search:
         return True
 
     def deviation(self, route: Tour) -> float:
-        """Return an estimate of the standard deviation of a route's duration, in units."""
+        """Return an estimate of the standard deviation of a route's duration.
+
+        Its unit is that of the problem.
+        """
         estimate = estimate_completion(self._problem, route, self._draws)
         return max(0.0, (estimate.duration_95 - estimate.duration) / 1.645)
 

@@ -75,7 +75,7 @@ class Draws:
 
 
 def _factors(deviation: float, samples: int, rng: np.random.Generator) -> Floats:
-    """Draw log-normal factors with mean 1 and a standard deviation."""
+    """Draw log-normal factors whose mean is 1, and whose standard deviation is `deviation`."""
     variance = log1p(deviation**2)
     return np.exp(rng.normal(-variance / 2.0, sqrt(variance), samples))
 
@@ -87,7 +87,7 @@ def completion_probability(
     samples: int,
     rng: np.random.Generator,
 ) -> Completion:
-    """Estimate the probability that the robot completes a route.
+    """Estimate the probability that the robot makes all visits of a route within the constraints.
 
     Raises Invalid if `samples` is below 1.
     """
@@ -183,7 +183,10 @@ class _SampledSimulation:
         self._location_set[selected] = self._sets.index(locations)
 
     def _drive(self, selected: Bools, location: int) -> Floats:
-        """Drive to a location, and return how often the service there is done in each sample."""
+        """Drive to a location in the `selected` samples.
+
+        Returns how often the service there is done in each sample.
+        """
         factors, delays, services = self.draws.leg(location, self._leg_counts[location])
         self._leg_counts[location] += 1
         nominal = self._worst(self.problem.travel, location)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.path_timing import PathTiming
 from argo_compiler.route.problem import NEVER, RouteProblem
-from argo_compiler.route.pruning import Pruned, least_arc_times
+from argo_compiler.route.pruning import Pruned, least_arc_times_without_service
 from argo_compiler.route.search import Search
 
 Path = tuple[int, ...]
@@ -43,7 +43,9 @@ class RuinRecreate:
     def solve(self, search: Search, /) -> None:
         best = search.best
         if best is not None and best.path is not None:
-            LocalSearch(search.network, search.pruned, search.seed).improve(best.path, search)
+            LocalSearch(search.network, search.pruned, search.seed).offer_improvements(
+                best.path, search
+            )
 
 
 def _charges(network: StepNetwork, path: Path) -> dict[int, int]:
@@ -59,7 +61,7 @@ class LocalSearch:
         self._network, self._pruned = network, pruned
         self._timing = PathTiming(network)
         self._rng = np.random.default_rng(seed)
-        self._near = least_arc_times(network)
+        self._near = least_arc_times_without_service(network)
         self._step = network.step.tolist()
         self._needs = [set(np.flatnonzero(column).tolist()) for column in pruned.needs.T]
         self._after = [set(np.flatnonzero(row).tolist()) for row in pruned.before]
@@ -67,7 +69,7 @@ class LocalSearch:
         self._is_time_up: Callable[[], bool] = lambda: False
         self._mandatory = np.flatnonzero(network.mandatory).tolist()
 
-    def improve(self, path: Path, search: Search) -> None:
+    def offer_improvements(self, path: Path, search: Search) -> None:
         """Search for better routes from a path until the time is up, and offer them."""
         best = current = path
         best_worth = current_worth = self._worth(path) or (0, -NEVER)
@@ -104,7 +106,10 @@ class LocalSearch:
         return prize, -self._timing.cost(label)
 
     def _ruin(self, path: Path) -> tuple[list[int], list[int]]:
-        """Return a path without some nodes near each other, and the steps that may be inserted."""
+        """Return a path without some nodes near each other, and the steps that may be inserted.
+
+        These are the removed steps, and some of those that the path has left out.
+        """
         m, rng = self._network.size, self._rng
         made = {self._step[node] for node in path}
         left_out = [s for s in np.flatnonzero(self._pruned.steps).tolist() if s not in made]

@@ -28,7 +28,10 @@ class Solution:
     method: str
 
     def better_than(self, other: "Solution | None") -> bool:
-        """Return True if this route wins a higher prize, or the same prize at a lower cost."""
+        """Return True if this wins a higher prize, or the same prize at a lower cost.
+
+        It is also True if `other` is None.
+        """
         return other is None or (-self.prize, self.cost) < (-other.prize, other.cost)
 
 
@@ -111,7 +114,7 @@ class Search:
 
     @property
     def timed(self) -> bool:
-        """True if the limit is one of time; under a limit of work nothing may depend on time."""
+        """True if there is no limit of work; under such a limit nothing may depend on time."""
         return self._shared.limits.work is None
 
     def now(self) -> float:
@@ -195,7 +198,10 @@ class Search:
 
     @property
     def method(self) -> str:
-        """Name of the solver that completed the proof, or, without one, found the best route."""
+        """Name of the solver that completed the proof, or, without one, found the best route.
+
+        It is empty without a route and a proof.
+        """
         best = self._shared.best
         return self._shared.method if self.proven or best is None else best.method
 

@@ -25,7 +25,10 @@ class LabelSolution:
     """number of the charger by the position in the path before which the robot charges"""
 
     def better_than(self, other: "LabelSolution | None") -> bool:
-        """Return True if this path wins a higher prize, or the same prize at a lower cost."""
+        """Return True if this path wins a higher prize, or the same prize at a lower cost.
+
+        A path is better than none; a result without a path is never better.
+        """
         if self.path is None:
             return False
         return (

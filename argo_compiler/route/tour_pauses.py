@@ -40,7 +40,7 @@ def pauses(problem: RouteProblem, route: Tour) -> dict[int, tuple[TourPause, ...
 
 
 def _prefix(route: Tour, visit_count: int, last_charge: int) -> Tour:
-    """Return the first `visit_count` visits of a route, with its charges up to a position."""
+    """Return a route's first `visit_count` visits, and its charges up to and with `last_charge`."""
     charges = {k: charger for k, charger in route.charges.items() if k <= last_charge}
     return Tour(route.order[:visit_count], charges)
 

@@ -53,8 +53,8 @@ class Battery:
     def is_empty(self) -> bool:
         return self._remaining <= 0.0
 
-    def wear(self, share: float) -> None:
-        """Reduce the capacity to this share of it; the charge, a share of the capacity, stays."""
+    def reduce_capacity_to(self, share: float) -> None:
+        """Reduce the capacity to this share of the present one; the charge, also a share, stays."""
         charge = self.charge
         self.capacity *= share
         self.charge = charge
@@ -79,13 +79,13 @@ class Battery:
         return limit
 
     @property
-    def state(self) -> tuple[float, float]:
+    def energy_and_load(self) -> tuple[float, float]:
         """Remaining energy (Wh) and present load (W), less than 0 while the battery is charged."""
         return self._remaining, self._load
 
-    @state.setter
-    def state(self, state: tuple[float, float]) -> None:
-        self._remaining, self._load = state
+    @energy_and_load.setter
+    def energy_and_load(self, energy_and_load: tuple[float, float]) -> None:
+        self._remaining, self._load = energy_and_load
 
     @property
     def current(self) -> float:

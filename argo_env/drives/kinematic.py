@@ -194,7 +194,7 @@ class KinematicDrive(NonCopyable, TimedDrive):
     def _upcoming_poses(self, count: int) -> Iterator[BodyPose]:
         """Yield the pose after each of the next `count` steps, until the flippers have to move."""
         assert self._timetable is not None
-        for motion, shares in self._timetable.motions_at(self._times_ahead(count)):
+        for motion, shares in self._timetable.iter_motions_at(self._times_ahead(count)):
             if self._flippers != _flippers_on(motion):
                 return
             for share in shares.tolist():

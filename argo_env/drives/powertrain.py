@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_env.drives.drive import Drive, DriveStatus, Incident
-from argo_env.drives.standstill import PATIENCE, first_motionless_step, has_moved
+from argo_env.drives.standstill import PATIENCE, has_moved_noticeably, motionless_step_number
 from argo_env.drives.timed_drive import TimedDrive, path_from_pose
 from argo_env.navigation.path import Path
 from argo_env.robot.pose import BodyPose, PoseArray, PoseTuple, pose_tuple_at
@@ -36,7 +36,7 @@ class Powertrain:
     """
 
     def __init__(self, drive: Drive, usual_speed_share: float = 1.0) -> None:
-        """`usual_speed_share` is the share of its speed that the drive reaches without a fault."""
+        """`usual_speed_share`: share of its normal speed that the drive reaches without a fault."""
         self._drive = drive
         self.name = drive.name
         self.time_step = drive.time_step
@@ -122,13 +122,13 @@ class Powertrain:
             return _NO_STEPS
         made = self._count_drive_steps(limit, drive.steps_left)
         poses = drive.poses_ahead(int(made[-1]) if len(made) else 0)
-        made = made[: np.searchsorted(made, first_motionless_step(_place(self._last_pose), poses))]
+        made = made[: np.searchsorted(made, motionless_step_number(_place(self._last_pose), poses))]
         if not self._makes_every_step:
             poses = np.concatenate([here, poses])[made]
         return StepsAhead(poses[: len(made)], made)
 
-    def advance(self, ahead: StepsAhead, passed: int, count: int) -> None:
-        """Make `count` of the steps that `steps_ahead` predicted, after the first `passed` of them.
+    def make_predicted_steps(self, ahead: StepsAhead, made_before: int, count: int) -> None:
+        """Make `count` of the steps of a prediction, after its first `made_before` steps.
 
         Earlier calls must have made those.
         """
@@ -137,14 +137,14 @@ class Powertrain:
             return
         drive = self._drive
         assert isinstance(drive, TimedDrive)
-        first = int(ahead.drive_steps[passed - 1]) if passed else 0
-        last = passed + count - 1
+        first = int(ahead.drive_steps[made_before - 1]) if made_before else 0
+        last = made_before + count - 1
         made = int(ahead.drive_steps[last])
         if self._makes_every_step:
             self._still_time = 0.0
         else:
             previous = first
-            for drive_steps in ahead.drive_steps[passed : passed + count].tolist():
+            for drive_steps in ahead.drive_steps[made_before : made_before + count].tolist():
                 self._credit += self.speed_share
                 if drive_steps > previous:
                     self._credit -= 1.0
@@ -182,7 +182,7 @@ class Powertrain:
     def _check_standstill(self) -> DriveStatus:
         """Return FAILED if the robot should have moved for PATIENCE s and has not, else MOVING."""
         here, before = self._drive.pose, self._last_pose
-        moved = before is None or has_moved(_place(before), _place(here))
+        moved = before is None or has_moved_noticeably(_place(before), _place(here))
         if moved:
             self._last_pose, self._still_time = here, 0.0
         elif self.path_and_velocity is not None:

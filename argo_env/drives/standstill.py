@@ -15,7 +15,7 @@ PATIENCE = 30.0  # s without any motion, after which the robot gives its path up
 _MOVED = 1e-3  # m or rad, above which a change of pose is a motion
 
 
-def first_motionless_step(before: PoseTuple, poses: PoseArray) -> int:
+def motionless_step_number(before: PoseTuple, poses: PoseArray) -> int:
     """Return the number, from 1, of the first step in which the robot does not move.
 
     Step k leads to pose k of `poses`, the first step from the pose `before`. If the robot moves in
@@ -25,11 +25,11 @@ def first_motionless_step(before: PoseTuple, poses: PoseArray) -> int:
     change = np.abs(np.diff(all_poses, axis=0))
     surely = (change[:, :4] > _MOVED).any(axis=1)
     for k in np.flatnonzero(~surely).tolist():
-        if not has_moved(pose_tuple_at(all_poses, k), pose_tuple_at(all_poses, k + 1)):
+        if not has_moved_noticeably(pose_tuple_at(all_poses, k), pose_tuple_at(all_poses, k + 1)):
             return k + 1
     return len(all_poses)
 
 
-def has_moved(before: PoseTuple, after: PoseTuple) -> bool:
+def has_moved_noticeably(before: PoseTuple, after: PoseTuple) -> bool:
     """Return True if two poses differ by more than 1 mm in position or 1 mrad in heading."""
     return math.dist(before[:3], after[:3]) > _MOVED or abs(after[3] - before[3]) > _MOVED

@@ -65,7 +65,9 @@ class TimedDrive(ABC):
             return DriveStatus.ARRIVED
         self._steps += 1
         arrived = self._steps >= count_steps(self._timetable.duration, self.time_step)
-        progress = self._timetable.motion_at(math.inf if arrived else self._steps * self.time_step)
+        progress = self._timetable.last_begun_motion_at(
+            math.inf if arrived else self._steps * self.time_step
+        )
         if progress is not None:
             self._pose = self._pose_at(*progress)
         if not arrived:
@@ -142,7 +144,7 @@ class RouteDrive(TimedDrive):
     def poses_ahead(self, count: int) -> PoseArray:
         assert self._timetable is not None
         poses, first = np.empty((count, 5)), 0
-        for motion, share in self._timetable.motions_at(self._times_ahead(count)):
+        for motion, share in self._timetable.iter_motions_at(self._times_ahead(count)):
             rows = poses[first : first + len(share)]
             for column, values in enumerate(motion.coordinates_at(share)):
                 rows[:, column] = values

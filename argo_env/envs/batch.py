@@ -84,7 +84,8 @@ class ProcessVectorEnv(Copyable, VectorEnv[Observation, NDArray[Any], NDArray[An
     ) -> tuple[Observation, dict[str, Any]]:
         """Reset all environments, and return their observations and infos, stacked.
 
-        An int seeds them with seed, seed + 1 and so on. The options are the same for all.
+        An int seeds them with seed, seed + 1 and so on; an environment with the seed None continues
+        its random numbers. The options are the same for all.
         """
         seeds = expand_seeds(seed, self.num_envs)
         self._has_episodes = False

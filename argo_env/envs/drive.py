@@ -18,14 +18,19 @@ from argo_env.envs.episode import (
     Copyable,
     Rendering,
     StateTypes,
-    check_begun,
     check_render_mode,
     check_state,
-    check_under_way,
     invalid_state_error,
+    require_episode_begun,
+    require_episode_under_way,
 )
 from argo_env.envs.observations import Observation, dict_space
-from argo_env.envs.options import MAX_DURATION, check_positive, check_scenario, read_options
+from argo_env.envs.options import (
+    MAX_DURATION,
+    check_positive,
+    check_scenario_is_string,
+    options_from_dict,
+)
 from argo_env.navigation.path import wrap
 from argo_env.pictures.drive import draw_drive
 from argo_env.robot.pose import BodyPose
@@ -151,7 +156,7 @@ class DriveEnv(Copyable, Rendering, gym.Env[Observation, NDArray[np.float32]]):
         check_render_mode(render_mode, self.metadata["render_modes"])
         names = tuple(scenario) if isinstance(scenario, tuple | list) else (scenario,)
         for name in names:
-            check_scenario(self._title, name)
+            check_scenario_is_string(self._title, name)
         check_positive(self._title, MAX_DURATION, time_limit=time_limit, max_way=max_way)
         if max_way < MIN_TRAVEL_TIME:
             raise Invalid(
@@ -183,19 +188,19 @@ class DriveEnv(Copyable, Rendering, gym.Env[Observation, NDArray[np.float32]]):
     ) -> tuple[Observation, dict[str, Any]]:
         super().reset(seed=seed)
         if options is not None:
-            self._sites.apply_options(read_options(DriveOptions, options, self._title))
+            self._sites.apply_options(options_from_dict(DriveOptions, options, self._title))
         # There is no episode until the new one has begun.
         self._over = None
         rng, chosen = self.np_random, self._sites.options
         names = self._sites.scenario_names
         name = names[int(rng.integers(len(names)))]
         guide = self._sites.get_site(name).guide
-        floors = chosen.floors or guide.floors
-        goals = guide.goals(floors)
+        floors = chosen.given_floors or guide.floors
+        goals = guide.goal_positions(floors)
         x, y, z = goals[int(rng.integers(len(goals)))].tolist()
         goal = (x, y, z)
         longest = chosen.max_way or self._max_way
-        starts = guide.starts(goal, floors, MIN_TRAVEL_TIME, longest)
+        starts = guide.start_positions(goal, floors, MIN_TRAVEL_TIME, longest)
         x, y, z = starts[int(rng.integers(len(starts)))].tolist()
         self._start_episode(name, (x, y, z, float(rng.uniform(-math.pi, math.pi))), goal)
         observation = self._observe()
@@ -206,13 +211,13 @@ class DriveEnv(Copyable, Rendering, gym.Env[Observation, NDArray[np.float32]]):
     def step(
         self, action: NDArray[np.float32]
     ) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        check_under_way(self._over, self._title)
+        require_episode_under_way(self._over, self._title)
         body = self._site.body
         self._apply_action(self._parse_action(action))
         before = self._time_to_goal
         observation = self._observe()
         success, tipped = self._success, self._tipped
-        touches = body.touches()
+        touches = body.pop_touches()
         terms = {
             "progress": PROGRESS * (before - self._time_to_goal),
             "goal": GOAL if success and not tipped else 0.0,
@@ -240,13 +245,13 @@ class DriveEnv(Copyable, Rendering, gym.Env[Observation, NDArray[np.float32]]):
     @property
     def pose(self) -> BodyPose:
         """True pose of the robot."""
-        check_begun(self._over, self._title)
+        require_episode_begun(self._over, self._title)
         return self._pose
 
     @property
     def goal(self) -> Position:
         """Position (x, y, z in m) of this episode's goal."""
-        check_begun(self._over, self._title)
+        require_episode_begun(self._over, self._title)
         return self._goal
 
     @property
@@ -261,7 +266,7 @@ class DriveEnv(Copyable, Rendering, gym.Env[Observation, NDArray[np.float32]]):
 
         It is plain data that can be pickled.
         """
-        check_begun(self._over, self._title)
+        require_episode_begun(self._over, self._title)
         return {
             "scenario": self._name,
             "options": self._sites.options.model_dump(mode="json", exclude_unset=True),
@@ -280,12 +285,12 @@ class DriveEnv(Copyable, Rendering, gym.Env[Observation, NDArray[np.float32]]):
         if len(state["start"]) != 4 or len(state["goal"]) != 3:
             raise invalid_state_error(self._title)
         actions = [self._parse_action(action) for action in state["actions"]]
-        self._sites.apply_options(read_options(DriveOptions, state["options"], self._title))
+        self._sites.apply_options(options_from_dict(DriveOptions, state["options"], self._title))
         self._over = None
         self._start_episode(state["scenario"], state["start"], state["goal"])
         for action in actions:
             self._apply_action(action)
-        self._site.body.touches()
+        self._site.body.pop_touches()
         self.np_random.bit_generator.state = state["generator"]
         observation = self._observe()
         self._over = self._success or self._tipped or len(self._actions) >= self._limit
@@ -312,8 +317,8 @@ class DriveEnv(Copyable, Rendering, gym.Env[Observation, NDArray[np.float32]]):
         self._name, self._start, self._goal = name, start, goal
         self._site = self._sites.get_site(name)
         self._site.body.reset(BodyPose(*start))
-        self._site.body.touches()
-        self._site.reset_camera()
+        self._site.body.pop_touches()
+        self._site.forget_camera_position()
         self._actions: list[Action] = []
 
     def _parse_action(self, action: Any) -> Action:
@@ -363,7 +368,7 @@ class DriveEnv(Copyable, Rendering, gym.Env[Observation, NDArray[np.float32]]):
         goal = self._to_robot_frame(*self._goal)
         observation = {
             "lidar": lidar.ray_distances(site.world, pose) / lidar.RANGE,
-            "ground": lidar.ground_heights(site.world, pose) / lidar.DEPTH,
+            "ground": lidar.relative_heights_along_tracks(site.world, pose) / lidar.DEPTH,
             "body": (
                 pose.pitch / (math.pi / 2), body.roll / (math.pi / 2), speed, turn / 1.2,
                 body.flipper / FLIPPER_LIMITS[1], left, right,
@@ -391,9 +396,9 @@ class DriveEnv(Copyable, Rendering, gym.Env[Observation, NDArray[np.float32]]):
 
     def _draw_picture(self) -> NDArray[np.uint8]:
         """Return a picture of the robot from behind, with the goal and the travel time to it."""
-        check_begun(self._over, self._title)
+        require_episode_begun(self._over, self._title)
         pose, goal, site = self._pose, self._goal, self._site
-        view, camera = site.render_view(pose, math.degrees(site.body.flipper))
+        view, camera = site.render_from_behind(pose, math.degrees(site.body.flipper))
         floors = site.site.floor_at(pose.z), site.site.floor_at(goal[2])
         return draw_drive(view, camera, goal, self._time, floors, self._time_to_goal)
 

@@ -83,7 +83,7 @@ class DriveSite(Closing):
         ]
         return min(shares, default=1.0)
 
-    def render_view(self, pose: BodyPose, flipper: float) -> tuple[CameraView, Camera]:
+    def render_from_behind(self, pose: BodyPose, flipper: float) -> tuple[CameraView, Camera]:
         """Return a picture of the robot at `pose` from behind, 640 × 360 px, and its camera.
 
         `flipper` is the angle of the flippers in degrees. The camera moves on from the previous
@@ -100,7 +100,7 @@ class DriveSite(Closing):
         camera = self._camera.next_camera(pose)
         return self._scene.render_from(camera), camera
 
-    def reset_camera(self) -> None:
+    def forget_camera_position(self) -> None:
         """Drop the camera, so that the next picture does not depend on earlier ones."""
         self._camera = None
 
@@ -120,7 +120,7 @@ class DriveOptions(Model):
     max_way: float | None = Field(default=None, ge=MIN_TRAVEL_TIME, le=MAX_DURATION, strict=True)
 
     @property
-    def floors(self) -> tuple[int, ...]:
+    def given_floors(self) -> tuple[int, ...]:
         """Floors that the option `floor` names; empty if it names none."""
         return (self.floor,) if isinstance(self.floor, int) else self.floor
 
@@ -161,7 +161,7 @@ class DriveSites:
                 if site is None:
                     site = added.pop(name, None) or DriveSite(name, options.faults)
                     _add_to_cache(added, name, site)
-                check_floors(name, site.guide.floors, options.floors)
+                check_floors(name, site.guide.floors, options.given_floors)
         except ArgoError:
             for site in added.values():
                 site.close()
@@ -189,7 +189,7 @@ class DriveSites:
 
 
 def _add_to_cache(sites: dict[str, DriveSite], name: str, site: DriveSite) -> None:
-    """Add the site; if the cache is full, close and remove the one that was added first."""
+    """Add the site; if the cache is full, close and remove the least recently used one."""
     sites[name] = site
     while len(sites) > _CACHED_SITES:
         sites.pop(next(iter(sites))).close()

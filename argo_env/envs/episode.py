@@ -21,9 +21,10 @@ _INTEGERS = (int, np.integer)
 
 
 def expand_seeds(seed: int | Sequence[int | None] | None, count: int) -> list[int | None]:
-    """Return a seed for each of `count` environments; an int gives seed, seed + 1 and so on.
+    """Return a seed for each of `count` environments.
 
-    Raises ValueError if the number of seeds is not `count`.
+    An int gives seed, seed + 1 and so on; None gives None for each. Raises ValueError if
+    the number of seeds is not `count`.
     """
     if seed is None:
         return [None] * count
@@ -34,15 +35,15 @@ def expand_seeds(seed: int | Sequence[int | None] | None, count: int) -> list[in
     return list(seed)
 
 
-def check_begun(over: bool | None, env: str) -> None:
+def require_episode_begun(over: bool | None, env: str) -> None:
     """Raise ResetNeeded if no episode has begun (`over` is None); the message names `env`."""
     if over is None:
         raise gym.error.ResetNeeded(f"{env}: no episode has begun: call reset")
 
 
-def check_under_way(over: bool | None, env: str) -> None:
+def require_episode_under_way(over: bool | None, env: str) -> None:
     """Raise ResetNeeded if no episode has begun (`over` is None), or if it is over (True)."""
-    check_begun(over, env)
+    require_episode_begun(over, env)
     if over:
         raise gym.error.ResetNeeded(f"{env}: the episode is over: call reset")
 
@@ -61,7 +62,8 @@ def parse_discrete_action(action: Any, count: int, env: str) -> int:
 def check_state(state: Any, parts: StateTypes, env: str) -> None:
     """Raise ArgoError unless the state is a mapping with exactly the `parts`, each of its type.
 
-    The parts `generator` and `begun` must be states of NumPy's PCG64. `env` is for the message.
+    The values of `generator` and `begun`, if these are among `parts`, must be states of NumPy's
+    PCG64. `env` is for the message.
     """
     fits = (
         isinstance(state, Mapping)
@@ -218,7 +220,7 @@ class Rendering:
     def render(self) -> NDArray[np.uint8] | None:
         """Return a picture, shape (height, width, 3), or show it in a window with `human`.
 
-        Returns None with `human` and without a render mode.
+        Returns None if the mode is `human`, and if there is no render mode.
         """
         if self.render_mode is None:
             return None

@@ -55,7 +55,7 @@ class Expert:
             self._plan()
         step = self._follower.step(pose, site.body.velocity)
         flight = self._find_flight(step.motion)
-        careful = self._flippers.step(flight, step.motion, pose, PERIOD)
+        careful = self._flippers.step_and_should_go_slowly(flight, step.motion, pose, PERIOD)
         speed = max(-CAREFUL_SPEED, min(CAREFUL_SPEED, step.speed)) if careful else step.speed
         rate = 0.0 if self._is_turn_complete(step.motion, pose) else step.turn_rate
         low, high = FLIPPER_LIMITS
@@ -70,7 +70,7 @@ class Expert:
         # The heading at the goal is free: take that of the straight line to it.
         yaw = math.atan2(y - pose.y, x - pose.x)
         path = site.navigator.plan(start, Pose(x=x, y=y, z=z, yaw=yaw))
-        self._follower = Follower(path, site.robot, None, site.body.pivot)
+        self._follower = Follower(path, site.robot, None, site.body.pivot_x)
 
     def _is_turn_complete(self, motion: Motion | None, pose: BodyPose) -> bool:
         """Return True if the motion is a turn at whose end the robot only has to come to rest."""
@@ -83,7 +83,7 @@ class Expert:
             return False
         if motion.turn:
             return math.hypot(pose.x - motion.start.x, pose.y - motion.start.y) > _MAX_DEVIATION
-        return abs(self._follower.deviation(motion, pose)[0]) > _MAX_DEVIATION
+        return abs(self._follower.left_offset_and_heading_error(motion, pose)[0]) > _MAX_DEVIATION
 
     def _find_flight(self, motion: Motion | None) -> Flight | None:
         """Return the flight of stairs of a motion, None on the level; cache the last one."""

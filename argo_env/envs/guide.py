@@ -69,7 +69,7 @@ class Guide:
         """Numbers of the floors on which the robot can start and arrive."""
         return tuple(self._positions)
 
-    def goals(self, floors: tuple[int, ...]) -> NDArray[np.float64]:
+    def goal_positions(self, floors: tuple[int, ...]) -> NDArray[np.float64]:
         """Return the possible goals (x, y, z in m) on these floors, shape (n, 3).
 
         There are at most GOALS on each floor, the same ones each time.
@@ -81,34 +81,34 @@ class Guide:
             parts.append(positions[np.sort(chosen), :3])
         return np.concatenate(parts)
 
-    def starts(
+    def start_positions(
         self,
         goal: tuple[float, float, float],
         floors: tuple[int, ...],
-        shortest: float,
-        longest: float,
+        least_seconds: float,
+        most_seconds: float,
     ) -> NDArray[np.float64]:
         """Return all possible start positions (x, y, z in m) on these floors, shape (n, 3).
 
-        Their travel times to the goal are between `shortest` and `longest` (s). If there are none,
-        those with the lowest time of at least `shortest` are returned.
+        Their travel times to the goal are from `least_seconds` to `most_seconds`. If there are
+        none, those with the lowest time of at least `least_seconds` are returned.
         """
         positions = np.concatenate([self._positions[floor] for floor in floors])[:, :3]
         seconds, _ = self._paths_to(goal)
         cells = self._cells[self._tree.query(positions)[1]]
         states = self._lattice.state_of[cells]
         time_to_goal = np.where(states >= 0, seconds[states], np.inf).min(axis=1)
-        suitable = (time_to_goal >= shortest) & (time_to_goal <= longest)
+        suitable = (time_to_goal >= least_seconds) & (time_to_goal <= most_seconds)
         if not suitable.any():
-            above = np.where(time_to_goal >= shortest, time_to_goal, np.inf)
+            above = np.where(time_to_goal >= least_seconds, time_to_goal, np.inf)
             suitable = above == above.min()
         return np.asarray(positions[suitable])
 
     def find_waypoint(self, goal: tuple[float, float, float], pose: BodyPose) -> Waypoint:
         """Return the next point of the path from a pose to the goal.
 
-        The path begins at the state of the lattice nearest to the pose, however far away it is, as
-        beside the walkway.
+        The path begins at the state of the lattice nearest to the pose, however far away it is: the
+        robot may be beside the walkway.
         """
         lattice = self._lattice
         seconds, following = self._paths_to(goal)

@@ -19,11 +19,11 @@ from argo_env.envs.episode import (
     Copyable,
     Rendering,
     StateTypes,
-    check_begun,
     check_render_mode,
     check_state,
-    check_under_way,
     parse_discrete_action,
+    require_episode_begun,
+    require_episode_under_way,
 )
 from argo_env.envs.inspection_drawing import draw_inspection
 from argo_env.envs.inspection_run import (
@@ -38,8 +38,8 @@ from argo_env.envs.options import (
     check_floors,
     check_integer,
     check_positive,
-    check_scenario,
-    read_options,
+    check_scenario_is_string,
+    options_from_dict,
 )
 from argo_env.faults.kinds import KINDS, AnyFault, resolve_faults
 from argo_env.faults.robot import EmergencyStop
@@ -65,7 +65,7 @@ class InspectOptions(Model):
     seed: int | None = Field(default=None, ge=0, strict=True)
 
     @property
-    def floors(self) -> tuple[int, ...]:
+    def given_floors(self) -> tuple[int, ...]:
         return (self.floor,) if isinstance(self.floor, int) else self.floor
 
 
@@ -219,7 +219,7 @@ class InspectEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
         check_render_mode(render_mode, self.metadata["render_modes"])
         if drive not in DRIVES:
             raise NotFound(f"there is no drive `{drive}`; choose one of: {', '.join(DRIVES)}")
-        check_scenario(self._title, scenario)
+        check_scenario_is_string(self._title, scenario)
         check_positive(self._title, MAX_DURATION, time_limit=time_limit)
         check_integer(self._title, 0, MAX_FAULTS, faults=faults)
         self.render_mode = render_mode
@@ -255,7 +255,7 @@ class InspectEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
     ) -> tuple[Observation, dict[str, Any]]:
         super().reset(seed=seed)
         if options is not None:
-            self._apply_options(read_options(InspectOptions, options, self._title))
+            self._apply_options(options_from_dict(InspectOptions, options, self._title))
         # There is no episode until the new one has begun.
         self._over = None
         self._state_at_reset = self.np_random.bit_generator.state
@@ -284,7 +284,7 @@ class InspectEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
         return observation, {"settings": spec.settings}
 
     def step(self, action: np.int64 | int) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        check_under_way(self._over, self._title)
+        require_episode_under_way(self._over, self._title)
         run, chosen = (
             self._current_run,
             parse_discrete_action(action, self._slots + self._docks, self._title),
@@ -324,7 +324,7 @@ class InspectEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
 
     def action_masks(self) -> NDArray[np.bool_]:
         """Return a mask of the actions that are legal now, shape (n + d,)."""
-        check_begun(self._over, self._title)
+        require_episode_begun(self._over, self._title)
         return self._mask.copy()
 
     def record(self) -> RunRecord:
@@ -345,7 +345,7 @@ class InspectEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
 
         It is plain data that can be pickled.
         """
-        check_begun(self._over, self._title)
+        require_episode_begun(self._over, self._title)
         return {
             "begun": self._state_at_reset,
             "options": self._options.model_dump(mode="json", exclude_unset=True),
@@ -381,7 +381,7 @@ class InspectEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
 
     @property
     def _current_run(self) -> Inspection:
-        check_begun(self._over, self._title)
+        require_episode_begun(self._over, self._title)
         assert self._run is not None
         return self._run
 
@@ -400,12 +400,12 @@ class InspectEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
                 "with larger `checkpoints` and `docks`"
             )
         floors = [floor.number for floor in site.spec.floors]
-        check_floors(scenario, floors, options.floors)
+        check_floors(scenario, floors, options.given_floors)
         if isinstance(options.faults, tuple):
             dock = site.docks[min(site.docks)]
             mission = initial_mission(opened, dock)
             check_spec(RunSpec(mission=mission, drive=self._drive, faults=options.faults), site)
-        floors_to_read = options.floors or floors
+        floors_to_read = options.given_floors or floors
         self._options, self._site = options, opened
         self._travel_times = cached_travel_times(opened.navigator)
         self._requested = np.zeros(self._slots, np.bool_)
@@ -414,9 +414,9 @@ class InspectEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
         ]
 
     def _count_slots(self, name: str, requested: int | None, existing: int, site: str) -> int:
-        """Return the number of slots: as many as the site needs, or the requested number.
+        """Return the number of slots: `existing`, which the site has, or the requested number.
 
-        Raises ArgoError if the requested number is too small for the site, or too large.
+        Raises ArgoError if the requested number is below `existing`, or above it and `_MAX_SLOTS`.
         """
         if requested is None:
             return existing
@@ -455,14 +455,14 @@ class InspectEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
             and not (run.is_time_up or run.is_battery_empty)
         )
         if arrived and slot != self._slots + self._end:
-            stay = run.stay(_WAIT, charging=True)
+            stay = run.stay(_WAIT, until_full=True)
             return replace(result, anomalies=result.anomalies + stay.anomalies), False
         return result, arrived
 
     def _observe(self) -> Observation:
         run, site, n = self._current_run, self._site.site, self._slots
         travel = self._estimate_travel_times()
-        alarm = EventKind.PLATFORM_ALARM in run.noticed
+        alarm = EventKind.PLATFORM_ALARM in run.kinds_noticed_so_far
         mask = np.zeros(n + self._docks, np.bool_)
         mask[:n] = (
             self._requested
@@ -479,7 +479,7 @@ class InspectEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
         points[n + self._end] = DOCKED
         float32 = np.float32
         floor = site.floor_at(run.pose.z) / len(site.spec.floors)
-        noticed = set(run.noticed)
+        noticed = set(run.kinds_noticed_so_far)
         return {
             "travel": np.minimum(travel / self._limit, 1.0).astype(float32),
             "points": (points / DOCKED).astype(float32),
@@ -495,7 +495,7 @@ class InspectEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
         """Return estimated times (s) to the slots, infinite for empty or unreachable ones."""
         run, site, n = self._current_run, self._site.site, self._slots
         docks = len(site.docks)
-        times = self._travel_times.times_from(run.pose, run.navigator)
+        times = self._travel_times.times_to_docks_and_checkpoints(run.pose, run.navigator)
         travel = np.full(n + self._docks, np.inf)
         travel[: len(times) - docks] = times[docks:]
         travel[n : n + docks] = times[:docks]

@@ -34,7 +34,8 @@ def draw_inspection(
         run: The inspection.
         states: State of each checkpoint, in the order of their numbers: `open`, `done`, `abnormal`,
             `closed` or `outside`.
-        chosen: Slot that was chosen last; None if none was.
+        chosen: Index of the checkpoint that was chosen last. It is None, or not below the number of
+            checkpoints, if none was.
         end: Index of the end dock, in the order of the docks' numbers.
         headline: Text above the plan.
     """
@@ -53,7 +54,9 @@ def draw_inspection(
     used = requested | {s.floor for s in stations} | {spot.floor for spot in path}
     sheet = site_sheet(scenario, min(used), max(used), tuple(sorted(requested)))
     shown = [marker for marker in markers if marker.floor in sheet.panels]
-    noticed = ", ".join(dict.fromkeys(kind.value.replace("_", " ") for kind in run.noticed))
+    noticed = ", ".join(
+        dict.fromkeys(kind.value.replace("_", " ") for kind in run.kinds_noticed_so_far)
+    )
     headline += f"    noticed: {noticed or 'nothing'}"
     footprint, heading = run.navigator.robot.footprint, run.pose.yaw
     return draw_plan(

@@ -117,7 +117,7 @@ class Inspection(Closing):
         return self._simulation.setup.navigator
 
     @property
-    def noticed(self) -> tuple[EventKind, ...]:
+    def kinds_noticed_so_far(self) -> tuple[EventKind, ...]:
         """Kinds of the anomalies noticed so far, in their order; a kind may occur repeatedly."""
         return tuple(self._noticed)
 
@@ -134,14 +134,14 @@ class Inspection(Closing):
         """Drive to a pose, and return what happened on the way."""
         return self._carry_out(Task(name=self._name("drive"), action=Action.WAYPOINT, pose=pose))
 
-    def stay(self, seconds: float, charging: bool = False) -> ActionResult:
-        """Stay where the robot is for `seconds`, and with `charging` until the battery is full too.
+    def stay(self, seconds: float, until_full: bool = False) -> ActionResult:
+        """Stay for `seconds`; with `until_full` longer, if needed, until the battery is full.
 
         It ends earlier if the time limit is reached or the run ends.
         """
         self._observer.clear()
         end = self.now + seconds
-        while not self._over and (self.now < end or (charging and self.charge < FULL)):
+        while not self._over and (self.now < end or (until_full and self.charge < FULL)):
             self._advance(end if self.now < end else self._earliest_full_time)
         if self.is_time_up:
             self._stop()
@@ -189,7 +189,7 @@ class Inspection(Closing):
             self._simulation.handle(StopRun(f"the time limit of {self._limit:g} s was reached"))
 
     def _advance(self, until: float) -> None:
-        """Let time pass by one time step, or by many up to the time `until` (s)."""
+        """Let one time step pass, or several, which may end before the time `until` (s)."""
         began = self.now
         poses = self._simulation.fast_forward(min(until, self._limit))
         for index in _spaced_indices(_position(self._trail[-1][1]), poses):
@@ -200,7 +200,7 @@ class Inspection(Closing):
     def _action_result(self, began: float = math.inf) -> ActionResult:
         """Return the result of the action, from what has happened since the observer was cleared.
 
-        It counts contacts in which there was a touch after the time `began` (s).
+        It counts the contacts that ended after the time `began` (s); none by default.
         """
         observer = self._observer
         anomalies = tuple(n for n in observer.sensed if isinstance(n, Anomaly))
@@ -312,7 +312,9 @@ class TravelTimes:
             "travel-times", lambda: {"times": navigator.travel_times_to(poses)}
         )["times"]
 
-    def times_from(self, pose: BodyPose, navigator: Navigator) -> NDArray[np.float64]:
+    def times_to_docks_and_checkpoints(
+        self, pose: BodyPose, navigator: Navigator
+    ) -> NDArray[np.float64]:
         """Return estimated times (s) from a pose to each dock and each checkpoint, shape (n,).
 
         First come the docks, then the checkpoints, both in the order of their numbers. Times are

@@ -32,11 +32,11 @@ def ray_distances(world: World, pose: BodyPose) -> NDArray[np.float64]:
     return np.minimum(world.hit_distances_or_inf(origin, ends + np.array(origin)), RANGE)
 
 
-def ground_heights(world: World, pose: BodyPose) -> NDArray[np.float64]:
+def relative_heights_along_tracks(world: World, pose: BodyPose) -> NDArray[np.float64]:
     """Return the heights (m) of the ground relative to the robot's point on the ground.
 
-    They are those along the right and the left track in turn, from rear to front, shape (2 *
-    len(ALONG),), and are limited to ±DEPTH.
+    From rear to front, each position has a height below the right and one below the left track,
+    shape (2 * len(ALONG),). They are limited to ±DEPTH.
     """
     cos, sin = math.cos(pose.yaw), math.sin(pose.yaw)
     points = _GROUND @ np.array([[cos, sin], [-sin, cos]]) + np.array([pose.x, pose.y])

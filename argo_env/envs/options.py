@@ -20,7 +20,7 @@ MAX_DURATION = 100_000.0
 """longest time (s) that an argument or an option may state"""
 
 
-def read_options(model: type[Options], given: Any, env: str) -> Options:
+def options_from_dict(model: type[Options], given: Any, env: str) -> Options:
     """Return the options of a `reset` as an object of `model`.
 
     NumPy's numbers and arrays are converted. Raises ArgoError if `given` is no dictionary or does
@@ -38,7 +38,7 @@ def read_options(model: type[Options], given: Any, env: str) -> Options:
         raise Invalid(f"wrong options of {env}: {wrong}; {known}") from None
 
 
-def check_scenario(env: str, scenario: Any) -> None:
+def check_scenario_is_string(env: str, scenario: Any) -> None:
     """Raise ArgoError if `scenario` is not a string, and so not the name of a site.
 
     It is not checked that there is such a site.

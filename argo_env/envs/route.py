@@ -12,11 +12,11 @@ from argo_env.envs.episode import (
     Copyable,
     Rendering,
     StateTypes,
-    check_begun,
     check_render_mode,
     check_state,
-    check_under_way,
     parse_discrete_action,
+    require_episode_begun,
+    require_episode_under_way,
 )
 from argo_env.envs.observations import Observation
 from argo_env.envs.route_drawing import draw_route
@@ -25,7 +25,7 @@ from argo_env.envs.route_episodes import (
     Episodes,
     episode_hash,
     observation_space,
-    read_route_options,
+    route_options_from_dict,
 )
 from argo_env.envs.route_instance import DOCK, score_route
 from argo_env.envs.route_sources import RouteSource
@@ -160,7 +160,7 @@ class RouteEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
     ) -> tuple[Observation, dict[str, Any]]:
         super().reset(seed=seed)
         if options is not None:
-            self._episodes.apply_options(read_route_options(options, self._episodes))
+            self._episodes.apply_options(route_options_from_dict(options, self._episodes))
             self._options = dict(options)
         if seed is not None or self._key is None:
             self._key, self._episode = int(self.np_random.integers(2**63)), 0
@@ -182,7 +182,7 @@ class RouteEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
         return observation, {"instance": self._number}
 
     def step(self, action: np.int64 | int) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        check_under_way(self._over, self._title)
+        require_episode_under_way(self._over, self._title)
         instance = self.instance
         node = parse_discrete_action(action, instance.node_count, self._title)
         illegal = not self._mask[node]
@@ -216,7 +216,7 @@ class RouteEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
 
     def action_masks(self) -> NDArray[np.bool_]:
         """Return a mask of the actions that are legal now, shape (n + 1,)."""
-        check_begun(self._over, self._title)
+        require_episode_begun(self._over, self._title)
         return self._mask.copy()
 
     def get_state(self) -> dict[str, Any]:
@@ -224,7 +224,7 @@ class RouteEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
 
         It is plain data that can be pickled.
         """
-        check_begun(self._over, self._title)
+        require_episode_begun(self._over, self._title)
         return {
             "key": self._key,
             "episode": self._episode,
@@ -256,7 +256,7 @@ class RouteEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
         if episode is not None:
             self.set_state(episode)
         elif options:
-            self._episodes.apply_options(read_route_options(options, self._episodes))
+            self._episodes.apply_options(route_options_from_dict(options, self._episodes))
             self._options = options
 
     def _observe(self) -> Observation:
@@ -287,10 +287,10 @@ class RouteEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
 
     def _draw_picture(self) -> NDArray[np.uint8]:
         """Return a picture of the route so far."""
-        check_begun(self._over, self._title)
+        require_episode_begun(self._over, self._title)
         return draw_route(
             self._episodes.source,
-            self._episodes.options.floors,
+            self._episodes.options.given_floors,
             self.instance,
             (self.instance.start, *self._route),
             score_route(self.instance, self._route).visited,

@@ -22,7 +22,7 @@ from argo_env.envs.route_episodes import (
     RouteOptions,
     episode_hash,
     observation_space,
-    read_route_options,
+    route_options_from_dict,
 )
 from argo_env.envs.route_instance import DOCK, VISITED
 from argo_env.envs.route_sources import RouteSource
@@ -98,11 +98,13 @@ class RouteVectorEnv(Copyable, VectorEnv[Observation, NDArray[np.int64], NDArray
         """Start a new route in each environment, and return their observations and infos.
 
         An int seeds them with seed, seed + 1 and so on. An environment without a seed continues
-        with the next episode of its last one.
+        with the next episode of its last seed, or is seeded randomly if it never had one.
         """
         seeds = expand_seeds(seed, self.num_envs)
         if options is not None:
-            self._episodes.apply_options(read_route_options(options, self._episodes, self.num_envs))
+            self._episodes.apply_options(
+                route_options_from_dict(options, self._episodes, self.num_envs)
+            )
         self._episode += 1
         for k, one in enumerate(seeds):
             if one is not None or not self._seeded[k]:
@@ -187,7 +189,7 @@ class RouteVectorEnv(Copyable, VectorEnv[Observation, NDArray[np.int64], NDArray
         return tuple(
             draw_route(
                 episodes.source,
-                episodes.options.floors,
+                episodes.options.given_floors,
                 episodes.instance(int(numbers[k])),
                 [int(self._place[k])],
                 (np.flatnonzero(self._missing[k, 1:] == VISITED) + 1).tolist(),

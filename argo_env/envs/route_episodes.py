@@ -22,8 +22,8 @@ from argo_env.envs.options import (
     check_floors,
     check_integer,
     check_positive,
-    check_scenario,
-    read_options,
+    check_scenario_is_string,
+    options_from_dict,
 )
 from argo_env.envs.route_instance import DOCK, MAX_CHECKPOINTS, RouteInstance
 from argo_env.envs.route_noise import NO_NOISE, RouteNoise
@@ -54,7 +54,7 @@ class RouteOptions(Model):
     test: StrictBool = False
 
     @property
-    def floors(self) -> tuple[int, ...]:
+    def given_floors(self) -> tuple[int, ...]:
         """Floors that the option `floor` names; empty if it names none."""
         return (self.floor,) if isinstance(self.floor, int) else self.floor
 
@@ -116,9 +116,9 @@ class Episodes:
         noise: Mapping[str, Any] | None = None,
     ) -> None:
         """Check the arguments; raise ArgoError if there is no such scenario or noise."""
-        self._noise = NO_NOISE if noise is None else read_options(RouteNoise, noise, _NAME)
+        self._noise = NO_NOISE if noise is None else options_from_dict(RouteNoise, noise, _NAME)
         if source is None:
-            check_scenario(_NAME, scenario)
+            check_scenario_is_string(_NAME, scenario)
             check_integer(_NAME, 1, MAX_CHECKPOINTS, checkpoints=checkpoints)
             check_positive(_NAME, MAX_DURATION, budget=budget)
         elif noise is not None:
@@ -181,7 +181,7 @@ class Episodes:
         return _draw_instance(self.source, self.options, number)
 
 
-def read_route_options(
+def route_options_from_dict(
     given: Mapping[str, Any], episodes: Episodes, batch_size: int | None = None
 ) -> RouteOptions:
     """Return the options of a `reset` as an object, checked for the environment's `episodes`.
@@ -189,11 +189,11 @@ def read_route_options(
     `batch_size` is the number of environments; None: it is a single one without a batch. Raises
     ArgoError if the options are invalid. They are not applied yet.
     """
-    options = read_options(RouteOptions, given, _NAME)
+    options = options_from_dict(RouteOptions, given, _NAME)
     if options.instance is not None:
         _check_instance(options, batch_size)
     source, scenario = episodes.source_for(options), episodes.scenario_name(options)
-    check_floors(scenario, range(1, source.floors + 1), options.floors)
+    check_floors(scenario, range(1, source.floors + 1), options.given_floors)
     available, slots = count_existing_checkpoints(source), episodes.size - 1
     if options.faults.closed > available:
         of = f"scenario {scenario}" if available < slots else "a route"
@@ -255,7 +255,7 @@ def episode_hash(key: Any, episode: Any) -> Any:
 
 
 def _draw_instance(source: RouteSource, options: RouteOptions, number: int) -> RouteInstance:
-    return source.draw(number, options.floors, options.faults)
+    return source.draw(number, options.given_floors, options.faults)
 
 
 def _make_pool(

@@ -23,7 +23,7 @@ def _tracked(world: "World", robot: "RobotSpec", friction: float) -> "Drive":
     from argo_env.drives.tracked.belts import Traction
     from argo_env.drives.tracked.drive import TrackedDrive
 
-    return TrackedDrive(world, robot, traction=Traction().scaled(friction))
+    return TrackedDrive(world, robot, traction=Traction().with_scaled_grip(friction))
 
 
 WORLD_DRIVES: dict[str, Callable[["World", "RobotSpec", float], "Drive"]] = {

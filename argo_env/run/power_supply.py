@@ -104,7 +104,7 @@ class PowerSupply:
         if docked.any():
             charging, remaining, loads = self._predict_docked(loads, docked, step_seconds)
         else:
-            current, _ = self._battery.state
+            current, _ = self._battery.energy_and_load
             remaining = np.cumsum(np.concatenate([[current], -(loads * step_seconds / 3600.0)]))[1:]
         empty = remaining <= 0.0
         last = int(empty.argmax()) if empty.any() else len(remaining)
@@ -118,7 +118,7 @@ class PowerSupply:
         `docked` states for each step whether the robot stands in a dock.
         """
         assert self._battery is not None
-        (remaining, _), capacity = self._battery.state, self._battery.capacity
+        (remaining, _), capacity = self._battery.energy_and_load, self._battery.capacity
         states = []
         for watts, at_station in zip(loads.tolist(), docked.tolist(), strict=True):
             charging = at_station and remaining / capacity < 1.0
@@ -146,7 +146,10 @@ class PowerSupply:
         """Set the supply to the predicted state after the step of this index, from 0."""
         self.charging = bool(predicted.charging[step])
         if self._battery is not None:
-            self._battery.state = float(predicted.remaining[step]), float(predicted.watts[step])
+            self._battery.energy_and_load = (
+                float(predicted.remaining[step]),
+                float(predicted.watts[step]),
+            )
 
     def charge_after(self, predicted: PredictedSupply, step: int) -> float | None:
         """Return the predicted charge (0 to 1) after the step of this index, from 0.

@@ -102,7 +102,7 @@ class StepBatch:
         count = step - self._passed_steps
         if self._ahead is not None:
             assert isinstance(self._drive, Powertrain)
-            self._drive.advance(self._ahead, self._passed_steps, count)
+            self._drive.make_predicted_steps(self._ahead, self._passed_steps, count)
         if self._action is not None:
             self._action.skip_steps(count, now)
         self._odometry.distance = float(self._distance[step])

@@ -68,7 +68,7 @@ def run(climb: Climb) -> ClimbOutcome:
     navigator, world = open_world()
     path = plan_flight(navigator, climb.tower, climb.storey, climb.up)
     rng = generator(climb.seed, "tracked", climb.tower, climb.storey, int(climb.up))
-    traction = Traction().scaled(1.0 + GRIP_ERROR * rng.uniform(-1.0, 1.0))
+    traction = Traction().with_scaled_grip(1.0 + GRIP_ERROR * rng.uniform(-1.0, 1.0))
     mass = 1.0 + MASS_ERROR * rng.uniform(-1.0, 1.0)
     x, y = rng.uniform(-START_ERROR, START_ERROR, 2)
     start = path.start

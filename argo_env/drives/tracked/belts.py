@@ -41,7 +41,7 @@ class Traction:
     stiffness: float = 77.0
     """1/m: share of the highest force for each m that grousers are bent; holds it on slopes"""
 
-    def scaled(self, factor: float) -> "Traction":
+    def with_scaled_grip(self, factor: float) -> "Traction":
         """Return the same traction with its grip, along and across, multiplied by `factor`."""
         return replace(self, grip=factor * self.grip, side_grip=factor * self.side_grip)
 
@@ -214,7 +214,8 @@ class Belts:
         """Update the bending of a belt's grousers by its slip, and return the push of the belt.
 
         `on` are the sums of the belt's contacts, `turning` is the body's turn rate (rad/s). The
-        push is the forces along and across over the normal force, and the torque (N m). Grousers
+        push is the forces along and to the left, each divided by the normal force, and the torque
+        (N m, not divided). Grousers
         that would push harder than the grip allows slide instead.
         """
         bends, at = self.bends, 3 * belt

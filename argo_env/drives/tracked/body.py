@@ -166,7 +166,7 @@ class TrackedBody(Connection):
         )
 
     @property
-    def pivot(self) -> float:
+    def pivot_x(self) -> float:
         """Position in m on the robot's x axis of the point about which the robot turns in place.
 
         It is below the robot's centre of mass.
@@ -198,8 +198,8 @@ class TrackedBody(Connection):
         half = self._robot.track_gauge / 2 * (self._turn + self._push)
         return self._speed - half, self._speed + half
 
-    def touches(self) -> tuple[Touch, ...]:
-        """Return the contacts, since the last call, with what the robot must not touch."""
+    def pop_touches(self) -> tuple[Touch, ...]:
+        """Return the contacts with what the robot must not touch, and discard them."""
         return self._contact_log.pop()
 
     def snapshot(self) -> Snapshot:

@@ -45,14 +45,16 @@ class RecoveryPhase:
     """rad"""
 
 
-def recovery_phases(motion: Motion, attempt: int, pitch: float) -> tuple[RecoveryPhase, ...]:
-    """Return the phases of an attempt (0, 1, ...) to free a robot that is stuck on `motion`.
+def recovery_phases(
+    motion: Motion, attempts_before: int, pitch: float
+) -> tuple[RecoveryPhase, ...]:
+    """Return the phases of the next attempt to free a robot that is stuck on `motion`.
 
     `pitch` is the robot's (rad): on a slope it only backs off.
     """
-    angle = _ANGLES[attempt % len(_ANGLES)]
+    angle = _ANGLES[attempts_before % len(_ANGLES)]
     if motion.turn:
-        side = 1 if attempt % 2 == 0 else -1
+        side = 1 if attempts_before % 2 == 0 else -1
         return (
             RecoveryPhase(1.0, 0.0, -math.copysign(_TURN, motion.turn), angle),
             RecoveryPhase(_ASIDE_TIME, side * _ASIDE, 0.0, angle),
@@ -198,7 +200,7 @@ class TrackedDrive(NonCopyable):
     def follow(self, path: Path, velocity: float | None) -> None:
         """Start to follow `path` at `velocity` (m/s) on the flat, or at the robot's own speeds."""
         self._clear()
-        self._follower = Follower(path, self._robot, velocity, self.body.pivot)
+        self._follower = Follower(path, self._robot, velocity, self.body.pivot_x)
 
     def halt(self) -> None:
         """Stop the tracks, and discard the path; the robot comes to rest in the next steps."""
@@ -212,7 +214,7 @@ class TrackedDrive(NonCopyable):
         for _ in range(round(self.time_step / _CONTROL)):
             self._control()
             self.body.advance(round(_CONTROL / TIME_STEP))
-        touches = self.body.touches()
+        touches = self.body.pop_touches()
         self._world.set_drive_touches(touches)
         if self._follower is not None and self._failure is None:
             self._check_motion(touches)
@@ -239,7 +241,9 @@ class TrackedDrive(NonCopyable):
             self._stopping_time = 0.0
             self._stop()
             return
-        careful = self._flippers.step(self._flight_for(step.motion), step.motion, pose, _CONTROL)
+        careful = self._flippers.step_and_should_go_slowly(
+            self._flight_for(step.motion), step.motion, pose, _CONTROL
+        )
         speed = max(-CAREFUL_SPEED, min(CAREFUL_SPEED, step.speed)) if careful else step.speed
         angle = self._flippers.angle
         if self._angle_time_left > 0.0:

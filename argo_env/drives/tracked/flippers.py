@@ -48,11 +48,11 @@ class Flight:
     slope: float
     """slope of the line through the nosings in rad"""
 
-    def edge_distances(self, pose: BodyPose) -> tuple[float, float]:
+    def distances_to_top_and_foot(self, pose: BodyPose) -> tuple[float, float]:
         """Return the distances (m) along the tracks from the robot's middle to top edge and foot.
 
-        They are positive downhill, and less than 0 for an edge that the middle has passed on its
-        way down.
+        They are positive while the edge lies downhill of the middle, whichever way the robot
+        drives, and less than 0 while it lies uphill.
         """
         at = (pose.x - self.x) * self.ahead[0] + (pose.y - self.y) * self.ahead[1]
         return (self.top - at) / math.cos(pose.pitch), (self.foot - at) / math.cos(pose.pitch)
@@ -87,7 +87,9 @@ class Flippers:
     def __init__(self) -> None:
         self.angle = RAISED
 
-    def step(self, flight: Flight | None, motion: Motion | None, pose: BodyPose, dt: float) -> bool:
+    def step_and_should_go_slowly(
+        self, flight: Flight | None, motion: Motion | None, pose: BodyPose, dt: float
+    ) -> bool:
         """Update `angle` for the next `dt` (s); return True if the robot should go slowly.
 
         `flight` is the one that the motion is on, None if that is not on stairs.
@@ -95,7 +97,7 @@ class Flippers:
         if flight is None or motion is None:
             self._towards(RAISED, FLIPPER_RATE, dt)
             return False
-        top, foot = flight.edge_distances(pose)
+        top, foot = flight.distances_to_top_and_foot(pose)
         on_flight = pose.pitch > flight.slope - _TIPPED
         if motion.gear < 0:
             if top > -0.35:

@@ -114,8 +114,11 @@ class Follower:
             stop_after = -self._pivot
         return motion.gear * (x * ahead[0] + y * ahead[1] + stop_after)
 
-    def deviation(self, motion: Motion, pose: BodyPose) -> tuple[float, float]:
-        """Return the robot's offset (m) to the left of a motion's line, and heading error (rad)."""
+    def left_offset_and_heading_error(self, motion: Motion, pose: BodyPose) -> tuple[float, float]:
+        """Return the offset (m) of the robot to the left of a motion's line, and the heading error.
+
+        The error (rad) is the robot's heading minus the motion's, positive counter-clockwise.
+        """
         yaw = motion.start.yaw
         x, y = pose.x - motion.start.x, pose.y - motion.start.y
         return y * math.cos(yaw) - x * math.sin(yaw), wrap(pose.yaw - yaw)
@@ -142,7 +145,7 @@ class Follower:
         speed = motion.speed(self._robot, self._velocity)
         if not self._continues():
             speed = min(speed, max(_CREEP, math.sqrt(2 * _BRAKING * left)))
-        side, heading = self.deviation(motion, pose)
+        side, heading = self.left_offset_and_heading_error(motion, pose)
         most = _MOST_CROSSING_ON_STAIRS if motion.on_stairs else _MOST_CROSSING
         if not self._continues():
             most = min(most, _STRAIGHTENING * max(0.0, left))

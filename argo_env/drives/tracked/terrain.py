@@ -102,7 +102,7 @@ class ContactLog:
         self._deepest: dict[tuple[str, str], Touch] = {}
 
     def add(self, contacts: list[tuple[Any, ...]], origin: Vector, axes: tuple[float, ...]) -> None:
-        """Add those of the contacts (rows of PyBullet's `getContactPoints`) whose force counts.
+        """Add the contacts (rows of PyBullet's `getContactPoints`) with at least `_LEAST_FORCE` N.
 
         `origin` (m) and `axes`, a rotation matrix row by row, are those of the robot's frame.
         """

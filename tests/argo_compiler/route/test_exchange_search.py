@@ -73,7 +73,7 @@ def test_it_is_compiled_once_for_small_and_large_problems() -> None:
     for size in (5, 40):
         suggest_route(with_orders(3, size, 4), None, work_limit=0.05, explain=False, solvers=ONLY)
     kernel = import_module("argo_compiler.route.exchange_kernel")
-    assert len(kernel.run.signatures) == 1
+    assert len(kernel.anneal.signatures) == 1
     assert len(kernel.set_line.signatures) == 1
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from argo_compiler.route import Objective, RouteProblem, Visit, suggest_route
 from argo_compiler.route.linear_relaxation import LinearRelaxation
 from argo_compiler.route.network import StepNetwork, build_network
-from argo_compiler.route.pruning import Pruned, least_arc_times, prune
+from argo_compiler.route.pruning import Pruned, least_arc_times_without_service, prune
 from argo_compiler.route.search import Search, SearchLimits
 from tests.argo_compiler.route.random_problems import random_problem
 from tests.argo_compiler.route.reference import best_value
@@ -33,7 +33,7 @@ def _prizes(net: StepNetwork) -> NDArray[np.int64]:
 
 
 def _times(net: StepNetwork) -> NDArray[np.int64]:
-    return np.asarray(least_arc_times(net) + np.append(net.service, 0))
+    return np.asarray(least_arc_times_without_service(net) + np.append(net.service, 0))
 
 
 def _require_best_route(

@@ -175,7 +175,7 @@ def test_errors_are_those_of_a_single_environment_with_the_place_in_the_worker(m
     with pytest.raises(Invalid, match="colour") as caught:
         batch.reset(options={"colour": 3})
     results = "".join(traceback.format_exception(caught.value))
-    assert "read_options" in results
+    assert "options_from_dict" in results
     assert "worker process" in results
     # Until all are reset, it is unknown which of them have made the step.
     with pytest.raises(gym.error.ResetNeeded):

@@ -21,8 +21,8 @@ from argo_env.pictures.drawing.floors import floor_plans
 from argo_env.pictures.drawing.label_placement import LabelPlacer, draw_plate
 from argo_env.pictures.drawing.path import (
     PathPoint,
+    draw_any_stairs_taken,
     draw_lines,
-    draw_stairs_taken,
     draw_thin_lines,
     path_lines,
 )
@@ -199,7 +199,7 @@ def _draw_floor(
     for x, y, own_floor, name in stations:
         if own_floor == floor:
             draw_plate(draw, labels, sheet.pixel_at(x, y, floor), name, floor)
-    draw_stairs_taken(draw, sheet, labels, new)
+    draw_any_stairs_taken(draw, sheet, labels, new)
     draw_headline(draw, headline)
     _draw_legend(draw, bool(thin), bool(bold), len(number_of) < planned.problem.size)
     return np.asarray(image.reduce(FINER), dtype=np.uint8)

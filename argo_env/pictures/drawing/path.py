@@ -96,13 +96,13 @@ def draw_thin_lines(
         _stroke(draw, line.points, round(1.2 * FINER), ink)
 
 
-def draw_stairs_taken(
+def draw_any_stairs_taken(
     draw: ImageDraw.ImageDraw, sheet: FloorSheet, labels: LabelPlacer, path: Sequence[PathPoint]
 ) -> bool:
     """Draw a mark at each position where the path changes floors, with the other floor's number.
 
     Returns:
-        True if any were taken on the floors that the sheet has.
+        True if a mark was drawn: stairs are taken on a floor that the sheet has.
     """
     marked: list[tuple[PathPoint, int, str]] = []
     for here, other, ink in _floor_changes(path):

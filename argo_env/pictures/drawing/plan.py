@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from PIL import ImageDraw
 
 from argo_env.pictures.drawing.label_placement import LabelPlacer, draw_plate
-from argo_env.pictures.drawing.path import PathPoint, draw_lines, draw_stairs_taken, path_lines
+from argo_env.pictures.drawing.path import PathPoint, draw_any_stairs_taken, draw_lines, path_lines
 from argo_env.pictures.drawing.sheet import FINER, FloorSheet, Pixel
 from argo_env.pictures.drawing.style import (
     POINT,
@@ -99,7 +99,7 @@ def draw_plan(sheet: FloorSheet, plan: PlanDrawing) -> NDArray[np.uint8]:
         paint_robot(draw, robot, plan.footprint, scale, plan.heading)
     else:
         paint_point_robot(draw, robot)
-    stairs = draw_stairs_taken(draw, sheet, labels, plan.path)
+    stairs = draw_any_stairs_taken(draw, sheet, labels, plan.path)
     for marker, position in zip(plan.markers, discs, strict=True):
         if marker.chosen:
             paint_ring(draw, position, marker.radius)

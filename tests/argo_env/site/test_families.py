@@ -51,7 +51,7 @@ def test_a_draw_keeps_the_norms_and_has_the_requested_properties(family):
     assert draw_site_and_slots(family) == (spec, slots)
     # Checkpoints avoid refused slots.
     refused = set(list(slots.values())[:5])
-    assert not refused & set(draw_site_and_slots(family, refused=refused)[1].values())
+    assert not refused & set(draw_site_and_slots(family, refused_slots=refused)[1].values())
 
 
 @pytest.mark.long

@@ -10,7 +10,12 @@ from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Conflict, NotFound, Remedy
 from argo_env.evaluation.case import PlanName
-from argo_env.evaluation.estimates.pairs import Difference, SuccessPairs, mean_difference, power
+from argo_env.evaluation.estimates.pairs import (
+    FirstMinusSecond,
+    SuccessPairs,
+    mean_first_minus_second,
+    power,
+)
 from argo_env.evaluation.estimates.rates import world_means
 from argo_env.evaluation.estimates.sequences import ConfidenceSequence
 from argo_env.evaluation.results import EvaluationResults
@@ -49,14 +54,14 @@ class PlanComparison:
         }
 
     @cached_property
-    def success(self) -> Difference:
+    def success(self) -> FirstMinusSecond:
         """Difference of the success rates, first plan minus second plan, over worlds.
 
         Runs of one world with several sets of faults depend on each other and count as one. The 95
         % interval is valid whatever the true rates are.
         """
         shares = _world_means(lambda row: float(row.success), list(self.pairs))
-        estimate = mean_difference(*shares)
+        estimate = mean_first_minus_second(*shares)
         if not self.pairs:
             return estimate
         if self.has_independent_pairs and not self.any_time:
@@ -85,16 +90,16 @@ class PlanComparison:
         return len({a.seed for a, _ in self.pairs}) == len(self.pairs)
 
     @cached_property
-    def duration(self) -> Difference:
+    def duration(self) -> FirstMinusSecond:
         """Mean difference of the durations in s, first plan minus second, where both succeeded."""
         both = [pair for pair in self.pairs if pair[0].success and pair[1].success]
-        return mean_difference(*_world_means(lambda row: row.duration or 0.0, both))
+        return mean_first_minus_second(*_world_means(lambda row: row.duration or 0.0, both))
 
     @cached_property
-    def distance(self) -> Difference:
+    def distance(self) -> FirstMinusSecond:
         """Mean difference of the distances in m, first plan minus second, where both succeeded."""
         both = [pair for pair in self.pairs if pair[0].success and pair[1].success]
-        return mean_difference(*_world_means(lambda row: row.distance or 0.0, both))
+        return mean_first_minus_second(*_world_means(lambda row: row.distance or 0.0, both))
 
     def power(self, gain: float) -> float:
         """Return the power of McNemar's exact test for this number of pairs.
@@ -110,7 +115,7 @@ class PlanComparison:
 
     @property
     def conclusion(self) -> str:
-        """Conclusion of the comparison in one sentence; A is the first plan, B the second."""
+        """Conclusion in one sentence; A is the first of the evaluated plans, B the second."""
         excludes_zero = self.success.low > 0.0 or self.success.high < 0.0
         is_significant = excludes_zero if self.any_time else self.p_value <= 0.05
         if is_significant:
@@ -165,7 +170,7 @@ def compare_plans(
 
 
 def find_plan(results: EvaluationResults, name: str) -> PlanName:
-    """Return the evaluation's plan with this label in tables or, without one, with this mission.
+    """Return the evaluation's plan with this label or, if no plan has it, the one of this mission.
 
     Raises NotFound if there is no such plan, Conflict if there are several.
     """

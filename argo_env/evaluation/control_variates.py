@@ -89,7 +89,7 @@ def run_with_control_variate(
     could be run with both drives. Raises ArgoError for several plans at once, strata, too few
     worlds, or a cheap drive that can't have the same faults.
     """
-    cheap = with_drive(plan, drive)
+    cheap = make_cheap_plan(plan, drive)
     pilot_seeds = plan.seeds[:PILOT]
     expensive_start = clock()
     expensive_pilot = make(_with_seeds(plan, pilot_seeds))
@@ -105,7 +105,7 @@ def run_with_control_variate(
     paying = [control for control in controls.values() if control.pays]
     more: tuple[int, ...] = ()
     if paying:
-        times = max(min(control.cheap_runs, MOST_CHEAP) for control in paying)
+        times = max(min(control.cheap_runs_per_expensive_run, MOST_CHEAP) for control in paying)
         count = min(MOST_CHEAP, math.ceil((times - 1) * len(seeds)))
         more = tuple(range(max(plan.seeds) + 1, max(plan.seeds) + 1 + count))
     cheap_results = make(_with_seeds(cheap, (*seeds, *more))) if more else None
@@ -115,8 +115,8 @@ def run_with_control_variate(
     )
 
 
-def with_drive(plan: EvaluationPlan, drive: str) -> EvaluationPlan:
-    """Return the same evaluation plan with a cheap drive.
+def make_cheap_plan(plan: EvaluationPlan, drive: str) -> EvaluationPlan:
+    """Return the evaluation plan with this cheap drive in all cases, and without its rule to stop.
 
     Raises ArgoError if cheap runs can't help this evaluation, or the drive can't have its faults.
     """

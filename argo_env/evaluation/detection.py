@@ -56,8 +56,8 @@ def detections(record: RunRecord, site: Site) -> tuple[FaultDetection, ...]:
     """Return each fault that occurred in a run on the site and can be found, with its delay.
 
     A fault that the robot did not find has no delay. Among faults of one kind, each anomaly counts
-    for one fault only, in the order of time. It counts for faults of two kinds if both have the
-    same sign at the same location.
+    for one fault only, in the order of time. It counts for faults of two kinds if both lead to the
+    same kind of anomaly (`Fault.sign`) at the same location.
     """
     assigned: set[tuple[str, int]] = set()
     found = []
@@ -90,9 +90,9 @@ class _GroundTruth:
     site: Site
 
     def was_abnormal(self, finding: Finding) -> bool:
-        """Return True if the finding's checkpoint truly showed a value outside its nominal range.
+        """Return True if the finding's checkpoint had an abnormal value in this world anyway.
 
-        That is its value without faults.
+        That is a value outside the checkpoint's nominal range that is not due to a fault.
         """
         reading = find_reading(finding, self.record)
         if reading is None:
@@ -122,7 +122,7 @@ class _GroundTruth:
         return finding.source == "camera" and conditions.sensor_noise > 0
 
     def is_caused_by(self, finding: Finding, fault: AnyFault) -> bool:
-        """Return True if the fault may be the cause of the finding, also by misread values."""
+        """Return True if the fault may be the cause; a camera fault may cause any reading."""
         if may_be_caused_by(finding, fault, self.record, self.site):
             return True
         # A faulty camera may misread any value.

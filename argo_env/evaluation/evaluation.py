@@ -46,9 +46,9 @@ class Evaluation:
         """Prepare the evaluation of missions and sets of faults, given by their names.
 
         Without `faults` nothing goes wrong. With requirements in `require`, such as
-        `["success >= 0.98"]`, or a `width` of intervals, the evaluation stops as soon as the
-        requirements are decided and the width is reached. Raises ArgoError for missions, faults or
-        worlds that can't be run.
+        `["success >= 0.98"]`, or a `width` of intervals (from end to end, 0 to 1), the evaluation
+        stops as soon as the requirements are decided and the width is reached. Raises ArgoError for
+        missions, faults or worlds that can't be run.
         """
         by_name = {"mission": missions} if isinstance(missions, Mission) else missions
         if not by_name:
@@ -97,7 +97,8 @@ class Evaluation:
 
         Args:
             workers: Number of workers; None for one per usable processor, or for all of a cluster.
-            folder: Folder in which rows are stored; runs whose rows it has are not repeated.
+            folder: Folder in which rows are stored; runs whose rows it has are not repeated. None:
+                nothing is stored.
             backend: Back end of the workers, or its name.
             address: Address of an existing cluster, if the back end has one.
             replace: Whether to replace another evaluation in the folder. Only those of its rows

@@ -118,7 +118,7 @@ class EvaluationFile(Model):
 
     @model_validator(mode="after")
     def _no_requirement_on_strata(self) -> "EvaluationFile":
-        if self.strata and self.require:
+        if self.is_stratified and self.require:
             raise ValueError(
                 "strata have no worlds in common, so that no requirement can be checked "
                 "repeatedly: give `stop: {width: ...}` instead"
@@ -126,7 +126,7 @@ class EvaluationFile(Model):
         return self
 
     @property
-    def strata(self) -> bool:
+    def is_stratified(self) -> bool:
         """True if runs are allocated to the faults by their uncertainty (stratified sampling)."""
         return isinstance(self.faults, DrawnFaults) and self.faults.strata
 

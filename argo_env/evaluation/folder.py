@@ -43,13 +43,13 @@ def open_rows(
     digest: str,
     *,
     replace: bool = False,
-    helper: EvaluationPlan | None = None,
+    cheap_plan: EvaluationPlan | None = None,
 ) -> RowStore:
     """Open the rows of an evaluation in its folder for writing, and store its plan beside them.
 
     An evaluation in the folder is continued if it has the same cases and the same seeds or a subset
     of them; its rule to stop may be another. `replace` replaces any other evaluation and keeps only
-    its rows that belong to the new plan, or to `helper`, the plan of cheap runs that help it.
+    its rows that belong to the new plan, or to `cheap_plan`.
 
     Raises Conflict for another evaluation if `replace` is False, or if another process evaluates
     into the folder; Unavailable if the folder can't be written.
@@ -63,7 +63,7 @@ def open_rows(
                     "plan, and keep those of its rows that fit",
                     remedies=(Remedy.CHOOSE_OUTPUT, Remedy.REPLACE),
                 )
-            plans = (plan,) if helper is None else (plan, helper)
+            plans = (plan,) if cheap_plan is None else (plan, cheap_plan)
             seeds = set(plan.seeds)
             store.keep_only(
                 lambda row: any(p.contains(row, seeds if p is plan else {row.seed}) for p in plans)
@@ -81,7 +81,7 @@ def _continues(folder: Path, plan: EvaluationPlan) -> bool:
     It can if it differs at most by more seeds and by its rule to stop.
     """
     try:
-        stored = read_plan(folder)
+        stored = find_stored_plan(folder)
     except Invalid:
         return False  # of another version of Argo
     return stored is None or (
@@ -109,7 +109,7 @@ def write_file(path: Path, text: str) -> Path:
     return path
 
 
-def read_plan(folder: Path, digest: str | None = None) -> EvaluationPlan | None:
+def find_stored_plan(folder: Path, digest: str | None = None) -> EvaluationPlan | None:
     """Return the plan stored in the folder, or None if there is none.
 
     With a `digest` (of `digest_contents`), a plan that was made from other contents also gives
@@ -134,24 +134,24 @@ def read_results(folder: Path) -> EvaluationResults:
     An evaluation that has not ended gives the worlds before the first world with a missing run.
     Raises NotFound if the folder has no evaluation.
     """
-    plan = read_plan(folder)
+    plan = find_stored_plan(folder)
     if plan is None:
         raise NotFound(f"{folder} has no evaluation")
-    rows = sort_rows(plan, read_rows(folder))
+    rows = own_rows_by_seed(plan, read_rows(folder))
     if plan.strata or len(rows) == len(plan.seeds) * len(plan.cases) or should_stop(plan, rows):
         return EvaluationResults(plan, rows)
-    return EvaluationResults.from_partial_rows(plan, rows)
+    return EvaluationResults.from_worlds_before_first_gap(plan, rows)
 
 
-def sort_rows(plan: EvaluationPlan, rows: tuple[RunRow, ...]) -> tuple[RunRow, ...]:
-    """Return the rows that belong to the plan, in the order of its seeds and, within, its cases."""
+def own_rows_by_seed(plan: EvaluationPlan, rows: tuple[RunRow, ...]) -> tuple[RunRow, ...]:
+    """Return those rows that belong to the plan, in the order of its seeds, then of its cases."""
     seeds = {seed: k for k, seed in enumerate(plan.seeds)}
     by_key = {row.key: row for row in rows}
     own_rows = [row for row in by_key.values() if plan.contains(row, seeds)]
     return tuple(sorted(own_rows, key=lambda row: (seeds[row.seed], plan.case_index(row))))
 
 
-def write_failing_specs(folder: Path, results: EvaluationResults) -> dict[str, Path]:
+def replace_failing_specs(folder: Path, results: EvaluationResults) -> dict[str, Path]:
     """Write a spec file for each unsuccessful run, and return the paths by the rows' keys.
 
     A run can be repeated alone from its file. At most 1,000 files are written; all other spec

@@ -106,9 +106,10 @@ class EvaluationPlan(Model):
         return self.key(self.planned_run(case, row.seed)) == row.key
 
     def faults_for(self, case: str, seed: int) -> str:
-        """Return the name of a run's faults: of those drawn, or `case` if the plan never draws any.
+        """Return the name of the faults drawn for a run, or `case` if the plan never draws any.
 
-        `case` is the name of the case's set of faults.
+        It is `NOTHING` if the plan draws faults, but none for this seed. `case` is the name of the
+        case's set of faults.
         """
         return self.drawn_faults(seed) or case
 
@@ -120,7 +121,7 @@ class EvaluationPlan(Model):
         """
         if self.variation.faults is None:
             return ""
-        return self.variation.faults_for(seed) or NOTHING
+        return self.variation.drawn_faults_name(seed) or NOTHING
 
     def check(self) -> None:
         """Raise ArgoError for an invalid plan.
@@ -156,7 +157,7 @@ class PlannedRun:
 
 
 def parse_seeds(text: str) -> tuple[int, ...]:
-    """Parse seeds as people write them: `0..999`, `7`, or several of these with commas.
+    """Parse seeds: `0..999` (999 included), `7`, or several of these with commas.
 
     Raises Invalid for anything else, and for seeds that are repeated, too large or too many.
     """

@@ -15,7 +15,7 @@ from argo_env.evaluation.rates import PlanRate
 from argo_env.evaluation.results import (
     DurationCurve,
     EvaluationResults,
-    cluster_failures,
+    cluster_failures_by_location,
     duration_curve,
 )
 from argo_env.evaluation.row import RunOutcome
@@ -413,7 +413,11 @@ def failure_places(
                 str(checkpoint.id), (x, y), (3, 3), textcoords="offset points",
                 fontsize=FONT - 2, color=INK,
             )  # fmt: skip
-    clusters = [cluster for cluster in cluster_failures(results.failing) if cluster.floor == floor]
+    clusters = [
+        cluster
+        for cluster in cluster_failures_by_location(results.failing)
+        if cluster.floor == floor
+    ]
     most = max((cluster.runs for cluster in clusters), default=1)
     for cluster in reversed(clusters):  # those with most failures are drawn last, on top
         is_single = cluster.runs == 1

@@ -114,12 +114,12 @@ def _outcomes(rows: Sequence[RunRow], quantity: Callable[[RunRow], bool | None])
 def estimate_run_rate(
     evaluation: EvaluationPlan, outcomes: Sequence[bool], any_time: bool = False
 ) -> tuple[Rate, IntervalMethod]:
-    """Compute the rate of independent runs, one in each world, and the method of its interval.
+    """Compute the rate of runs, taken as independent, and the method of its interval.
 
-    `outcomes` states which runs have the property. The interval is exact if that is valid: if the
-    number of runs or the width of the interval was fixed before. It is a confidence sequence with
-    `any_time`, or if the evaluation has a requirement, at whose decision it stops: that is the more
-    likely the farther the runs deviate from the truth.
+    `outcomes` states which runs have the property. The interval is a confidence sequence with
+    `any_time`, or if the evaluation has a requirement, at whose decision it stops. Such a stop is
+    more likely the farther the outcomes so far deviate from the true rate. Otherwise the interval
+    is that of Clopper and Pearson, which is exact for a number of runs that was fixed before.
     """
     count, runs = sum(outcomes), len(outcomes)
     if not (evaluation.stopping.require or any_time):
@@ -140,7 +140,7 @@ def world_shares(
     return weighted_world_means(((row.seed, row.faults, quantity(row)) for row in rows), weights)
 
 
-def quick_rate(outcomes: Counter[RunOutcome]) -> PlanRate:
+def approximate_success_rate(outcomes: Counter[RunOutcome]) -> PlanRate:
     """Compute the success rate with an approximate interval, for display during the evaluation."""
     ran = outcomes[RunOutcome.SUCCESS] + outcomes[RunOutcome.FAILURE]
     rate = wilson(outcomes[RunOutcome.SUCCESS], ran)

@@ -55,10 +55,12 @@ class EvaluationResults:
     it"""
 
     @staticmethod
-    def from_partial_rows(plan: EvaluationPlan, rows: Iterable[RunRow]) -> "EvaluationResults":
+    def from_worlds_before_first_gap(
+        plan: EvaluationPlan, rows: Iterable[RunRow]
+    ) -> "EvaluationResults":
         """Return the results of an evaluation that was cut short, from its rows so far.
 
-        They have the worlds before the first world with a missing run. Later worlds are left out,
+        They have all worlds before the first world with a missing run. Later worlds are left out,
         as their outcomes depend on how long runs take.
         """
         by_world: dict[int, list[RunRow]] = defaultdict(list)
@@ -256,7 +258,7 @@ class FailureCluster:
         return self.tasks.total()
 
 
-def cluster_failures(rows: Iterable[RunRow]) -> tuple[FailureCluster, ...]:
+def cluster_failures_by_location(rows: Iterable[RunRow]) -> tuple[FailureCluster, ...]:
     """Group unsuccessful runs by the location where they failed, sorted by floor.
 
     Each is at most half a metre from the first run of its cluster. Rows without a location are left

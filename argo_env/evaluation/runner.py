@@ -101,7 +101,7 @@ class EvaluationProgress:
         return sum(counts.total() for counts in self.outcomes.values())
 
     @property
-    def remaining(self) -> float | None:
+    def longest_remaining_seconds(self) -> float | None:
         """Longest remaining time in s at the present pace; None before a run has been executed."""
         executed = self.completed_runs - self.stored_runs
         return (self.max_runs - self.completed_runs) * self.seconds / executed if executed else None
@@ -167,7 +167,7 @@ class EvaluationRunner:
 
         Moves the rows of the store to a Parquet file at the end.
         """
-        for batch in batches(self._plan, self._rows):
+        for batch in all_runs_in_batches(self._plan, self._rows):
             yield from self._run_batch(batch)
         if self._store is not None:
             self._store.compact()
@@ -187,7 +187,7 @@ class EvaluationRunner:
         for finished in self._as_completed(pending):
             row = self._row_for(finished)
             if self._store is not None:
-                self._store.add(row)
+                self._store.add_if_new(row)
                 if self._store.uncompacted >= _COMPACT_AT:
                     self._store.compact()
             yield self._count(row)
@@ -241,7 +241,9 @@ class EvaluationRunner:
         )
 
 
-def batches(plan: EvaluationPlan, rows: Sequence[RunRow]) -> Iterator[Iterator[PlannedRun]]:
+def all_runs_in_batches(
+    plan: EvaluationPlan, rows: Sequence[RunRow]
+) -> Iterator[Iterator[PlannedRun]]:
     """Yield the runs of an evaluation in batches.
 
     The caller must have added the rows of all previous batches to `rows` when it takes the next

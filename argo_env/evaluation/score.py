@@ -14,7 +14,7 @@ from pydantic import Field, model_validator
 
 from argo_compiler.base.model import Model
 from argo_compiler.files.loading import decode_text, read_bytes
-from argo_env.evaluation.estimates.pairs import mean_difference
+from argo_env.evaluation.estimates.pairs import mean_first_minus_second
 from argo_env.evaluation.estimates.rates import Estimate, world_means
 from argo_env.evaluation.row import RunRow
 from argo_env.files import resources
@@ -123,7 +123,7 @@ def mean_score(rows: Sequence[RunRow], rules: ScoringRules) -> Estimate:
     means = world_means((row.seed, score_run(row, rules).total) for row in rows if row.is_completed)
     if not len(means):
         return Estimate(math.nan, math.nan, math.nan)
-    mean = mean_difference(means, np.zeros(len(means)))
+    mean = mean_first_minus_second(means, np.zeros(len(means)))
     return Estimate(mean.value, mean.low, mean.high)
 
 

@@ -78,7 +78,7 @@ class RowStore(Closing):
         """All rows in the folder, by their keys."""
         return self._rows
 
-    def add(self, row: RunRow) -> None:
+    def add_if_new(self, row: RunRow) -> None:
         """Store a row, unless a row with its key is stored already.
 
         Raises Unavailable if it can't be written, for example to a full disk.

@@ -134,7 +134,7 @@ class Variation(_Ranges):
             update["faults"] = (*spec.faults, *drawn.faults)
         return spec.model_copy(update=update)
 
-    def faults_for(self, seed: int) -> str | None:
+    def drawn_faults_name(self, seed: int) -> str | None:
         """Return the name of the faults drawn for the world of a seed; None if none are drawn."""
         drawn = self.faults.draw(seed) if self.faults is not None else None
         return None if drawn is None else drawn.name

@@ -13,8 +13,8 @@ from rich.markup import escape
 from argo_compiler.base.errors import Invalid
 from argo_env.evaluation.control_variates import (
     ControlledMean,
+    make_cheap_plan,
     run_with_control_variate,
-    with_drive,
 )
 from argo_env.evaluation.folder import (
     COMPARISON,
@@ -22,10 +22,10 @@ from argo_env.evaluation.folder import (
     PLAN,
     REPORT,
     digest_contents,
+    find_stored_plan,
     open_rows,
-    read_plan,
     read_results,
-    write_failing_specs,
+    replace_failing_specs,
 )
 from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.evaluation.pool.backend import WorkerBackend
@@ -191,13 +191,13 @@ def evaluate_command(
     )
     check_folder(target / FAILING)
     digest = digest_contents(*contents_for_digest(file, folder), content)
-    plan = read_plan(target, digest) or plan_evaluation(file, folder, read_upload)
-    helper = None if file.control is None else with_drive(plan, file.control)
-    with open_rows(target, plan, digest, replace=force, helper=helper) as store:
+    plan = find_stored_plan(target, digest) or plan_evaluation(file, folder, read_upload)
+    cheap_plan = None if file.control is None else make_cheap_plan(plan, file.control)
+    with open_rows(target, plan, digest, replace=force, cheap_plan=cheap_plan) as store:
         results, means = _run_evaluation(
             plan, file.control, store, make_workers(plan, backend, workers, address), limit
         )
-    failing = write_failing_specs(target, results)
+    failing = replace_failing_specs(target, results)
     show_results(results, failing, console, rules)
     show_means(means, file.control, console)
     if report:

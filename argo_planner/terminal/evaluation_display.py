@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
 from argo_env.closing import Closing
-from argo_env.evaluation.rates import quick_rate
+from argo_env.evaluation.rates import approximate_success_rate
 from argo_env.evaluation.row import RunOutcome
 from argo_env.evaluation.runner import EvaluationProgress
 from argo_env.formatting import clock
@@ -64,7 +64,7 @@ class EvaluationDisplay(Closing):
 def progress_text(progress: EvaluationProgress) -> str:
     """Return the success rate, the counts of other outcomes, and the time left, in words."""
     outcomes = progress.all_outcomes
-    rate = quick_rate(outcomes)
+    rate = approximate_success_rate(outcomes)
     parts = []
     if rate.runs:
         parts.append(f"success {rate.value:.1%} ({rate.low:.1%} to {rate.high:.1%})")
@@ -75,6 +75,6 @@ def progress_text(progress: EvaluationProgress) -> str:
     ):
         if outcomes[outcome]:
             parts.append(f"{outcomes[outcome]} {name}")
-    if progress.remaining is not None:
-        parts.append(f"at most {clock(progress.remaining)} left")
+    if progress.longest_remaining_seconds is not None:
+        parts.append(f"at most {clock(progress.longest_remaining_seconds)} left")
     return ", ".join(parts)

@@ -13,7 +13,7 @@ from rich.table import Table
 from argo_env.evaluation.case import PlanName
 from argo_env.evaluation.comparison import PlanComparison
 from argo_env.evaluation.control_variates import ControlledMean
-from argo_env.evaluation.estimates.pairs import Difference
+from argo_env.evaluation.estimates.pairs import FirstMinusSecond
 from argo_env.evaluation.rates import Decision, IntervalMethod
 from argo_env.evaluation.report.texts import explain_sequence, in_percent
 from argo_env.evaluation.results import EvaluationResults, GroupRate
@@ -237,7 +237,7 @@ def show_comparison(compared: PlanComparison, console: Console) -> None:
         )
 
 
-def _difference(found: Difference, scale: float, unit: str) -> tuple[str, str]:
+def _difference(found: FirstMinusSecond, scale: float, unit: str) -> tuple[str, str]:
     if math.isnan(found.value):
         return "", ""
     value, low, high = (scale * v for v in (found.value, found.low, found.high))

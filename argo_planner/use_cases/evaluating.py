@@ -85,7 +85,7 @@ def plan_evaluation(
             every=file.stop.every,
             require=tuple(parse_requirement(text) for text in file.require),
         ),
-        strata=file.strata,
+        strata=file.is_stratified,
     )
     plan.check()
     return plan

@@ -48,7 +48,7 @@ class ControlVariate:
         return cls(float(np.corrcoef(expensive, cheap)[0, 1]), cost)
 
     @property
-    def cheap_runs(self) -> float:
+    def cheap_runs_per_expensive_run(self) -> float:
         """Number of cheap runs for each expensive run at which `gain` is largest; 1 or more.
 
         It is infinite for a perfect correlation.
@@ -65,7 +65,7 @@ class ControlVariate:
         That is the cost of expensive runs alone over the cost with cheap runs. Below 1, cheap runs
         do not pay.
         """
-        r2, k = self.correlation**2, self.cheap_runs
+        r2, k = self.correlation**2, self.cheap_runs_per_expensive_run
         if math.isinf(k):
             k = 1e6
         return 1.0 / ((1.0 + self.cost * k) * (1.0 - r2 * (1.0 - 1.0 / k)))

@@ -42,7 +42,7 @@ class SuccessPairs:
         return self.both + self.first_only + self.second_only + self.neither
 
     @property
-    def difference(self) -> float:
+    def first_minus_second(self) -> float:
         """Difference of the success rates, first plan minus second plan; NaN without pairs."""
         return (self.first_only - self.second_only) / self.pairs if self.pairs else math.nan
 
@@ -112,8 +112,8 @@ def power(pairs: int, first_only: float, second_only: float, alpha: float = 1.0 
 
 
 @dataclass(frozen=True)
-class Difference:
-    """Difference of two means, with its interval and its p-value."""
+class FirstMinusSecond:
+    """Difference of two means, the first minus the second, with its interval and its p-value."""
 
     pairs: int
     value: float
@@ -127,10 +127,10 @@ class Difference:
         return self.p_value <= 1.0 - LEVEL
 
 
-def mean_difference(
+def mean_first_minus_second(
     first: NDArray[np.float64], second: NDArray[np.float64], seed: int = 0, level: float = LEVEL
-) -> Difference:
-    """Compute the difference of the means of two plans, from one value in each world.
+) -> FirstMinusSecond:
+    """Compute the mean of the first plan's values minus the second plan's, one value in each world.
 
     `first` and `second` have the shape (n,), world by world. The interval is that of the paired
     bootstrap (percentiles over resampled worlds). The p-value is that of a permutation test that
@@ -139,7 +139,7 @@ def mean_difference(
     """
     _require_pairs(first, second)
     if not len(first):
-        return Difference(0, math.nan, math.nan, math.nan, 1.0)
+        return FirstMinusSecond(0, math.nan, math.nan, math.nan, 1.0)
     differences = np.asarray(first, dtype=float) - np.asarray(second, dtype=float)
     mean = float(np.mean(differences))
     rng = generator(seed, "difference")
@@ -151,7 +151,7 @@ def mean_difference(
         ]
     )
     low, high = np.quantile(means, [(1 - level) / 2, (1 + level) / 2])
-    return Difference(
+    return FirstMinusSecond(
         len(differences), mean, float(low), float(high), _permutation_p_value(differences, rng)
     )
 

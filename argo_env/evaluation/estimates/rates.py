@@ -125,9 +125,10 @@ def stratified_rate(strata: Sequence[Stratum], level: float = LEVEL) -> Estimate
 def allocate_runs(strata: Sequence[Stratum], runs: int) -> tuple[int, ...]:
     """Return how many of the further `runs` each stratum gets for the narrowest overall interval.
 
-    The numbers are proportional to the weight and to the standard deviation of the outcome (Neyman
-    allocation: J. Neyman, Journal of the Royal Statistical Society 97 (1934), 558-625). Each
-    stratum gets at least one run, if there are enough.
+    Each stratum gets one of them, if there are enough. The rest of them is divided in proportion to
+    the weight and to the standard deviation of the outcome (Neyman allocation: J. Neyman, Journal
+    of the Royal Statistical Society 97 (1934), 558-625). Earlier runs only serve to estimate the
+    standard deviation.
     """
     # One success and one failure are added, so that a stratum with few runs does not seem certain.
     shares = [(s.count + 1) / (s.runs + 2) for s in strata]

@@ -37,8 +37,8 @@ class DaskBackend:
     def __init__(self, workers: int | None, address: str | None = None) -> None:
         """Connect to the cluster at the address, or start one on this machine if it is None.
 
-        `workers` None stands for the number of threads of an existing cluster. Raises Unavailable
-        if the cluster can't be reached or started.
+        `workers` None stands for one worker for each thread of an existing cluster, or for each
+        processor of this machine. Raises Unavailable if the cluster can't be reached or started.
         """
         for name in _LOGGERS:
             logging.getLogger(name).setLevel(logging.CRITICAL)

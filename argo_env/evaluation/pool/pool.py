@@ -134,7 +134,10 @@ class Pool(Closing):
         return self.pending < 2 * _CHUNKS_AHEAD * self._backend.workers * self._chunk_size.limit
 
     def submit(self, ticket: Any, argument: Any) -> None:
-        """Add a call of the function with this argument, for the next free worker."""
+        """Add a call of the function with this argument, for the next free worker.
+
+        `ticket` is any object by which the caller recognises the call when it has completed.
+        """
         self._waiting.append(_Call(ticket, argument))
 
     def as_completed(self) -> Iterator[CompletedCall]:

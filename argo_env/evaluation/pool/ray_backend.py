@@ -27,8 +27,8 @@ class RayBackend:
     def __init__(self, workers: int | None, address: str | None = None) -> None:
         """Connect to the cluster at the address, or start one on this machine if it is None.
 
-        `workers` None stands for the number of processors of an existing cluster. Raises
-        Unavailable if the cluster can't be reached or started.
+        `workers` None stands for one worker for each processor of an existing cluster or of this
+        machine. Raises Unavailable if the cluster can't be reached or started.
         """
         os.environ.setdefault("RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO", "0")
         if address not in (None, "auto", "local"):

@@ -27,15 +27,15 @@ from argo_env.evaluation.plots import (
 from argo_env.evaluation.report.picture import render_plot
 from argo_env.evaluation.report.sections import (
     describe_evaluation,
-    failing_runs,
-    failure_reasons,
+    failing_rows_plans_and_specs,
+    failure_reasons_with_faults,
     floors_with_failures,
-    other_rates,
+    other_quantity_plan_rates,
     plan_sections,
 )
 from argo_env.evaluation.report.texts import (
-    evaluation_headline,
     format_p_value,
+    headline_and_rating,
     in_percent,
     number_with_noun,
     share_interval,
@@ -81,11 +81,11 @@ def evaluation_page(results: EvaluationResults, folder: Path) -> str:
     names = {plan: section.name for plan, section in zip(plans, sections, strict=True)}
     rates = "; ".join(f"{s.name} {in_percent(s.rate.value) or 'no run'}" for s in sections)
     delays = results.delays
-    all_reasons = failure_reasons(results)
+    all_reasons = failure_reasons_with_faults(results)
     blocks = [(names[plan], results.by_seeds(plan)) for plan in plans]
     return _template("evaluation.html.j2").render(
         name=results.plan.name,
-        headline=evaluation_headline(results),
+        headline=headline_and_rating(results),
         plans=sections,
         verdicts=[(verdict, names[verdict.plan]) for verdict in results.verdicts],
         outcomes=results.outcomes,
@@ -96,7 +96,7 @@ def evaluation_page(results: EvaluationResults, folder: Path) -> str:
         if results.rows
         else None,
         required=any(r.quantity == "success" for r in results.plan.stopping.require),
-        others=other_rates(results),
+        others=other_quantity_plan_rates(results),
         heat_maps=[
             (names[plan], _heat_map(results, plan, names[plan])) for plan in _with_faults(results)
         ],
@@ -117,7 +117,7 @@ def evaluation_page(results: EvaluationResults, folder: Path) -> str:
         more_reasons=max(0, len(all_reasons) - _MAX_REASONS),
         floors=floors_with_failures(results),
         most_clusters=_MAX_CLUSTERS,
-        failing=failing_runs(results, folder)[:_MAX_RUNS],
+        failing=failing_rows_plans_and_specs(results, folder)[:_MAX_RUNS],
         shown=_SHOWN_RUNS,
         more=max(0, len(results.failing) - _MAX_RUNS),
         faults_for=results.faults_for,

@@ -24,7 +24,7 @@ from argo_env.evaluation.results import (
     EvaluationResults,
     FailureCluster,
     GroupRate,
-    cluster_failures,
+    cluster_failures_by_location,
 )
 from argo_env.evaluation.row import RunOutcome, RunRow
 from argo_env.planning.opening import open_site
@@ -62,7 +62,7 @@ def plan_sections(results: EvaluationResults) -> list[PlanSection]:
     ]
 
 
-def other_rates(results: EvaluationResults) -> list[tuple[str, str, PlanRate]]:
+def other_quantity_plan_rates(results: EvaluationResults) -> list[tuple[str, str, PlanRate]]:
     """Return the rates of all quantities but success, as description, name of the plan, and rate.
 
     Quantities that make no sense are left out: detections without faults, and late ends without a
@@ -125,7 +125,9 @@ class FloorFailures:
         return sum(cluster.runs for cluster in self.clusters)
 
 
-def failing_runs(results: EvaluationResults, folder: Path) -> list[tuple[RunRow, str, str]]:
+def failing_rows_plans_and_specs(
+    results: EvaluationResults, folder: Path
+) -> list[tuple[RunRow, str, str]]:
     """Return each unsuccessful run: its row, the name of its plan, and the path of its spec file.
 
     The run can be repeated from that file, which lies in the folder. The path is quoted for a
@@ -138,7 +140,9 @@ def failing_runs(results: EvaluationResults, folder: Path) -> list[tuple[RunRow,
     ]
 
 
-def failure_reasons(results: EvaluationResults) -> list[tuple[tuple[str, str], int, list[str]]]:
+def failure_reasons_with_faults(
+    results: EvaluationResults,
+) -> list[tuple[tuple[str, str], int, list[str]]]:
     """Return the reasons why runs did not succeed, each with its plan, number of runs and faults.
 
     An item is ((name of the plan, reason), number of runs, names of their faults). The most
@@ -184,7 +188,7 @@ def floors_with_failures(results: EvaluationResults) -> list[FloorFailures]:
         )
         site, why = _open(reference, robot)
         name = reference if site is None else site.spec.title
-        clusters = cluster_failures(site_results.rows)
+        clusters = cluster_failures_by_location(site_results.rows)
         for floor in sorted({cluster.floor for cluster in clusters}):
             on_floor = tuple(cluster for cluster in clusters if cluster.floor == floor)
             drawing = None if site is None else _draw_floor(site_results, site, floor)

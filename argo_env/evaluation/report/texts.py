@@ -10,7 +10,7 @@ from argo_env.formatting import clock
 
 
 def in_percent(share: float) -> str:
-    """Return a share (0 to 1) in percent, with one decimal; empty for NaN."""
+    """Return a share (0 to 1) as text in percent, such as `98.0 %`; empty for NaN."""
     return "" if math.isnan(share) else f"{100 * share:.1f} %"
 
 
@@ -48,7 +48,7 @@ def number_with_noun(number: int, what: str) -> str:
     return f"{number} {what}{'' if number == 1 else 's'}"
 
 
-def evaluation_headline(results: EvaluationResults) -> tuple[str, str]:
+def headline_and_rating(results: EvaluationResults) -> tuple[str, str]:
     """Return the headline of an evaluation's report and its rating: `good`, `bad` or `notice`.
 
     The headline states whether the requirements are met or, without any, how many runs failed.
@@ -68,13 +68,10 @@ def evaluation_headline(results: EvaluationResults) -> tuple[str, str]:
     return f"{len(results.failing)} of {len(results.rows)} runs are no success", "notice"
 
 
-def explain_sequence(results: EvaluationResults, several: bool) -> list[str]:
-    """Return sentences that say why the interval of a rate is a confidence sequence.
-
-    `several` is True if each world has several runs of the plan.
-    """
+def explain_sequence(results: EvaluationResults, several_runs_per_world: bool) -> list[str]:
+    """Return sentences that explain the interval of a rate; it must be a confidence sequence."""
     sentences = []
-    if several:
+    if several_runs_per_world:
         sentences.append(
             "The runs of one world depend on each other, so that a world counts as one."
         )

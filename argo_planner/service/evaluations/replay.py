@@ -5,7 +5,7 @@ from pathlib import Path
 
 from argo_compiler.base.errors import NotFound
 from argo_compiler.base.model import Model
-from argo_env.evaluation.folder import read_plan
+from argo_env.evaluation.folder import find_stored_plan
 from argo_env.evaluation.store import read_rows
 from argo_env.run.log import Entry
 from argo_env.run.machine import Machine
@@ -51,7 +51,7 @@ def replay_run(request: ReplayRequest, folder: Path, report: ReportProgress) -> 
 
     Raises NotFound if the evaluation has no such run, or the errors of the run.
     """
-    plan = read_plan(folder)
+    plan = find_stored_plan(folder)
     row = next((row for row in read_rows(folder) if row.key == request.key), None)
     if plan is None or row is None:
         raise NotFound(f"the evaluation has no run {request.key[:40]!r}")

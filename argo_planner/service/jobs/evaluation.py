@@ -15,7 +15,12 @@ from argo_compiler.base.model import Model
 from argo_compiler.il import Mission
 from argo_env.evaluation.case import NO_FAULTS
 from argo_env.evaluation.evaluation import Evaluation
-from argo_env.evaluation.folder import digest_contents, read_plan, write_failing_specs, write_plan
+from argo_env.evaluation.folder import (
+    digest_contents,
+    find_stored_plan,
+    replace_failing_specs,
+    write_plan,
+)
 from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.evaluation.pool.backends import make_backend
 from argo_env.evaluation.requirement import parse_requirement
@@ -164,7 +169,7 @@ def evaluate_mission(
     final = count.final_standing(results)
     report(final)
     if not spec.obstacles:
-        write_failing_specs(folder, results)
+        replace_failing_specs(folder, results)
     write_evaluation_report(folder, results)
     return final
 
@@ -175,14 +180,14 @@ def read_partial_results(folder: Path) -> tuple[EvaluationStanding, EvaluationRe
     The first item is for the job: the progress, and the results so far. The second one is for the
     report. Returns None if no run has been stored. Raises ArgoError if the rows can't be read.
     """
-    plan = read_plan(folder)
+    plan = find_stored_plan(folder)
     try:
         rows = read_rows(folder)
     except NotFound:
         rows = ()
     if plan is None or not rows:
         return None
-    count, results = RunCount(plan), EvaluationResults.from_partial_rows(plan, rows)
+    count, results = RunCount(plan), EvaluationResults.from_worlds_before_first_gap(plan, rows)
     positions = {seed: k for k, seed in enumerate(plan.seeds)}
     for row in sorted(rows, key=lambda row: (positions[row.seed], plan.case_index(row) or 0)):
         count.add(row)

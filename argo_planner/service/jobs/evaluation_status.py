@@ -5,7 +5,7 @@ from statistics import median
 
 from argo_compiler.base.model import Model
 from argo_env.evaluation.plan import EvaluationPlan
-from argo_env.evaluation.rates import Decision, IntervalMethod, PlanRate, quick_rate
+from argo_env.evaluation.rates import Decision, IntervalMethod, PlanRate, approximate_success_rate
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunOutcome, RunRow
 from argo_env.evaluation.runner import EvaluationProgress
@@ -142,13 +142,13 @@ class RunCount:
                     )
                 )
         if self._outcomes.total() % self._every == 0:
-            self._curve.append(RateTold.from_rate(quick_rate(self._outcomes)))
+            self._curve.append(RateTold.from_rate(approximate_success_rate(self._outcomes)))
             if len(self._curve) > _MOST_POINTS:
                 self._curve, self._every = self._curve[1::2], 2 * self._every
 
     def interim_standing(self, progress: EvaluationProgress) -> EvaluationStanding:
         """Return the progress and the results so far, while the evaluation is running."""
-        return self._standing(progress.max_runs, progress.remaining, None)
+        return self._standing(progress.max_runs, progress.longest_remaining_seconds, None)
 
     def final_standing(self, results: EvaluationResults) -> EvaluationStanding:
         """Return the progress and the results at the end of the evaluation, regular or early."""
@@ -162,8 +162,10 @@ class RunCount:
     def _standing(
         self, most: int, remaining: float | None, results: EvaluationResults | None
     ) -> EvaluationStanding:
-        rate = quick_rate(self._outcomes)
-        groups = {name: quick_rate(counts) for name, counts in self._by_faults.items()}
+        rate = approximate_success_rate(self._outcomes)
+        groups = {
+            name: approximate_success_rate(counts) for name, counts in self._by_faults.items()
+        }
         requirements: tuple[RequirementTold, ...] = ()
         if results is not None:
             (plan,) = results.plan.plans

@@ -7,7 +7,7 @@ import pytest
 
 from argo_compiler.base.errors import ArgoError
 from argo_env.evaluation.case import EvaluationCase
-from argo_env.evaluation.control_variates import PILOT, run_with_control_variate, with_drive
+from argo_env.evaluation.control_variates import PILOT, make_cheap_plan, run_with_control_variate
 from argo_env.evaluation.plan import EvaluationPlan
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunOutcome, RunRow, make_empty_row
@@ -77,7 +77,7 @@ def test_correlated_cheap_runs_make_the_interval_narrow(expensive, tmp_path):
     assert (duration.expensive, runner.count("kinematic")) == (200, 200)
     assert runner.count("route") == 200 + duration.cheap
     # By the formula for the best number of cheap runs, which the tests of estimates check.
-    most = max(mean.control.cheap_runs for mean in means if mean.control.pays)
+    most = max(mean.control.cheap_runs_per_expensive_run for mean in means if mean.control.pays)
     assert duration.cheap == math.ceil((most - 1) * 200)
     assert success.controlled is None or success.controlled.low <= 0.82 <= success.controlled.high
 
@@ -117,14 +117,14 @@ def test_with_too_few_failures_success_has_no_controlled_interval(expensive, tmp
 
 def test_the_cheap_plan_has_the_name_of_its_own_drive(expensive):
     assert [plan.drive for plan in expensive.plans] == ["kinematic"]
-    assert [plan.drive for plan in with_drive(expensive, "route").plans] == ["route"]
+    assert [plan.drive for plan in make_cheap_plan(expensive, "route").plans] == ["route"]
 
 
 def test_a_drive_or_plan_that_can_not_use_cheap_runs_is_refused(expensive):
     with pytest.raises(ArgoError, match="can't help itself"):
-        with_drive(expensive, "kinematic")
+        make_cheap_plan(expensive, "kinematic")
     case = expensive.cases[0]
     other = case.model_copy(update={"mission": "another"})
     two = expensive.model_copy(update={"cases": (case, other)})
     with pytest.raises(ArgoError, match="give one mission"):
-        with_drive(EvaluationPlan(cases=two.cases, seeds=(1,)), "route")
+        make_cheap_plan(EvaluationPlan(cases=two.cases, seeds=(1,)), "route")

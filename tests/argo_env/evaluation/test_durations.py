@@ -2,7 +2,11 @@
 
 import pytest
 
-from argo_env.evaluation.results import EvaluationResults, cluster_failures, duration_curve
+from argo_env.evaluation.results import (
+    EvaluationResults,
+    cluster_failures_by_location,
+    duration_curve,
+)
 from argo_env.evaluation.row import RunOutcome, RunRow
 from tests.argo_env.evaluation.conftest import plan_of
 from tests.argo_env.evaluation.test_store import row as a_row
@@ -53,7 +57,7 @@ def test_failures_within_half_a_metre_are_one_cluster():
         row(4, 10.0),
         row(5, task="C"),  # at an unknown location
     ]
-    clusters = cluster_failures(rows)
+    clusters = cluster_failures_by_location(rows)
     assert [(cluster.floor, cluster.runs) for cluster in clusters] == [(1, 2), (1, 1), (2, 1)]
     assert clusters[0].tasks == {"A": 1, "B": 1}
     assert clusters[1].tasks == {"no task": 1}

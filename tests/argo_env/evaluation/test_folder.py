@@ -3,8 +3,8 @@
 import pytest
 
 from argo_compiler.base.errors import Conflict
-from argo_env.evaluation.control_variates import with_drive
-from argo_env.evaluation.folder import digest_contents, open_rows, read_plan, read_results
+from argo_env.evaluation.control_variates import make_cheap_plan
+from argo_env.evaluation.folder import digest_contents, find_stored_plan, open_rows, read_results
 from argo_env.evaluation.plan import EvaluationPlan, Stopping
 from argo_env.evaluation.rates import IntervalMethod
 from argo_env.evaluation.runner import WorkOrder
@@ -32,10 +32,10 @@ def fill(folder, plan, *more):
     """Fill the folder with all rows of the plan in a Parquet file, and `more` rows in the log."""
     with open_rows(folder, plan, DIGEST) as store:
         for row in rows_of(plan):
-            store.add(row)
+            store.add_if_new(row)
         store.compact()
         for row in more:
-            store.add(row)
+            store.add_if_new(row)
 
 
 def keys(folder):
@@ -51,7 +51,7 @@ def test_an_evaluation_is_continued(tmp_path, plan, change):
     fill(tmp_path, plan)
     with open_rows(tmp_path, plan.with_changes(**change), DIGEST) as store:
         assert len(store.rows) == 12
-    assert read_plan(tmp_path) == plan.with_changes(**change)
+    assert find_stored_plan(tmp_path) == plan.with_changes(**change)
 
 
 def test_incomplete_results_have_the_worlds_before_the_first_gap(tmp_path, plan):
@@ -73,7 +73,7 @@ def test_another_evaluation_is_refused_and_changes_nothing(tmp_path, plan, seeds
     other = plan.with_changes(seeds=tuple(seeds))
     with pytest.raises(Conflict, match="has another evaluation"):
         open_rows(tmp_path, other, DIGEST)
-    assert read_plan(tmp_path) == plan
+    assert find_stored_plan(tmp_path) == plan
     assert len(keys(tmp_path)) == 12
     # The refused evaluation must release the folder's lock.
     open_rows(tmp_path, plan, DIGEST).close()
@@ -85,17 +85,17 @@ def test_a_replaced_evaluation_keeps_the_rows_that_fit(tmp_path, plan):
     other = plan.with_changes(seeds=(3, 4, 5, 100))
     with open_rows(tmp_path, other, DIGEST, replace=True) as store:
         assert {row.seed for row in store.rows.values()} == {3, 4, 5, 100}
-        store.add(rows_of(other.with_changes(seeds=(200,)))[0])
+        store.add_if_new(rows_of(other.with_changes(seeds=(200,)))[0])
         store.compact()
     assert len(keys(tmp_path)) == 5
     assert [row.seed for row in read_results(tmp_path).rows] == [3, 4, 5, 100]
 
 
 def test_cheap_runs_stay_with_the_plan_that_they_help(tmp_path, plan):
-    cheap = with_drive(plan, "route")
+    cheap = make_cheap_plan(plan, "route")
     fill(tmp_path, plan, *rows_of(cheap, (0, 1, 5_000)))
     other = plan.with_changes(seeds=tuple(range(20, 40)))
-    with open_rows(tmp_path, other, DIGEST, replace=True, helper=cheap) as store:
+    with open_rows(tmp_path, other, DIGEST, replace=True, cheap_plan=cheap) as store:
         assert sorted((row.seed, row.drive) for row in store.rows.values()) == [
             (0, "route"), (1, "route"), (5_000, "route"),
         ]  # fmt: skip
@@ -107,5 +107,5 @@ def test_a_plan_of_another_version_is_another_evaluation(tmp_path, plan):
     with pytest.raises(Conflict, match="has another evaluation"):
         open_rows(tmp_path, plan, DIGEST)
     open_rows(tmp_path, plan, DIGEST, replace=True).close()
-    assert read_plan(tmp_path) == plan
+    assert find_stored_plan(tmp_path) == plan
     assert len(keys(tmp_path)) == 12

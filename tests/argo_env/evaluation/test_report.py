@@ -20,7 +20,7 @@ from argo_env.evaluation.report.page import (
     write_evaluation_report,
 )
 from argo_env.evaluation.report.picture import PALETTE
-from argo_env.evaluation.report.sections import failure_reasons
+from argo_env.evaluation.report.sections import failure_reasons_with_faults
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunOutcome
@@ -229,7 +229,7 @@ def test_reasons_that_differ_in_time_only_are_one(mission):
         row if row.success else row.model_copy(update={"reason": next(texts)})
         for row in results.rows
     )
-    assert failure_reasons(EvaluationResults(results.plan, rows)) == [
+    assert failure_reasons_with_faults(EvaluationResults(results.plan, rows)) == [
         (("mission", "it took 349.5 to 1001 s of 300 s"), 2, ["brick"]),
         (("mission", "failed: MEASURE 4"), 1, ["brick"]),
     ]

@@ -26,7 +26,7 @@ def store_rows(folder, *rows, compact=False):
     """Store the rows in a folder, in the log or in a Parquet file."""
     with RowStore(folder) as store:
         for new_row in rows:
-            store.add(new_row)
+            store.add_if_new(new_row)
         if compact:
             store.compact()
 
@@ -50,11 +50,11 @@ FULL = row(
 def test_rows_come_back_as_they_were(tmp_path):
     with RowStore(tmp_path) as rows:
         for new_row in (row(1), FULL):
-            rows.add(new_row)
+            rows.add_if_new(new_row)
         assert read_rows(tmp_path) == (row(1), FULL)
         rows.compact()
         assert rows.uncompacted == 0
-        rows.add(row(2))
+        rows.add_if_new(row(2))
     assert (tmp_path / "parts" / "part-00001.parquet").exists()
     assert read_rows(tmp_path) == (row(1), FULL, row(2))
     with RowStore(tmp_path) as rows:
@@ -89,7 +89,7 @@ def test_a_log_that_is_cut_anywhere_keeps_all_complete_rows(tmp_path_factory, da
     with RowStore(folder) as rows:
         assert [row.seed for row in rows.rows.values()] == list(range(complete))
         for number in range(4):
-            rows.add(row(number))
+            rows.add_if_new(row(number))
     assert [row.seed for row in read_rows(folder)] == [0, 1, 2, 3]
 
 
@@ -101,7 +101,7 @@ def test_a_damaged_line_is_left_out_and_counted(tmp_path):
     with RowStore(tmp_path) as rows:
         assert rows.damaged == 1
         assert [row.seed for row in rows.rows.values()] == [0, 2]
-        rows.add(row(1))
+        rows.add_if_new(row(1))
     assert {row.seed for row in read_rows(tmp_path)} == {0, 1, 2}
 
 
@@ -111,7 +111,7 @@ def test_a_kill_between_the_part_and_the_log_duplicates_no_row(tmp_path):
     assert [row.seed for row in read_rows(tmp_path)] == [1, 2]
     with RowStore(tmp_path) as rows:
         assert len(rows.rows) == 2
-        rows.add(row(3))
+        rows.add_if_new(row(3))
         rows.compact()
     assert [row.seed for row in read_rows(tmp_path)] == [1, 2, 3]
     import pandas

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from argo_compiler.base.errors import Invalid
 from argo_env.evaluation.estimates.control import ControlVariate, controlled_mean
-from argo_env.evaluation.estimates.pairs import SuccessPairs, mean_difference, power
+from argo_env.evaluation.estimates.pairs import SuccessPairs, mean_first_minus_second, power
 
 COMPARISONS = 2_000
 
@@ -29,7 +29,7 @@ def test_a_plan_never_differs_from_itself():
         assert SuccessPairs.from_successes(done, done).p_value == 1.0
         if k % 10 == 0:  # this check is slower
             taken = rng.normal(600, 60, 50)
-            assert not mean_difference(taken, taken, seed=k).is_significant
+            assert not mean_first_minus_second(taken, taken, seed=k).is_significant
 
 
 def test_a_difference_is_rarely_found_if_there_is_none():
@@ -72,7 +72,7 @@ def test_the_interval_of_a_difference_covers():
     for k in range(200):
         worlds = rng.normal(600, 100, 60)
         a, b = worlds + rng.normal(12, 15, 60), worlds + rng.normal(0, 15, 60)
-        estimate = mean_difference(a, b, seed=k)
+        estimate = mean_first_minus_second(a, b, seed=k)
         covered += estimate.low <= 12 <= estimate.high
     assert covered / 200 >= 0.9  # the percentile interval is a little too narrow
 
@@ -80,14 +80,14 @@ def test_the_interval_of_a_difference_covers():
 def test_pairing_finds_a_difference_smaller_than_that_between_worlds():
     rng = np.random.default_rng(12)
     worlds = rng.normal(600, 100, 80)
-    estimate = mean_difference(worlds + 5, worlds)
+    estimate = mean_first_minus_second(worlds + 5, worlds)
     assert estimate.is_significant
     assert estimate.value == pytest.approx(5)
 
 
 def test_pairs_need_equal_numbers_of_runs():
     with pytest.raises(Invalid, match="make no pairs"):
-        mean_difference(np.zeros(3), np.zeros(4))
+        mean_first_minus_second(np.zeros(3), np.zeros(4))
 
 
 def draw_times(rng, n, m):

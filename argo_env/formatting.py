@@ -19,7 +19,10 @@ def time_text(seconds: float) -> str:
 
 
 def where(floor: int | None, place: Vector) -> str:
-    """Return a position in m on a floor as text, such as `floor 2 at (1.00, 2.00, 2.50)`."""
+    """Return a position in m on a floor as text, such as `floor 2 at (1.00, 2.00, 2.50)`.
+
+    The floor must be known: it is None only for anomalies without a position.
+    """
     x, y, z = place
     return f"floor {floor} at ({x:.2f}, {y:.2f}, {z:.2f})"
 

@@ -61,11 +61,11 @@ def fit_calibration(drives: Iterable[TimedDrive], robot: RobotSpec) -> Calibrati
 def nominal_seconds(motion: Motion, robot: RobotSpec, velocity: float | None = None) -> float:
     """Return the seconds that a motion would take at the commanded speed throughout.
 
-    `velocity` (m/s) applies as in `Motion.speed`, and has no effect on turns.
+    `velocity` (m/s) applies as in `Motion.drive_speed`, and has no effect on turns.
     """
     if motion.turn:
         return abs(motion.turn) / robot.target_speed(motion.kind)
-    return motion.length / motion.speed(robot, velocity)
+    return motion.length / motion.drive_speed(robot, velocity)
 
 
 def measured_minus_predicted_seconds(

@@ -101,7 +101,7 @@ def measure_paths(name: str, count: int) -> Navigator:
         print(f"  positions to turn at on the ground floor: {1e3 * elapsed:.1f} ms")
     dock, goal = site.docks[1], ids[min(7, len(ids) - 1)]
     brick = brick_on_longest_motion(navigator.plan_to_view(dock, goal))
-    elapsed = cpu_seconds(lambda: navigator.with_blockages([brick]).plan_to_view(dock, goal))
+    elapsed = cpu_seconds(lambda: navigator.with_added_blockages([brick]).plan_to_view(dock, goal))
     print(f"  avoiding a blockage, and the first path round it: {1e3 * elapsed:.0f} ms")
     return navigator
 

@@ -20,7 +20,9 @@ from argo_env.robot.pose import BodyPose
 from argo_env.world.world import World
 
 SITE_FAULTS = tuple(
-    k for k, fault in KINDS.items() if fault.elements_with_fault is not Fault.elements_with_fault
+    k
+    for k, fault in KINDS.items()
+    if fault.all_elements_with_fault is not Fault.all_elements_with_fault
 )
 """kinds of faults that change the site"""
 DRIVE_FAULT = "drive_dysfunction"

@@ -135,7 +135,7 @@ class _SiteLegs:
     def _pose(self, position: Position) -> Pose:
         if position in self._ids:
             return self._navigator.viewing_pose(self._ids[position])
-        return self._navigator.snap(self._site.docks[min(self._site.docks)])
+        return self._navigator.snap_position(self._site.docks[min(self._site.docks)])
 
 
 _LEGEND = {

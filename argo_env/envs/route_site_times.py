@@ -37,7 +37,7 @@ def site_times(scenario: str) -> SiteTimes:
     navigator = open_site(scenario).navigator
     site = navigator.site
     number = min(site.docks)
-    dock = navigator.snap(site.docks[number])
+    dock = navigator.snap_position(site.docks[number])
     times = navigator.travel_times([dock, *(c.id for c in site.checkpoints)])
     positions = [(dock.x, dock.y, site.floor_at(dock.z))]
     positions += [(c.position[0], c.position[1], c.floor) for c in site.checkpoints]
@@ -62,7 +62,7 @@ def site_times_without(scenario: str, blocked: tuple[Stair, ...]) -> NDArray[np.
     """
     navigator = open_site(scenario).navigator
     site = navigator.site
-    positions = [navigator.snap(site.docks[min(site.docks)])]
+    positions = [navigator.snap_position(site.docks[min(site.docks)])]
     positions += [navigator.viewing_pose(c.id) for c in site.checkpoints]
     try:
         times = navigator_without(navigator, blocked).travel_times(positions)
@@ -86,4 +86,4 @@ def navigator_without(navigator: Navigator, blocked: tuple[Stair, ...]) -> Navig
         rect = (x - half, y - half, x + half, y + half)
         name = spec.towers[tower].name
         blockages.append(Blockage(rect, z, f"the {name} is blocked above floor {floor}"))
-    return navigator.with_blockages(blockages)
+    return navigator.with_added_blockages(blockages)

@@ -219,7 +219,7 @@ _DARKEST = 0.5
 """opacity of a cell with all runs of its row; its number can be read in light and in dark mode"""
 
 
-def outcomes_by_faults(
+def heat_map_of_outcomes(
     results: EvaluationResults, ax: "Axes | None" = None, plan: PlanName | None = None
 ) -> "Axes":
     """Draw a heat map of the runs by set of faults (rows) and outcome; larger shares are darker.
@@ -480,7 +480,7 @@ def pairs_that_differ(compared: PlanComparison, ax: "Axes | None" = None) -> "Ax
     return ax
 
 
-def paired_differences(compared: PlanComparison, ax: "Axes | None" = None) -> "Axes":
+def histogram_of_duration_differences(compared: PlanComparison, ax: "Axes | None" = None) -> "Axes":
     """Draw a histogram of the differences in duration of pairs in which both plans succeed.
 
     A positive difference means that the first plan (A) takes longer. The line is the mean, the band

@@ -133,7 +133,7 @@ def read_scoring(path: Path | None = None) -> ScoringRules:
     Raises ArgoError if the file can't be read, and DiagnosticError, with positions in the file, if
     it has no valid rules.
     """
-    file = path or resources.scenarios() / "scoring.yaml"
+    file = path or resources.scenarios_folder() / "scoring.yaml"
     content = read_bytes(file, "file of scoring rules", _MAX_BYTES)
     return parse_yaml(
         decode_text(content, str(file), "file of scoring rules"),

@@ -64,7 +64,7 @@ class Fault(Model):
         """
         return self
 
-    def elements_with_fault(self, site: Site) -> tuple[Element, ...]:
+    def all_elements_with_fault(self, site: Site) -> tuple[Element, ...]:
         """Return all elements of the site, changed by this fault, which must be resolved."""
         return site.elements
 
@@ -73,7 +73,8 @@ class Fault(Model):
 
         Args:
             place: position of the finding in m; None if it is unknown.
-            noticed_from: position of the robot in m; None if the finding has none.
+            noticed_from: position of the robot in m; None if the finding has none. If the fault's
+                location has to match a position that is None, the result is False.
             site: site of the run.
         """
         return True

@@ -24,17 +24,17 @@ class FaultSchedule:
         self._active: list[AnyFault] = []  # in the order in which they began
 
     @property
-    def pending(self) -> bool:
+    def has_changes_left(self) -> bool:
         """True if a fault is still to begin or to end."""
         return self._next < len(self._changes)
 
     @property
-    def next_change(self) -> float:
+    def next_change_time(self) -> float:
         """Time in s at which the next fault begins or ends; infinite if there is none."""
-        return self._changes[self._next][0] if self.pending else math.inf
+        return self._changes[self._next][0] if self.has_changes_left else math.inf
 
     @property
-    def last_change(self) -> float:
+    def latest_past_change_time(self) -> float:
         """Time in s of the most recent start or end of a fault; 0 before the first one."""
         return self._changes[self._next - 1][0] if self._next else 0.0
 
@@ -46,7 +46,7 @@ class FaultSchedule:
 
     def advance(self, now: float) -> None:
         """Apply and revert all faults that begin or end up to time `now` (s), in order of time."""
-        while self.pending and self._changes[self._next][0] <= now + 1e-9:
+        while self.has_changes_left and self._changes[self._next][0] <= now + 1e-9:
             at, begins, fault = self._changes[self._next]
             self._next += 1
             if begins:

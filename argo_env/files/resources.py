@@ -11,11 +11,11 @@ def _root(folder: str) -> Path:
     return installed if installed.is_dir() else _PACKAGE.parent / folder
 
 
-def scenarios() -> Path:
+def scenarios_folder() -> Path:
     """Return the folder of the shipped sites, which has one folder for each site."""
     return _root("scenarios")
 
 
-def urdf() -> Path:
+def urdf_folder() -> Path:
     """Return the folder with the models of robots and checkpoints."""
     return _root("urdf")

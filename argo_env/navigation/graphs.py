@@ -52,7 +52,7 @@ def make_graph_of_moves(
 
 
 def subgraph(graph: Graph, members: NDArray[np.int64] | NDArray[np.bool_]) -> Graph:
-    """Return the graph of the moves between the states `members`, renumbered in their order."""
+    """Return the graph of the moves between `members`, renumbered as they follow there."""
     from scipy.sparse import csr_array
 
     return csr_array(graph[members][:, members])

@@ -65,7 +65,7 @@ class Lattice:
     def move_times(
         self, costs: NDArray[np.float64], source: NDArray[np.int64], target: NDArray[np.int64]
     ) -> NDArray[np.float64]:
-        """Return the seconds that moves from `source` to `target` take, given their `costs` (s)."""
+        """Return the seconds that moves take: `costs` (s) without the extra for tight spots."""
         return costs / _cost_factor(self.roomy, source, target)
 
     def state_poses(self, states: NDArray[np.int64] | slice = slice(None)) -> NDArray[np.float64]:
@@ -111,7 +111,7 @@ def build_lattice(surface: Surface, robot: RobotSpec) -> Lattice:
     for heading in range(HEADINGS):
         stencil = footprint_stencil(robot.footprint, heading, MARGIN)
         z = stencil.surface_heights(surface, np.arange(surface.size))
-        rises.append(footprint_rise(z, stencil, heading))
+        rises.append(rise_front_over_rear(z, stencil, heading))
         wide = footprint_stencil(robot.footprint, heading, PREFERRED_CLEARANCE)
         rooms.append(
             np.isfinite(wide.surface_heights(surface, np.arange(surface.size)).sum(axis=0))
@@ -161,7 +161,9 @@ def connected_sublattice(lattice: Lattice, state: int) -> Lattice:
     )
 
 
-def footprint_rise(z: NDArray[np.float64], stencil: Stencil, heading: int) -> NDArray[np.float64]:
+def rise_front_over_rear(
+    z: NDArray[np.float64], stencil: Stencil, heading: int
+) -> NDArray[np.float64]:
     """Return the height (m) of the front above the rear for each cell, or nan.
 
     It is nan where the robot can't stand: the ground does not fill the stencil, or one side is more

@@ -112,16 +112,16 @@ class Navigator:
         self._path = lru_cache(cached_paths)(self._find_path)
         self._path_to_view = lru_cache(cached_paths)(self._find_path_to_view)
 
-    def with_blockages(
+    def with_added_blockages(
         self, blockages: Sequence[Blockage], site: Site | None = None
     ) -> "Navigator":
-        """Return a navigator of the same site that also keeps clear of `blockages`.
+        """Return a navigator of the same site that keeps clear of its present and new `blockages`.
 
-        If there are no blockages and no `site`, it is this navigator itself. If `site` is given, it
-        has additional solids, for which the blockages stand, and checkpoints are not seen through
-        them. The surface is shared. Paths to docks and checkpoints that have become unreachable
-        raise Unreachable. A robot that stands where it may no longer stand starts from the nearest
-        pose where it may.
+        If there are no new blockages and no `site`, it is this navigator itself. If `site` is
+        given, it has additional solids, for which the blockages stand, and checkpoints are not seen
+        through them. The surface is shared. Paths to docks and checkpoints that have become
+        unreachable raise Unreachable. A robot that stands where it may no longer stand starts from
+        the nearest pose where it may.
         """
         if not blockages and site is None:
             return self
@@ -134,7 +134,7 @@ class Navigator:
         other._path_search = PathSearch(other.lattice, partition)
         return other
 
-    def adopt_results(self, other: "Navigator") -> None:
+    def adopt_surface_and_lattice(self, other: "Navigator") -> None:
         """Adopt the surface and the lattice that another navigator has computed, and store them.
 
         It must be one of the same site and robot. What it has not computed yet is left out.
@@ -190,7 +190,7 @@ class Navigator:
                 )
         return lattice
 
-    def snap(self, pose: Pose) -> Pose:
+    def snap_position(self, pose: Pose) -> Pose:
         """Return `pose` moved to the nearest position at which the robot can stand.
 
         Its heading stays, though the robot may not be able to stand there with it.
@@ -202,10 +202,11 @@ class Navigator:
         return nearest.model_copy(update={"yaw": pose.yaw})
 
     def plan(self, start: Pose, goal: Pose) -> Path:
-        """Return the fastest path from pose to pose.
+        """Return the path of the lowest cost from pose to pose.
 
-        The end is on the lattice, within SNAP_DISTANCE of the goal (5 cm where there is room). It
-        has the heading of the goal where there is room to turn.
+        A move's cost is its time, and a little more in tight spots (`Lattice`). The end is on the
+        lattice, within SNAP_DISTANCE of the goal (5 cm where there is room). It has the heading of
+        the goal where there is room to turn.
 
         Raises:
             Unreachable: The robot can't stand at the start or the goal, or there is no path.
@@ -221,21 +222,21 @@ class Navigator:
         path = self._smoothed(states, start)
         return self._with_final_turn(path, goal.yaw)
 
-    def plan_to_view(self, start: Pose, checkpoint_id: int, turned: float = 0.0) -> Path:
+    def plan_to_view(self, start: Pose, checkpoint_id: int, face_turn: float = 0.0) -> Path:
         """Return the path to the pose from which to read a checkpoint.
 
         It is the pose with the lowest sum of the cost of the path and of the view: oblique and far
         views cost more (`find_view_states_and_costs`). The checkpoint's face is assumed to be
-        turned by `turned` (rad) from its planned heading.
+        turned by `face_turn` (rad, counter-clockwise from above) from its planned heading.
 
         Raises:
             Unreachable: There is no such pose, or no path to one.
             NotFound: There is no such checkpoint.
         """
-        return self._path_to_view(start, checkpoint_id, turned)
+        return self._path_to_view(start, checkpoint_id, face_turn)
 
-    def _find_path_to_view(self, start: Pose, checkpoint_id: int, turned: float) -> Path:
-        return self._smoothed(self._states_to_view(start, checkpoint_id, turned), start)
+    def _find_path_to_view(self, start: Pose, checkpoint_id: int, face_turn: float) -> Path:
+        return self._smoothed(self._states_to_view(start, checkpoint_id, face_turn), start)
 
     def travel_times(self, locations: Sequence[Pose | int]) -> NDArray[np.float64]:
         """Return the seconds from each location to each other, shape (n, n): row from, column to.
@@ -360,8 +361,8 @@ class Navigator:
             + (f" that avoids what is closed: {reasons}" if reasons else "")
         )
 
-    def _states_to_view(self, start: Pose, checkpoint_id: int, turned: float = 0.0) -> list[int]:
-        goals = self._views(checkpoint_id, turned)
+    def _states_to_view(self, start: Pose, checkpoint_id: int, face_turn: float = 0.0) -> list[int]:
+        goals = self._views(checkpoint_id, face_turn)
         if not len(goals[0]):
             checkpoint = self.site.checkpoint(checkpoint_id)
             raise Unreachable(
@@ -378,11 +379,11 @@ class Navigator:
         cuts = find_cut_heights(self.lattice, [f.z for f in self.site.spec.floors])
         return PathSearch(self.lattice, make_partition(self.lattice, cuts, self.parts), self.parts)
 
-    def _views(self, checkpoint_id: int, turned: float = 0.0) -> Views:
-        key = checkpoint_id, turned
+    def _views(self, checkpoint_id: int, face_turn: float = 0.0) -> Views:
+        key = checkpoint_id, face_turn
         if key not in self._cached_views:
             planned = self.site.checkpoint(checkpoint_id)
-            face = replace(planned, yaw=planned.yaw + turned)
+            face = replace(planned, yaw=planned.yaw + face_turn)
             self._cached_views[key] = find_view_states_and_costs(self.site, face, self.lattice)
         return self._cached_views[key]
 

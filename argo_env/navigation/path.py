@@ -42,7 +42,7 @@ class Motion:
         )
 
     def pose_at(self, share: float) -> Pose:
-        """Return the pose after a share of the motion, from 0 (its start) to 1 (its end)."""
+        """Return the pose after a share, 0 (start) to 1 (end), of the motion's length and angle."""
         a, b = self.start, self.end
         return Pose(
             x=a.x + share * (b.x - a.x),
@@ -64,7 +64,7 @@ class Motion:
             wrap(a.yaw + shares * self.turn),
         )
 
-    def speed(self, robot: RobotSpec, velocity: float | None = None) -> float:
+    def drive_speed(self, robot: RobotSpec, velocity: float | None = None) -> float:
         """Return the target speed (m/s) of a motion that is a drive.
 
         `velocity` (m/s) replaces the robot's own speed forwards on the flat; on stairs and
@@ -79,11 +79,11 @@ class Motion:
     def duration(self, robot: RobotSpec, velocity: float | None = None) -> float:
         """Return the seconds that the motion takes, by the robot's calibration.
 
-        `velocity` (m/s) applies as in `speed`, and has no effect on turns.
+        `velocity` (m/s) applies as in `drive_speed`, and has no effect on turns.
         """
         if self.turn:
             return robot.motion_time(self.kind, abs(self.turn))
-        return robot.motion_time(self.kind, self.length, self.speed(robot, velocity))
+        return robot.motion_time(self.kind, self.length, self.drive_speed(robot, velocity))
 
 
 @dataclass(frozen=True)
@@ -103,12 +103,12 @@ class Path:
         return sum(m.length for m in self.motions)
 
     @property
-    def climb(self) -> float:
+    def total_ascent(self) -> float:
         """Sum of all ascents in m."""
         return sum(max(0.0, m.end.z - m.start.z) for m in self.motions)
 
     def duration(self, robot: RobotSpec, velocity: float | None = None) -> float:
-        """Return the seconds that the path takes; `velocity` (m/s) applies as in `Motion.speed`."""
+        """Return the seconds that the path takes; `velocity` (m/s) is that of `Motion.duration`."""
         return sum(m.duration(robot, velocity) for m in self.motions)
 
     def timed_poses(self, robot: RobotSpec, velocity: float | None = None) -> "NDArray[np.float64]":

@@ -130,7 +130,7 @@ class Scene(Connection):
             self._decks[number] = [self._load_storey(number, decks)] if decks else []
         for checkpoint in site.checkpoints:
             name = checkpoint.kind.value.replace(" ", "_")
-            body = self._load(resources.urdf() / "checkpoints" / f"{name}.urdf", fixed=True)
+            body = self._load(resources.urdf_folder() / "checkpoints" / f"{name}.urdf", fixed=True)
             self._floors[checkpoint.floor].append(body)
             self._origins[body] = (checkpoint.position, (0.0, 0.0, checkpoint.yaw))
 

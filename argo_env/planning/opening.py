@@ -244,7 +244,7 @@ def _open_new(
     parts.store_text("site", site.spec.model_dump_json())
     opened = OpenedSite(reference, site, robot, parts)
     if not isinstance(made, Site):
-        opened.navigator.adopt_results(made)
+        opened.navigator.adopt_surface_and_lattice(made)
     return opened
 
 

@@ -137,7 +137,9 @@ class SiteTravel:
         """
         pose = start_pose_or_lowest_dock(mission, self._on.site.docks)
         path = cached_path(
-            self._parts, ["stand", pose_data(pose)], lambda: Path(self._navigator.snap(pose), ())
+            self._parts,
+            ["stand", pose_data(pose)],
+            lambda: Path(self._navigator.snap_position(pose), ()),
         )
         if isinstance(path, NoPath):
             raise Unreachable(path.reason)

@@ -314,7 +314,9 @@ class RemoteRobot:
         """No-op: faults are not simulated."""
 
     def add_blockages(self, blockages: Sequence[Blockage]) -> None:
-        self.setup = replace(self.setup, navigator=self.setup.navigator.with_blockages(blockages))
+        self.setup = replace(
+            self.setup, navigator=self.setup.navigator.with_added_blockages(blockages)
+        )
 
     def start(self, command: StartAction, now: float, arrived_by: Path | None) -> RobotAction:  # noqa: ARG002
         """Prepare the order of an action, which the next `advance` sends.

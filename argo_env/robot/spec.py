@@ -282,4 +282,4 @@ def calibration_file(name: str) -> Path:
 
 def robot_folder() -> Path:
     """Return the folder of the robots' models and descriptions."""
-    return resources.urdf() / "robot"
+    return resources.urdf_folder() / "robot"

@@ -424,9 +424,9 @@ class Simulation(Closing):
                 )
         if beginning := self._spec.beginning:
             start = beginning.body_pose
-            navigator.snap(Pose(x=start.x, y=start.y, z=start.z, yaw=start.yaw))
+            navigator.snap_position(Pose(x=start.x, y=start.y, z=start.z, yaw=start.yaw))
             return start
-        pose = navigator.snap(
+        pose = navigator.snap_position(
             self._spec.conditions.actual_start_pose(start_pose_or_lowest_dock(mission, docks))
         )
         return BodyPose(pose.x, pose.y, pose.z, pose.yaw)
@@ -475,7 +475,7 @@ class Simulation(Closing):
         schedule = self.setup.schedule
         next_time = min(
             state.scheduled.next_time,
-            schedule.next_change if schedule else math.inf,
+            schedule.next_change_time if schedule else math.inf,
             math.inf if deadline is None else deadline,
             termination.TIME_LIMIT,
             until,

@@ -67,5 +67,5 @@ def _standstill_times(setup: RunSetup, log: RunLog) -> tuple[float, float]:
     if schedule is None or not schedule.faults:
         return since, since
     # The robot may still find a fault that has begun, or notice that one has ended.
-    since = max(since, schedule.last_change)
-    return since, math.inf if schedule.pending else since + SETTLING
+    since = max(since, schedule.latest_past_change_time)
+    return since, math.inf if schedule.has_changes_left else since + SETTLING

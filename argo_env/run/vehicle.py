@@ -174,7 +174,7 @@ class Vehicle:
 
     def add_blockages(self, blockages: Sequence[Blockage]) -> None:
         """Make paths planned from now on keep clear of these blockages, besides the known ones."""
-        navigator = self.setup.navigator.with_blockages(blockages)
+        navigator = self.setup.navigator.with_added_blockages(blockages)
         self.setup = replace(self.setup, navigator=navigator)
 
     def start(self, command: StartAction, now: float, arrived_by: Path | None) -> RobotAction:

@@ -139,7 +139,7 @@ def _there_are(numbers: Iterable[int]) -> str:
 
 def site_names() -> tuple[str, ...]:
     """Return the names of the sites that Argo ships, sorted."""
-    return tuple(sorted(p.parent.name for p in resources.scenarios().glob("*/site.yaml")))
+    return tuple(sorted(p.parent.name for p in resources.scenarios_folder().glob("*/site.yaml")))
 
 
 def load_site(name: str) -> Site:
@@ -171,7 +171,7 @@ def site_file(name: str) -> Path:
             f"no site `{name}`; there are: {known}, or a path to a site's .yaml, or"
             f" {PREFIX}floors=3,seed=7"
         )
-    return resources.scenarios() / name / "site.yaml"
+    return resources.scenarios_folder() / name / "site.yaml"
 
 
 def make_site(spec: SiteSpec) -> Site:

@@ -296,7 +296,7 @@ class Bodies(Connection):
 
     def _load_checkpoint(self, checkpoint: SiteCheckpoint, folder: Path) -> int:
         name = checkpoint.kind.value.replace(" ", "_")
-        path = resources.urdf() / "checkpoints" / f"{name}.urdf"
+        path = resources.urdf_folder() / "checkpoints" / f"{name}.urdf"
         body = self._load(self._body_file(path, folder), fixed=True)
         self._place(body, checkpoint.position, (0.0, 0.0, checkpoint.yaw))
         return body

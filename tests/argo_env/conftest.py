@@ -148,7 +148,7 @@ def shipped(catalog):
     """A shipped script by name, imported."""
 
     def imported(name, **areas):
-        path = resources.scenarios() / "umad" / "missions" / name
+        path = resources.scenarios_folder() / "umad" / "missions" / name
         return import_script(read_script(path), catalog, **areas)
 
     return imported

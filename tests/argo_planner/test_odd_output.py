@@ -10,7 +10,7 @@ from argo_env.files import resources
 from tests.processes import ROOT, run_python
 
 ARGO = ("-m", "argo_planner")
-MISSION = (resources.scenarios() / "umad" / "missions" / "protocol_3.txt").read_text("utf-8")
+MISSION = (resources.scenarios_folder() / "umad" / "missions" / "protocol_3.txt").read_text("utf-8")
 
 
 def test_characters_that_a_terminal_lacks_are_escaped(tmp_path: Path):

@@ -19,7 +19,7 @@ from tests.argo_planner.conftest import argo
 
 @pytest.fixture
 def hall_yaml():
-    text = (resources.scenarios() / "darmstadt" / "site.yaml").read_text("utf-8")
+    text = (resources.scenarios_folder() / "darmstadt" / "site.yaml").read_text("utf-8")
     return yaml.safe_load(text)
 
 
@@ -173,6 +173,6 @@ def test_a_picture_that_can_not_be_drawn(arguments, says):
 
 def test_the_shipped_mission_of_the_test_site_has_no_findings():
     site = open_site("darmstadt")
-    script = resources.scenarios() / "darmstadt" / "missions" / "mission_1.txt"
+    script = resources.scenarios_folder() / "darmstadt" / "missions" / "mission_1.txt"
     findings = check_source(read_upload(script), site.catalog, 1, 2, site.travel)
     assert {finding.severity for finding in findings} <= {Severity.NOTE}

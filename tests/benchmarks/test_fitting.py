@@ -101,7 +101,7 @@ def test_a_drive_and_its_fit_agree():
 def test_a_robot_comes_with_its_calibration(tmp_path, monkeypatch):
     folder = tmp_path / "robot"
     folder.mkdir()
-    shipped = (resources.urdf() / "robot" / "tracker.yaml").read_text(encoding="utf-8")
+    shipped = (resources.urdf_folder() / "robot" / "tracker.yaml").read_text(encoding="utf-8")
     (folder / "other.yaml").write_text(shipped, encoding="utf-8")
     monkeypatch.setattr("argo_env.robot.spec.robot_folder", lambda: folder)
     assert load_robot("other").calibration == Calibration()

@@ -15,8 +15,8 @@ from argo_env.evaluation.evaluation import Evaluation
 from argo_env.evaluation.plots import (
     durations,
     forest_of_rates,
-    outcomes_by_faults,
-    paired_differences,
+    heat_map_of_outcomes,
+    histogram_of_duration_differences,
 )
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.worlds import Variation
@@ -66,8 +66,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     durations(results, right)
     why = Figure(figsize=(11, 3.2), layout="constrained")
     left, right = why.subplots(1, 2)
-    outcomes_by_faults(results, left, first)
-    paired_differences(compare_plans(results, results, first, second), right)
+    heat_map_of_outcomes(results, left, first)
+    histogram_of_duration_differences(compare_plans(results, results, first, second), right)
     for figure, name in ((rates, "evaluation-rates"), (why, "evaluation-why")):
         path = given.folder / f"{name}.png"
         figure.savefig(path, dpi=110)

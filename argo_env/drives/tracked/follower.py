@@ -142,7 +142,7 @@ class Follower:
         return math.copysign(max(rate, _TURNED), error)
 
     def _driving(self, motion: Motion, pose: BodyPose, left: float) -> FollowerCommand:
-        speed = motion.speed(self._robot, self._velocity)
+        speed = motion.drive_speed(self._robot, self._velocity)
         if not self._continues():
             speed = min(speed, max(_CREEP, math.sqrt(2 * _BRAKING * left)))
         side, heading = self.left_offset_and_heading_error(motion, pose)

@@ -20,8 +20,8 @@ from argo_env.evaluation.plots import (
     detection_delays,
     durations,
     forest_of_rates,
-    outcomes_by_faults,
-    paired_differences,
+    heat_map_of_outcomes,
+    histogram_of_duration_differences,
     pairs_that_differ,
 )
 from argo_env.evaluation.report.picture import render_plot
@@ -161,7 +161,7 @@ def comparison_page(
         ),
         histogram=render_plot(
             f"Differences in time, world by world; {compared.duration.value:+.1f} s on average",
-            lambda: paired_differences(compared),
+            lambda: histogram_of_duration_differences(compared),
         )
         if both
         else None,
@@ -183,7 +183,7 @@ def _with_faults(results: EvaluationResults) -> list[PlanName]:
 
 def _heat_map(results: EvaluationResults, plan: PlanName, name: str) -> Markup:
     alt = f"Outcomes of the runs of {name}, by faults"
-    return render_plot(alt, lambda: outcomes_by_faults(results, plan=plan))
+    return render_plot(alt, lambda: heat_map_of_outcomes(results, plan=plan))
 
 
 def _delay_summary(delays: list[float | None]) -> tuple[int, int, float | None, float | None]:

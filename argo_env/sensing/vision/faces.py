@@ -149,7 +149,7 @@ def draw_face(kind: CheckpointKind) -> Image.Image:
 
 def face_file(kind: CheckpointKind) -> Path:
     """Return the path of the PNG with the drawn face of this kind of instrument."""
-    return resources.urdf() / "checkpoints" / f"{kind.value.replace(' ', '_')}_face.png"
+    return resources.urdf_folder() / "checkpoints" / f"{kind.value.replace(' ', '_')}_face.png"
 
 
 def face_mesh(kind: CheckpointKind) -> str:

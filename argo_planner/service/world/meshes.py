@@ -89,7 +89,9 @@ def checkpoint_mesh(kind: CheckpointKind) -> bytes:
     The face lies in the plane x = 0 and points along x. The pointer is a separate node.
     """
     name = kind.value.replace(" ", "_")
-    return _model_glb(read_model(resources.urdf() / "checkpoints" / f"{name}.urdf"), name, {})
+    return _model_glb(
+        read_model(resources.urdf_folder() / "checkpoints" / f"{name}.urdf"), name, {}
+    )
 
 
 def _floor_glb(elements: Iterable[Element], name: str, detail: Detail) -> bytes:

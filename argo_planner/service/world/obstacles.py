@@ -114,7 +114,7 @@ def _with_obstacles(site: OpenedSite, obstacles: tuple[Obstacle, ...]) -> Opened
     navigator = site.navigator
     blockages = [b for obstacle in obstacles for b in obstacle_blockages(obstacle, navigator)]
     altered = site.site.replacing_elements((*site.site.elements, *elements))
-    opened = OpenedSite.from_navigator(navigator.with_blockages(blockages, altered))
+    opened = OpenedSite.from_navigator(navigator.with_added_blockages(blockages, altered))
     opened.catalog = site.catalog
     return opened
 

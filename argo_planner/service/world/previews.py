@@ -205,7 +205,7 @@ def _to_preview(leg: Leg, path: Path, velocity: float | None, robot: RobotSpec) 
         time=round(leg.duration, _DIGITS),
         work=round(leg.work, _DIGITS),
         distance=round(path.length, _DIGITS),
-        climb=round(path.climb, _DIGITS),
+        climb=round(path.total_ascent, _DIGITS),
         energy=round(leg.energy, _DIGITS),
         end=path.end,
     )

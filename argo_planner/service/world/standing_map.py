@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from argo_compiler.base.errors import Invalid
 from argo_env.navigation import Navigator
 from argo_env.navigation.graphs import shortest_path_costs
-from argo_env.navigation.lattice import LEVEL, MARGIN, footprint_rise
+from argo_env.navigation.lattice import LEVEL, MARGIN, rise_front_over_rear
 from argo_env.navigation.navigator import SNAP_DISTANCE, nearest_state
 from argo_env.navigation.raster import CELL
 from argo_env.navigation.stencil import HEADINGS, footprint_stencil, heading_angle
@@ -204,7 +204,7 @@ def _codes_without_obstacles(navigator: Navigator) -> NDArray[np.uint8]:
         for first in range(0, surface.size, _CHUNK):
             cells = np.arange(first, min(first + _CHUNK, surface.size))
             z = stencil.surface_heights(surface, cells)
-            can_stand = footprint_rise(z, stencil, heading) <= LEVEL
+            can_stand = rise_front_over_rear(z, stencil, heading) <= LEVEL
             slope_codes = np.where(can_stand, Ground.CUT_OFF, Ground.TOO_STEEP)
             fits = np.isfinite(z.sum(axis=0))
             codes[cells, heading] = np.where(fits, slope_codes, Ground.TOO_NEAR)

@@ -88,7 +88,7 @@ def test_is_on_its_path_by_time(path, robot, velocity, time_step):
     # At its vertices by the path's own table, to within a step of the fastest.
     for t, x, y, z, _ in path.timed_poses(robot, velocity):
         near = poses[min(len(poses) - 1, math.ceil(t / time_step - 1e-9))]
-        speeds = [m.speed(robot, velocity) * 1.2 for m in path.motions if not m.turn]
+        speeds = [m.drive_speed(robot, velocity) * 1.2 for m in path.motions if not m.turn]
         reach = max(speeds, default=0.0) * time_step + 1e-6
         assert math.dist((near.x, near.y, near.z), (x, y, z)) <= reach
 

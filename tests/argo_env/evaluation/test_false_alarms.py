@@ -15,7 +15,7 @@ from tests.campaigns.fault_causes import find_causes
 from tests.campaigns.fault_pairs import draw_case
 from tests.conftest import seeds
 
-FAULTS = resources.scenarios() / "umad" / "faults"
+FAULTS = resources.scenarios_folder() / "umad" / "faults"
 
 
 def row_in(mission, **fields):

@@ -133,10 +133,10 @@ def test_pictures_are_drawn_on_the_axes_that_are_given(results, mission):
     for draw in (
         lambda ax: plots.forest_of_rates(results, ax),
         lambda ax: plots.durations(results, ax),
-        lambda ax: plots.outcomes_by_faults(results, ax),
+        lambda ax: plots.heat_map_of_outcomes(results, ax),
         lambda ax: plots.detection_delays(results, ax),
         lambda ax: plots.failure_places(results, open_site("umad").site, 1, ax),
-        lambda ax: plots.paired_differences(compared, ax),
+        lambda ax: plots.histogram_of_duration_differences(compared, ax),
         lambda ax: plots.pairs_that_differ(compared, ax),
     ):
         ax = Figure().subplots()

@@ -38,7 +38,7 @@ from argo_env.world.world import World
 from tests.conftest import examples
 from tests.yard import faults_of, gauged, measure, mission, site_of
 
-SCENARIOS = sorted((resources.scenarios() / "umad" / "faults").glob("*.yaml"))
+SCENARIOS = sorted((resources.scenarios_folder() / "umad" / "faults").glob("*.yaml"))
 
 
 def write_faults(tmp_path, text):

@@ -15,7 +15,7 @@ from tests.campaigns.faults import random_mission
 from tests.conftest import seeds
 from tests.yard import Watching, simulated
 
-FOLDER = resources.scenarios() / "umad" / "faults"
+FOLDER = resources.scenarios_folder() / "umad" / "faults"
 SEED = 3
 
 

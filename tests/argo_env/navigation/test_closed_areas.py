@@ -43,7 +43,7 @@ def poses_along(path):
 )  # fmt: skip
 def test_no_path_touches_a_closed_area(hall, robot, x, y, width, depth, seed):
     rect = (x, y, x + width, y + depth)
-    avoiding = hall.with_blockages([Blockage(rect, 0.0, "a brick")])
+    avoiding = hall.with_added_blockages([Blockage(rect, 0.0, "a brick")])
     random = np.random.default_rng(seed)
     ground = np.flatnonzero(hall.lattice.surface.z[hall.lattice.cell] < 0.05)
     chosen = poses_of_states(hall, random.choice(ground, 3))
@@ -62,22 +62,22 @@ def test_detours_take_longer_and_the_first_navigator_is_unchanged(hall, robot):
     direct = hall.plan(start, goal)
     middle = direct.motions[len(direct.motions) // 2].pose_at(0.5)
     rect = (middle.x - 0.2, middle.y - 0.2, middle.x + 0.2, middle.y + 0.2)
-    avoiding = hall.with_blockages([Blockage(rect, 0.0, "a brick")])
+    avoiding = hall.with_added_blockages([Blockage(rect, 0.0, "a brick")])
     assert avoiding.plan(start, goal).duration(robot) > direct.duration(robot)
     assert hall.plan(start, goal) == direct
     assert avoiding.site is hall.site
     assert avoiding.surface is hall.surface
-    assert hall.with_blockages([]) is hall
+    assert hall.with_added_blockages([]) is hall
 
 
 def test_a_closed_area_does_not_close_the_deck_above(hall):
     below = Blockage((5.64, 0.6, 9.6, 2.4), 0.0, "a leak")
     start, goal = Pose(x=6.5, y=1.55, z=2.5), Pose(x=9.0, y=1.55, z=2.5)
-    assert hall.with_blockages([below]).plan(start, goal) == hall.plan(start, goal)
+    assert hall.with_added_blockages([below]).plan(start, goal) == hall.plan(start, goal)
 
 
 def test_blocked_stairs_separate_the_floors(hall):
-    avoiding = hall.with_blockages([FLIGHT])
+    avoiding = hall.with_added_blockages([FLIGHT])
     dock = hall.site.docks[1]
     for refused in (
         lambda: avoiding.plan_to_view(dock, 4),
@@ -100,7 +100,7 @@ def test_a_robot_that_meets_a_blockage_on_the_stairs_goes_back(hall):
     on_the_flight = hall.plan(hall.site.docks[1], Pose(x=9.0, y=1.5, z=2.5))
     below = next(p for p in poses_along(on_the_flight) if 0.4 < p.z < 0.5)
     ahead = Blockage((below.x + 0.8, 1.0, below.x + 1.0, 2.1), below.z + 0.5, "a brick")
-    avoiding = hall.with_blockages([ahead])
+    avoiding = hall.with_added_blockages([ahead])
     back = avoiding.plan(below, hall.site.docks[1])
     assert back.end.z < 0.1
     assert {m.gear for m in back.motions if m.on_stairs} == {1}
@@ -109,8 +109,8 @@ def test_a_robot_that_meets_a_blockage_on_the_stairs_goes_back(hall):
 def test_blockages_can_be_added_together_or_one_by_one(hall):
     bricks = [Blockage((2, 3, 2.4, 3.2), 0.0, "a brick"), Blockage((4, 3, 4.2, 4.4), 0.0, "a bag")]
     together, after = (
-        hall.with_blockages(bricks),
-        hall.with_blockages(bricks[:1]).with_blockages(bricks[1:]),
+        hall.with_added_blockages(bricks),
+        hall.with_added_blockages(bricks[:1]).with_added_blockages(bricks[1:]),
     )
     assert together.blockages == after.blockages
     assert together.lattice.state_of.tolist() == after.lattice.state_of.tolist()
@@ -121,7 +121,7 @@ def test_blockages_can_be_added_together_or_one_by_one(hall):
 
 def test_exactly_the_states_over_a_blockage_are_closed(hall, robot):
     rect = (4.03, 3.02, 4.31, 3.24)
-    closed = hall.with_blockages([Blockage(rect, 0.0, "a brick")]).lattice
+    closed = hall.with_added_blockages([Blockage(rect, 0.0, "a brick")]).lattice
     lattice = hall.lattice
     near = lattice.surface.cells_in_square(4.2, 3.1, 1.0)
     states = lattice.state_of[near]
@@ -146,7 +146,7 @@ def test_without_a_detour_the_goal_is_unreachable(yard):
     start, goal = Pose(x=1.55, y=1.55, z=0.02), Pose(x=5.55, y=2.55, z=0.02)
     assert yard.plan(start, goal).length > 4.0
     with pytest.raises(Unreachable, match="a trench"):
-        yard.with_blockages([wall]).plan(start, goal)
+        yard.with_added_blockages([wall]).plan(start, goal)
 
 
 @pytest.fixture(scope="module")

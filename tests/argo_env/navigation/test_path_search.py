@@ -88,7 +88,7 @@ def test_paths_in_a_large_region_with_landmarks_are_the_cheapest(navigator, umad
     random = np.random.default_rng(seed)
     if closing:
         x, y = random.uniform((2.0, -3.0), (14.0, 12.0)).tolist()
-        navigator = navigator.with_blockages(
+        navigator = navigator.with_added_blockages(
             [Blockage((x, y, x + 1.5, y + 1.5), umad.spec.ground_z, "a brick")]
         )
     lattice = navigator.lattice
@@ -142,7 +142,7 @@ def test_times_are_those_of_the_cheapest_paths(hall, hall_search):
 
 def test_travel_times_of_checkpoints_and_poses(hall, robot):
     ids = [c.id for c in hall.site.checkpoints]
-    dock = hall.snap(hall.site.docks[1])
+    dock = hall.snap_position(hall.site.docks[1])
     locations = [dock, *ids]
     times = hall.travel_times(locations)
     assert times.shape == (7, 7)

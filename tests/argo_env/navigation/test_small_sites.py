@@ -127,8 +127,8 @@ def test_duration_over_a_flight(robot):
         most = (slope + length) / on_stairs + (flat - length) / on_flat
         assert 0.9 * least <= path.duration(robot) <= 1.05 * most
         assert not any(m.turn for m in path.motions)
-    assert up.climb == pytest.approx(2.5)
-    assert down.climb == pytest.approx(0.0)
+    assert up.total_ascent == pytest.approx(2.5)
+    assert down.total_ascent == pytest.approx(0.0)
     assert {m.gear for m in up.motions} == {-1}
     assert {m.gear for m in down.motions} == {1}
 

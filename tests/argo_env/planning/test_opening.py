@@ -62,7 +62,7 @@ def digest_of_results(navigator):
     path = navigator.plan(first, poses[-1])
     middle = path.motions[len(path.motions) // 2].pose_at(0.5)
     brick = Blockage((middle.x, middle.y, middle.x + 0.1, middle.y + 0.1), middle.z, "a brick")
-    for one in (navigator, navigator.with_blockages([brick])):
+    for one in (navigator, navigator.with_added_blockages([brick])):
         for start in poses[:2]:
             for goal in (*poses, *ids):
                 try:

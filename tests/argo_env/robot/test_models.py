@@ -25,7 +25,7 @@ from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
 from tests.conftest import examples
 
-CHECKPOINTS = sorted(p.stem for p in (resources.urdf() / "checkpoints").glob("*.urdf"))
+CHECKPOINTS = sorted(p.stem for p in (resources.urdf_folder() / "checkpoints").glob("*.urdf"))
 FLIPPERS = ("left_flipper_joint", "right_flipper_joint")
 
 
@@ -38,7 +38,7 @@ def surface_points(part):
     """Return points, shape (n, 3), whose hull is the box, cylinder or mesh, in the link's frame."""
     geometry = part.geometry
     if geometry.mesh is not None:
-        text = (resources.urdf() / "checkpoints" / geometry.mesh.filename).read_text()
+        text = (resources.urdf_folder() / "checkpoints" / geometry.mesh.filename).read_text()
         lines = (line.split() for line in text.splitlines())
         points = np.array([line[1:] for line in lines if line and line[0] == "v"], dtype=float)
     elif geometry.box is not None:
@@ -198,7 +198,7 @@ def test_there_is_a_model_of_every_kind_of_checkpoint():
 
 @pytest.mark.parametrize("name", CHECKPOINTS)
 def test_checkpoint(client, name):
-    path = resources.urdf() / "checkpoints" / f"{name}.urdf"
+    path = resources.urdf_folder() / "checkpoints" / f"{name}.urdf"
     _, joints = load(client, path)
     assert set(joints) == {"indicator"}
     urdf = yourdfpy.URDF.load(str(path), load_meshes=False)
@@ -221,7 +221,7 @@ def test_checkpoint(client, name):
     ],
 )
 def test_indicator_covers_the_scale(client, name, low, high):
-    _, joints = load(client, resources.urdf() / "checkpoints" / f"{name}.urdf")
+    _, joints = load(client, resources.urdf_folder() / "checkpoints" / f"{name}.urdf")
     assert joints["indicator"][8:10] == pytest.approx((low, high), abs=1e-5)
 
 

@@ -190,7 +190,7 @@ class TestObstacles:
         (found,), (reading,) = record.anomalies, record.readings
         assert record.result.success
         assert len(looks) == reading.views == 2
-        aware = yard.with_blockages([blockage_from_anomaly(found)])
+        aware = yard.with_added_blockages([blockage_from_anomaly(found)])
         unturned, turned = (aware.plan_to_view(watch._left[0], 1, t).end for t in TURNS[:2])
         assert math.dist((looks[1].x, looks[1].y), (turned.x, turned.y)) < 0.01
         assert math.dist((unturned.x, unturned.y), (turned.x, turned.y)) > 0.1
@@ -462,8 +462,8 @@ def test_a_schedule_begins_and_ends_in_order():
     for now in (0.0, 0.5, 2.0):
         schedule.advance(now)
     assert told == [(0.0, "c", "begins"), (1.0, "c", "ends"), (1.0, "a", "begins")]
-    assert schedule.pending
+    assert schedule.has_changes_left
     schedule.advance(99.0)
     assert told[3:] == [(3.0, "a", "ends"), (3.0, "b", "begins")]
-    assert not schedule.pending
-    assert schedule.last_change == 3.0
+    assert not schedule.has_changes_left
+    assert schedule.latest_past_change_time == 3.0

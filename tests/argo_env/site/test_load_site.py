@@ -16,7 +16,7 @@ class _Plain(yaml.SafeDumper):
         return True
 
 
-UMAD = (resources.scenarios() / "umad" / "site.yaml").read_text(encoding="utf-8")
+UMAD = (resources.scenarios_folder() / "umad" / "site.yaml").read_text(encoding="utf-8")
 
 
 @pytest.fixture
@@ -179,7 +179,7 @@ def test_a_ground_too_large_for_navigation_is_refused(tmp_path: Path) -> None:
 )
 def test_sizes_that_no_site_has_are_refused_with_their_place(tmp_path, where, value, says):
     """Before solids are made of them by the million."""
-    text = (resources.scenarios() / "darmstadt" / "site.yaml").read_text("utf-8")
+    text = (resources.scenarios_folder() / "darmstadt" / "site.yaml").read_text("utf-8")
     whole = yaml.safe_load(text)
     change(whole, where, value)
     message = refusal(written(tmp_path, whole))

@@ -144,7 +144,7 @@ def test_previews_and_runs_avoid_an_obstacle_alike(site):
         assert not record.contacts
         assert not record.anomalies
     # Without the obstacle in the plan the robot touches it.
-    unaware = OpenedSite.from_navigator(site.navigator.with_blockages((), changed_site.site))
+    unaware = OpenedSite.from_navigator(site.navigator.with_added_blockages((), changed_site.site))
     touched = simulate_mission(unaware, mission, "kinematic").contacts
     assert {contact.element for contact in touched} == {"obstacle a"}
 

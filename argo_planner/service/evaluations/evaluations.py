@@ -159,7 +159,7 @@ class Evaluations:
     ) -> EvaluationJob:
         """Start an evaluation of a mission plan's revision, and return its job.
 
-        Raises Conflict if another one is running, Unavailable if its folder can't be made.
+        Raises Conflict if any evaluation is running, Unavailable if its folder can't be made.
         """
         async with self._turn:
             self._require_none_running()
@@ -296,7 +296,7 @@ class Evaluations:
             async with self._turn:
                 if job.state in (JobState.CANCELLED, JobState.INTERRUPTED):
                     job = await asyncio.to_thread(self._folder.with_stored_rows, job)
-                    self._jobs.replace_ended_job(job)
+                    self._jobs.replace_unless_discarded(job)
                 try:
                     ended = StoredEvaluation(order=evaluation.order, job=job)
                     await asyncio.to_thread(self._folder.store, ended)

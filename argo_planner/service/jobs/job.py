@@ -96,7 +96,7 @@ class EvaluationJob(_Job):
         return self
 
     def without_result(self) -> "EvaluationJob":
-        """Return a copy of the job without progress and results."""
+        """Return a copy of the job without `standing`: its progress and results so far."""
         return self.model_copy(update={"standing": None})
 
 

@@ -81,7 +81,7 @@ class Jobs:
         await running.on_end(job)
         return self._jobs.get(id, job)
 
-    def replace_ended_job(self, job: Job) -> None:
+    def replace_unless_discarded(self, job: Job) -> None:
         """Replace a job that has ended by `job`, which has the same id, unless it was discarded."""
         if job.id in self._jobs:
             self._store(job)

@@ -58,7 +58,10 @@ def test_diagnostics_about_odd_and_repeated_names_point_into_the_file(tmp_path):
     path.write_text(mission_text(Mission(tasks=tasks, groups=groups)), encoding="utf-8")
     read = decode_mission(path.read_bytes(), str(path))
     lines = read.text.split("\n")
-    found = {(f.code, lines[f.span.line - 1].strip()) for f in read.placed(check(read.mission))}
+    found = {
+        (f.code, lines[f.span.line - 1].strip())
+        for f in read.diagnostics_with_positions(check(read.mission))
+    }
     assert found == {
         ("il.duplicate-task", '"name": "same",'),
         ("il.measure-without-object", f'"name": {json.dumps(odd)},'),
@@ -66,7 +69,7 @@ def test_diagnostics_about_odd_and_repeated_names_point_into_the_file(tmp_path):
         ("il.unknown-target", '"target": "no"'),
         ("il.unknown-group-task", '"end": "gone",'),
     }
-    places = {f.subject: f.span.line for f in read.placed(check(read.mission))}
+    places = {f.subject: f.span.line for f in read.diagnostics_with_positions(check(read.mission))}
     assert places["tasks[2]"] == places["tasks[2].name"]
 
 

@@ -6,13 +6,13 @@ from dataclasses import replace
 from argo_compiler.analysis.bound_verification import (
     AT_LEAST,
     bounds_unproved_by_steps,
-    least_steps,
+    least_steps_if_computable,
 )
 from argo_compiler.analysis.bound_witness_search import find_least_witness
-from argo_compiler.analysis.duration_with_failures import duration_bound_with_failures_if_computable
+from argo_compiler.analysis.duration_with_failures import worst_case_duration_if_computable
 from argo_compiler.analysis.endings import diagnose_endings
 from argo_compiler.analysis.flow import Flow
-from argo_compiler.analysis.limits import diagnose_always_stale_values, diagnose_limits
+from argo_compiler.analysis.limits import diagnose_limits, stale_value_diagnostics_if_computable
 from argo_compiler.analysis.non_terminating_loops import find_loops_kept_by_readings
 from argo_compiler.analysis.reachability import compute_reachability, make_fields
 from argo_compiler.analysis.results import (
@@ -86,8 +86,8 @@ def _analyse(mission: Mission, catalog: Catalog | None, travel: Travel | None) -
         catalog,
         travel,
         flow,
-        nominal=compute_reachability(flow, fields, failures=False),
-        with_failures=compute_reachability(flow, fields, failures=True),
+        nominal=compute_reachability(flow, fields, actions_may_fail=False),
+        with_failures=compute_reachability(flow, fields, actions_may_fail=True),
     )
     unjudged = []
     if len(fields.shift) < len(fields.scales):
@@ -100,15 +100,13 @@ def _analyse(mission: Mission, catalog: Catalog | None, travel: Travel | None) -
         *diagnose_endings(study, loops),
     ]
     longest = (
-        None
-        if study.bounds_if_computable is None
-        else duration_bound_with_failures_if_computable(study)
+        None if study.bounds_if_computable is None else worst_case_duration_if_computable(study)
     )
     if study.bounds_if_computable is None:
         unjudged.append("loops and durations")
     elif travel is not None:
         diagnostics += diagnose_limits(study, travel, longest)
-        stale = diagnose_always_stale_values(study)
+        stale = stale_value_diagnostics_if_computable(study)
         if stale is None:
             unjudged.append("ages of values")
         else:
@@ -145,24 +143,26 @@ def _with_proved_bounds(
         return analysis
     witnesses, steps = analysis.witnesses, None
     if witnesses is not None:
-        steps = least_steps(mission, catalog, travel, witnesses.nominal)
+        steps = least_steps_if_computable(mission, catalog, travel, witnesses.nominal)
         least = None if steps is None else find_least_witness(steps)
         witnesses = replace(witnesses, least=least)
         analysis = analysis.model_copy(update={"witnesses": witnesses})
     return without_unproved_diagnostics(analysis, bounds_unproved_by_steps(steps, analysis))
 
 
-def without_unproved_diagnostics(analysis: Analysis, rejected: Sequence[Diagnostic]) -> Analysis:
-    """Return the analysis without the diagnostics `rejected`, whose lower bounds no witness proves.
+def without_unproved_diagnostics(
+    analysis: Analysis, unproved_claims: Sequence[Diagnostic]
+) -> Analysis:
+    """Return the analysis without the `unproved_claims`, whose lower bounds no witness proves.
 
-    `unjudged` of the result says what is therefore not known.
+    `unjudged` of the result names what is therefore not known.
     """
-    if not rejected:
+    if not unproved_claims:
         return analysis
-    subjects = ", ".join(dict.fromkeys(_SUBJECTS[d.code] for d in rejected))
+    subjects = ", ".join(dict.fromkeys(_SUBJECTS[d.code] for d in unproved_claims))
     return analysis.model_copy(
         update={
-            "diagnostics": tuple(d for d in analysis.diagnostics if d not in rejected),
+            "diagnostics": tuple(d for d in analysis.diagnostics if d not in unproved_claims),
             "unjudged": (*analysis.unjudged, subjects),
         }
     )

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from argo_compiler.analysis.results import Analysis, Bounds
 from argo_compiler.analysis.travel import Leg, NoPath, RobotPose, Travel
 from argo_compiler.analysis.verification import Verifier
-from argo_compiler.analysis.verification_layout import GroupLayout
+from argo_compiler.analysis.verification_layout import MissionLayout
 from argo_compiler.analysis.verification_walk import Proved
 from argo_compiler.analysis.witness import Invariant, LeastSpent, LeastWitness
 from argo_compiler.base.catalog import Catalog
@@ -89,7 +89,7 @@ class LeastSteps:
 
     def __init__(self, mission: Mission, travel: Travel, proved: Proved) -> None:
         self.mission = mission
-        self.layout = GroupLayout(mission)
+        self.layout = MissionLayout(mission)
         self.travel = travel
         self._proved = proved
         if self._nesting() > _MOST_NESTING:
@@ -107,7 +107,7 @@ class LeastSteps:
             for point, visits in self._visits.items()
         }
 
-    def groups_around(self, point: ProgramPoint) -> tuple[int, ...]:
+    def enclosing_groups_outermost_first(self, point: ProgramPoint) -> tuple[int, ...]:
         """Return the numbers of the groups that enclose a point of the mission, outermost first.
 
         The end of a group's round lies within the group; the points at which the group is entered
@@ -121,18 +121,20 @@ class LeastSteps:
             return self._chains[at]
         return self._chains[at][:-1] if kind in ("left", "entered") else ()
 
-    def is_always_missed(self, point: ProgramPoint, least_times: SpentByPoint) -> bool:
+    def always_misses_hard_window(self, task_end: ProgramPoint, least_times: SpentByPoint) -> bool:
         """Return True if a task can't end before its hard window closes, by lower bounds on time.
 
-        `point` is the end of the task; `least_times` has the least s from the mission's start to
-        each point.
+        `task_end` is the point of the task's end; `least_times` has the least s from the mission's
+        start to each point.
         """
-        deadline = self._deadline(point[1])
-        return deadline is not None and least_times.get(point, 0.0) > deadline + _TOLERANCE
+        deadline = self._deadline(task_end[1])
+        return deadline is not None and least_times.get(task_end, 0.0) > deadline + _TOLERANCE
 
-    def always_missed_tasks(self, least_times: SpentByPoint) -> frozenset[int]:
+    def tasks_always_missing_hard_window(self, least_times: SpentByPoint) -> frozenset[int]:
         tasks = range(len(self.mission.tasks))
-        return frozenset(i for i in tasks if self.is_always_missed(("task", i), least_times))
+        return frozenset(
+            i for i in tasks if self.always_misses_hard_window(("task", i), least_times)
+        )
 
     def successors_with_least_totals(
         self, point: ProgramPoint, spent: SpentByPoint, periods: tuple[float, ...], *, of_time: bool
@@ -221,8 +223,11 @@ class LeastSteps:
         return min(ends, default=None)
 
     def _visit_cost(self, source: ProgramPoint, visit: _Visit) -> _VisitCost:
-        inside = self.groups_around(("task", visit.task))
-        shared = sum(a == b for a, b in zip(inside, self.groups_around(source), strict=False))
+        inside = self.enclosing_groups_outermost_first(("task", visit.task))
+        shared = sum(
+            a == b
+            for a, b in zip(inside, self.enclosing_groups_outermost_first(source), strict=False)
+        )
         return _VisitCost(visit, inside[shared:], *self._cost(source, visit.task))
 
     def _cost(self, source: ProgramPoint, i: int) -> tuple[float, float]:
@@ -256,7 +261,7 @@ class LeastSteps:
         known = self._legs.get((pose, i))
         if known is None:
             task = self.mission.tasks[i]
-            leg = self.travel.leg(pose, task, task.velocity)
+            leg = self.travel.leg_with_action(pose, task, task.velocity)
             known = Leg(0.0, 0.0, pose) if isinstance(leg, NoPath) else leg
             self._legs[pose, i] = known
         return known
@@ -312,7 +317,7 @@ class LeastSteps:
         for position in cut:
             if self._deadline(i) is not None:
                 yield ("missed", i), position
-            for g in self.groups_around(("task", i)):
+            for g in self.enclosing_groups_outermost_first(("task", i)):
                 if self.layout.hard[g]:
                     yield ("left", g), position
 
@@ -435,7 +440,7 @@ def is_valid(steps: LeastSteps, witness: LeastWitness) -> bool:
     """
     if not all(_has_form(steps.mission, spent) for spent in (witness.time, witness.energy)):
         return False
-    late = steps.always_missed_tasks(spent_by_point(witness.time))
+    late = steps.tasks_always_missing_hard_window(spent_by_point(witness.time))
     return _is_consistent(steps, witness.time, late, of_time=True) and _is_consistent(
         steps, witness.energy, late, of_time=False
     )
@@ -473,11 +478,11 @@ def unproved_bounds(
     if witnesses is None or not any(d.code in AT_LEAST for d in analysis.diagnostics):
         return bounds_unproved_by_steps(None, analysis)
     return bounds_unproved_by_steps(
-        least_steps(mission, catalog, travel, witnesses.nominal), analysis
+        least_steps_if_computable(mission, catalog, travel, witnesses.nominal), analysis
     )
 
 
-def least_steps(
+def least_steps_if_computable(
     mission: Mission, catalog: Catalog | None, travel: Travel, nominal: Invariant
 ) -> LeastSteps | None:
     """Return the steps that an invariant of the mission allows, with their least costs; or None.

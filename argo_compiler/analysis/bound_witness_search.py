@@ -26,7 +26,7 @@ def find_least_witness(steps: LeastSteps) -> LeastWitness | None:
         time = search.shortest(of_time=True, planned=planned)
         if time is None:
             continue
-        search.always_missed = steps.always_missed_tasks(time[0])
+        search.always_missed = steps.tasks_always_missing_hard_window(time[0])
         energy = search.shortest(of_time=False, planned=False)
         if energy is not None:
             return LeastWitness(_witness(steps, *time), _witness(steps, *energy))
@@ -92,12 +92,12 @@ class _Search:
             here, point = heapq.heappop(pending)
             if here > spent[point] or (point[1] in self.always_missed and point[0] == "task"):
                 continue
-            if of_time and point[0] == "task" and steps.is_always_missed(point, spent):
+            if of_time and point[0] == "task" and steps.always_misses_hard_window(point, spent):
                 continue
             for other, least in steps.successors_with_least_totals(
                 point, spent, periods, of_time=of_time
             ):
-                around = steps.groups_around(other)
+                around = steps.enclosing_groups_outermost_first(other)
                 self._steps_left -= 1 + len(around)
                 if self._steps_left < 0:
                     return None

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
-from argo_compiler.analysis.completion_times import TaskEnd, task_end_bounds
+from argo_compiler.analysis.completion_times import TimeAndEnergyAtEnd, task_end_bounds
 from argo_compiler.analysis.flow import Flow
 from argo_compiler.analysis.path_lengths import LevelGraph, Loop, PathLengths
 from argo_compiler.analysis.reachability import Reachability
@@ -28,7 +28,7 @@ class MissionBounds:
     """graph of the level of the mission"""
 
     @cached_property
-    def task_end_bounds(self) -> tuple[TaskEnd, ...]:
+    def task_end_bounds(self) -> tuple[TimeAndEnergyAtEnd, ...]:
         """Bounds on the time and energy at the end of each leaf, over all its visits.
 
         They say little if `duration` is None, as then, for example, travel times are unknown.
@@ -89,7 +89,11 @@ def longest_duration(flow: Flow, reachability: Reachability, costs: StepCosts) -
     most = 0.0
     for node, (source, target), cost, _ in level.exits:
         if target == flow.end_node:
-            end = level.most["time"][node] + cost.time.most + costs.final_clean_up_time(source)
+            end = (
+                level.most["time"][node]
+                + cost.time.most
+                + costs.cancelled_action_clean_up_time(source)
+            )
             most = max(most, end)
     return most
 
@@ -110,7 +114,7 @@ def _bounds(
         (
             level.most[quantity][node]
             + getattr(cost, quantity).most
-            + (costs.final_clean_up_time(source) if quantity == "time" else 0.0),
+            + (costs.cancelled_action_clean_up_time(source) if quantity == "time" else 0.0),
             k,
         )
         for k, (node, (source, _), cost, _) in enumerate(level.exits)

@@ -20,7 +20,7 @@ _MOST_LEAVES = 2_000
 """greatest number of leaves of a mission for which the bound is computed"""
 
 
-def duration_bound_with_failures_if_computable(study: Study) -> Bound | None:
+def worst_case_duration_if_computable(study: Study) -> Bound | None:
     """Return an upper bound on the duration (s) of a mission, failures and reactions included.
 
     Its value is None if there is no limit. Returns None if it can't be computed: without travel
@@ -56,7 +56,7 @@ class _ReactionTimes:
         self.study = study
         self.costs = costs
         self.travel = study.travel
-        self.clean_up = study.travel.clean_up_time
+        self.clean_up = study.travel.longest_cancellation_time
         self._start = study.travel.start_pose(study.mission)
         self.mission = study.mission
         self.reactions = [r for r in study.mission.reactions if r.response is not Response.REPORT]
@@ -135,7 +135,7 @@ class _ReactionTimes:
         longest = self._leg_time(self._start, target)
         for leaf, positions in enumerate(self.costs.positions):
             if positions:
-                cost = self.costs.drive_and_action_cost_if_interrupted(leaf, target)
+                cost = self.costs.task_cost_after_interrupted_leaf(leaf, target)
                 longest = max(longest, math.inf if isinstance(cost, NoPath) else cost.time.most)
         return longest
 
@@ -155,11 +155,11 @@ class _ReactionTimes:
         return longest
 
     def _pose_after(self, target: Task) -> RobotPose:
-        leg = self.travel.leg(self._start, target, None)
+        leg = self.travel.leg_with_action(self._start, target, None)
         return self._start if isinstance(leg, NoPath) else leg.arrival
 
     def _leg_time(self, pose: RobotPose, task: Task) -> float:
-        leg = self.travel.leg(pose, task, None)
+        leg = self.travel.leg_with_action(pose, task, None)
         return math.inf if isinstance(leg, NoPath) else leg.duration
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 from argo_compiler.analysis.bounds import MissionBounds
 from argo_compiler.analysis.quantities import energy_words, time_words
-from argo_compiler.analysis.reachability import externally_reported_objects
+from argo_compiler.analysis.reachability import objects_that_others_may_report
 from argo_compiler.analysis.results import Bound, Bounds, Stretch
 from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.travel import NoPath, Travel
@@ -35,11 +35,12 @@ _SHOWN = 8  # parts of a path that a message lists
 
 
 def diagnose_limits(
-    study: Study, travel: Travel, longest: Bound | None = None
+    study: Study, travel: Travel, worst_case_duration: Bound | None = None
 ) -> Iterator[Diagnostic]:
     """Yield diagnostics on poses without a path, time limits, windows, duration and battery.
 
-    `longest` is the upper bound on the duration whatever fails and whatever events occur.
+    `worst_case_duration` is the upper bound on the duration whatever fails and whatever events
+    occur; None if it could not be computed.
     """
     yield from _blocked_tasks(study)
     yield from _blocked_retreats(study, travel)
@@ -48,8 +49,11 @@ def diagnose_limits(
     if bounds is None or bounds.duration is None or bounds.energy is None:
         return
     if study.mission.max_duration is not None:
-        if any(r.event is EventKind.TIME_UP and ends_mission(r) for r in study.mission.reactions):
-            yield from _cut_short(study, bounds, study.mission.max_duration, longest)
+        if any(
+            r.event is EventKind.TIME_UP and always_ends_mission_or_holds(r)
+            for r in study.mission.reactions
+        ):
+            yield from _cut_short(study, bounds, study.mission.max_duration, worst_case_duration)
         else:
             yield from _too_long(study, bounds.duration, study.mission.max_duration)
     yield from diagnose_windows(study, bounds)
@@ -89,7 +93,7 @@ def _blocked_retreats(study: Study, travel: Travel) -> Iterator[Diagnostic]:
     start = travel.start_pose(mission)
     for pose, subject, aim in retreats:
         drive = Task(name="retreat", action=Action.WAYPOINT, pose=pose)
-        leg = travel.leg(start, drive, None)
+        leg = travel.leg_with_action(start, drive, None)
         if isinstance(leg, NoPath):
             yield study.diagnostic(
                 "unreachable-place",
@@ -201,7 +205,11 @@ def _may_need_less_energy(study: Study) -> bool:
         or any(group.every for group in study.flow.groups)
         or any(
             (r.response is Response.RETURN and r.afterwards is not Afterwards.END)
-            or (r.event is EventKind.TIME_UP and study.mission.max_duration and ends_mission(r))
+            or (
+                r.event is EventKind.TIME_UP
+                and study.mission.max_duration
+                and always_ends_mission_or_holds(r)
+            )
             for r in study.mission.reactions
         )
     )
@@ -223,14 +231,14 @@ def _no_way_back(study: Study, energy: Bounds, travel: Travel) -> Iterator[Diagn
         after = [leaves[stretch.task]] if stretch.task is not None else members[stretch.group or ""]
         back = 0.0
         for leaf in after:
-            cost = study.costs.drive_and_action_cost(leaf, home)
+            cost = study.costs.task_cost_after_leaf(leaf, home)
             if not isinstance(cost, NoPath):
                 back = max(back, cost.energy.most)
         if stretch.until + back + RESERVE_SHARE * battery > battery:
             yield study.diagnostic(
                 "no-way-back",
-                f"after {stretch.words} the battery may not suffice for the way back to the dock "
-                f"with a reserve of {RESERVE_SHARE:.0%}: up to "
+                f"after {stretch.task_or_rounds_text} the battery may not suffice for the way back "
+                f"to the dock with a reserve of {RESERVE_SHARE:.0%}: up to "
                 f"{energy_words(stretch.until)} are used until then, the way back needs up to "
                 f"{energy_words(back)}, and the battery gives {energy_words(battery)}",
                 "leave out tasks or rounds, charge in between, or react to low_battery",
@@ -239,7 +247,7 @@ def _no_way_back(study: Study, energy: Bounds, travel: Travel) -> Iterator[Diagn
             return
 
 
-def ends_mission(reaction: Reaction) -> bool:
+def always_ends_mission_or_holds(reaction: Reaction) -> bool:
     """Return True if a reaction always ends the mission or else holds the robot for ever."""
     limited = reaction.hold_limit is not None
     match reaction.response:
@@ -253,14 +261,14 @@ def ends_mission(reaction: Reaction) -> bool:
     return False
 
 
-def diagnose_always_stale_values(study: Study) -> Iterator[Diagnostic] | None:
+def stale_value_diagnostics_if_computable(study: Study) -> Iterator[Diagnostic] | None:
     """Return diagnostics on conditions whose value is always older than their `max_age`.
 
     Returns None if the search would take too long.
     """
     flow = study.flow
     comparisons: dict[str, list[tuple[int, int, int]]] = {}
-    reported = externally_reported_objects(flow)
+    reported = objects_that_others_may_report(flow)
     for i, leaf in enumerate(flow.leaves):
         for k, (conditions, _) in enumerate(leaf.conditional):
             for c, condition in enumerate(conditions):
@@ -336,7 +344,7 @@ def bound_path_text(bound: Bound, quantity_words: Callable[[float], str]) -> str
     """
 
     def stretch_words(stretch: Stretch) -> str:
-        return f"{stretch.words} ({quantity_words(stretch.until)})"
+        return f"{stretch.task_or_rounds_text} ({quantity_words(stretch.until)})"
 
     path = bound.path
     if len(path) <= _SHOWN:

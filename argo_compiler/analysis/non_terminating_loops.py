@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from argo_compiler.analysis.reachability import (
     ReachabilitySearch,
     compared_objects,
-    externally_reported_objects,
+    objects_that_others_may_report,
 )
 from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.value_regions import Scale
@@ -29,7 +29,7 @@ class NonTerminatingLoop:
     """set of readings that keep the loop going, as bits of `scale`"""
 
     @property
-    def kept_reading(self) -> KeptReading:
+    def readings_keeping_loop(self) -> KeptReading:
         return KeptReading(self.object_id, self.scale.bounds, self.readings)
 
 
@@ -97,7 +97,7 @@ class _Search:
     def __init__(self, study: Study) -> None:
         self.study = study
         self.steps_left = _MOST_STEPS
-        self.reported = externally_reported_objects(study.flow)
+        self.reported = objects_that_others_may_report(study.flow)
         self.search = ReachabilitySearch(study.flow, study.nominal.fields, failures=False)
         self.guard_nodes: dict[str, set[int]] = {}
         """for each checkpoint, the nodes whose conditions compare it"""

@@ -140,7 +140,7 @@ class PathLengths:
                 stack.append(self._group_rounds(*wanted))
                 keys.append(wanted)
 
-    def round_graphs(self, entry: GroupEntry) -> Iterator[LevelGraph]:
+    def first_and_later_round_graphs(self, entry: GroupEntry) -> Iterator[LevelGraph]:
         """Yield the graph of a group's first round for one entry, and that of its later rounds.
 
         An entry is the group, the leaf at which it is entered, and what ended before.

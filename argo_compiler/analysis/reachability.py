@@ -91,12 +91,14 @@ class Reachability:
             yield from self.targets(flow, leaf)
 
 
-def make_fields(flow: Flow, catalog: Catalog | None, bits: int = TRACKED_BITS) -> Fields:
+def make_fields(
+    flow: Flow, catalog: Catalog | None, bits_of_all_nodes: int = TRACKED_BITS
+) -> Fields:
     """Return the layout of a state: the bit sets of the readings of all objects that are compared.
 
-    An object is a checkpoint. As many are tracked as `bits` allows for the states of all nodes
-    together; the others may have any reading anywhere. Objects that are compared at a task that
-    does not measure them are tracked first, as they need it most.
+    An object is a checkpoint. As many are tracked as fit into `bits_of_all_nodes`, the number of
+    bits for the states of all nodes together; the others may have any reading anywhere. Objects
+    that are compared at a task that does not measure them are tracked first, as they need it most.
     """
     known = (
         {} if catalog is None else {str(c.id): (c.range, c.nominal) for c in catalog.checkpoints}
@@ -116,22 +118,22 @@ def make_fields(flow: Flow, catalog: Catalog | None, bits: int = TRACKED_BITS) -
     shift: dict[str, int] = {}
     width = 0
     for o in sorted(scales, key=lambda o: (not remote[o], scales[o].width)):
-        if (width + scales[o].width) * flow.size <= bits:
+        if (width + scales[o].width) * flow.size <= bits_of_all_nodes:
             shift[o] = width
             width += scales[o].width
     return Fields(scales, shift, width)
 
 
-def compute_reachability(flow: Flow, fields: Fields, failures: bool) -> Reachability:
+def compute_reachability(flow: Flow, fields: Fields, actions_may_fail: bool) -> Reachability:
     """Return the nodes that can be reached, and the readings that are possible there.
 
-    It covers all execution paths. With `failures`, any action may fail and any measurement may lack
-    its value.
+    It covers all execution paths. With `actions_may_fail`, any action may fail and any measurement
+    may lack its value.
     """
-    return ReachabilitySearch(flow, fields, failures).run()
+    return ReachabilitySearch(flow, fields, actions_may_fail).run()
 
 
-def externally_reported_objects(flow: Flow) -> frozenset[str]:
+def objects_that_others_may_report(flow: Flow) -> frozenset[str]:
     """Return the ids of the objects whose values others than the mission's tasks may report.
 
     These are the objects that a WAIT waits for, and those that are compared but that no task
@@ -193,7 +195,7 @@ class ReachabilitySearch:
         """heap of the ranks of nodes to visit"""
         self.queued = [False] * flow.size
         self.satisfying: dict[tuple[object, ...], int] = {}
-        self.reported = union_of_bits(self._values(o) for o in externally_reported_objects(flow))
+        self.reported = union_of_bits(self._values(o) for o in objects_that_others_may_report(flow))
         self.late = _late_readings(flow, self._late_readings)
         self.guards: list[tuple[GuardStatus, ...]] = [()] * len(flow.leaves)
         self._effects: dict[tuple[str, bool], _Effect] = {}
@@ -361,7 +363,7 @@ class ReachabilitySearch:
         scale = self.fields.scales[object_id]
         # A task that a person does without giving a value leaves no reading. That is no failure,
         # but it is treated here too.
-        return scale.without_value_bits if self.failures else scale.failed_bit
+        return scale.without_value_bits if self.failures else scale.otherwise_failed_bit
 
     def _effect_of(self, leaf: LeafFlow) -> _Effect | None:
         """Return the change of the possible readings by a leaf's end; None if there is none.

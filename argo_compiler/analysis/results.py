@@ -59,7 +59,7 @@ class Stretch(Model):
     """time (s) or energy (Wh) spent from the mission's start to the end of this part"""
 
     @property
-    def words(self) -> str:
+    def task_or_rounds_text(self) -> str:
         if self.task is not None:
             return f"{self.task} missed" if self.missed else self.task
         return f"'{self.group}' x {self.rounds} round{'s' if self.rounds != 1 else ''}"

@@ -123,7 +123,7 @@ class StepCosts:
             self._join_repeats()
             self._find_too_slow()
             if reachability.failures:
-                self._include_retries(travel.clean_up_time)
+                self._include_retries(travel.longest_cancellation_time)
             for (_, target), cost in list(self._steps.items()):
                 self._join(ANY, target, cost)
 
@@ -178,7 +178,7 @@ class StepCosts:
             after += [(cut, 0.0) for cut, _ in self._successors_when_cut(target)]
         return following
 
-    def final_clean_up_time(self, source: Source) -> float:
+    def cancelled_action_clean_up_time(self, source: Source) -> float:
         """Return the longest time in s to clean up a cancelled action if the mission then ends.
 
         The mission ends after `source`. The time is 0 if no action can have been cancelled before.
@@ -189,7 +189,7 @@ class StepCosts:
             cancelled = any(position.on_way_to is not None for position in self.positions[source])
         else:
             cancelled = source[0] in ("cut", "missed")
-        return self.travel.clean_up_time if cancelled else 0.0
+        return self.travel.longest_cancellation_time if cancelled else 0.0
 
     def _successors(self, leaf: int) -> Iterator[tuple[Source, int]]:
         """Yield the source and leaf of each step that can follow an ended or cancelled leaf."""
@@ -261,7 +261,7 @@ class StepCosts:
                 self.positions[target].append(position)
             return
         task = leaf.leaf.task
-        leg = travel.leg(position.pose, task, task.velocity)
+        leg = travel.leg_with_action(position.pose, task, task.velocity)
         if isinstance(leg, NoPath):
             self.blocked.setdefault(target, leg.reason)
             leg = Leg(0.0, 0.0, position.pose)
@@ -380,7 +380,7 @@ class StepCosts:
             longest[target] = longest.get(target, FREE) | spent
         self._action_costs |= longest
 
-    def drive_and_action_cost(self, leaf: int, target: Task) -> Cost | NoPath:
+    def task_cost_after_leaf(self, leaf: int, target: Task) -> Cost | NoPath:
         """Return the cost of the drive to a task and of its action, from the end of a leaf.
 
         The task need not be one of the mission: it may be the drive back to the dock. The most is
@@ -390,13 +390,13 @@ class StepCosts:
         assert self.travel is not None
         cost = FREE
         for position in self.positions[leaf]:
-            leg = self.travel.leg(position.pose, target, target.velocity)
+            leg = self.travel.leg_with_action(position.pose, target, target.velocity)
             if isinstance(leg, NoPath):
                 return leg
             cost = cost | _cost(leg)
         return cost
 
-    def drive_and_action_cost_if_interrupted(self, leaf: int, target: Task) -> Cost | NoPath:
+    def task_cost_after_interrupted_leaf(self, leaf: int, target: Task) -> Cost | NoPath:
         """Return the cost of the drive to a task and of its action, from a leaf or the drive to it.
 
         The robot may be anywhere on its drive to the leaf, or the leaf may have ended. The task
@@ -404,7 +404,7 @@ class StepCosts:
         robot can't execute the task from one of its positions when the leaf has ended.
         """
         assert self.travel is not None
-        direct = self.drive_and_action_cost(leaf, target)
+        direct = self.task_cost_after_leaf(leaf, target)
         if isinstance(direct, NoPath) or self.flow.leaves[leaf].wait is not None:
             return direct
         cut_costs = _CutCosts(self.flow, self.travel, self._origins, self.positions)
@@ -428,7 +428,7 @@ class StepCosts:
                     QuantityRange(min(work.time.least, most.time.most), most.time.most),
                     QuantityRange(min(work.energy.least, most.energy.most), most.energy.most),
                 )
-                waited = Cost(QuantityRange(0.0, travel.clean_up_time), NOTHING)
+                waited = Cost(QuantityRange(0.0, travel.longest_cancellation_time), NOTHING)
                 self._join(source, target, rest + waited)
 
 
@@ -521,7 +521,7 @@ class _CutCosts:
         task = self.flow.leaves[target].leaf.task
         cost = FREE
         for pose in poses:
-            leg = self.travel.leg(pose, task, velocity)
+            leg = self.travel.leg_with_action(pose, task, velocity)
             if not isinstance(leg, NoPath):
                 cost = cost | _cost(leg)
         return cost

@@ -43,7 +43,7 @@ class Travel(Protocol):
         ...
 
     @property
-    def clean_up_time(self) -> float:
+    def longest_cancellation_time(self) -> float:
         """Greatest time in s from the cancellation of an action until the next one can start."""
         ...
 
@@ -60,7 +60,9 @@ class Travel(Protocol):
         """
         ...
 
-    def leg(self, origin: RobotPose, task: Task, velocity: float | None) -> Leg | NoPath:
+    def leg_with_action(
+        self, origin: RobotPose, task: Task, velocity: float | None
+    ) -> Leg | NoPath:
         """Return the cost of driving from a pose to a task, and of the task's action there.
 
         Called often with the same arguments.

@@ -39,13 +39,13 @@ class Scale:
         return self.missing_bit << 1
 
     @cached_property
-    def failed_bit(self) -> int:
+    def otherwise_failed_bit(self) -> int:
         """Mask of the bit that says: the reading may have failed for another reason."""
         return self.missing_bit << 2
 
     @cached_property
     def without_value_bits(self) -> int:
-        return self.missing_bit | self.unreadable_bit | self.failed_bit
+        return self.missing_bit | self.unreadable_bit | self.otherwise_failed_bit
 
     @cached_property
     def width(self) -> int:
@@ -63,7 +63,7 @@ class Scale:
             case ConditionType.UNREADABLE:
                 return self.unreadable_bit
             case ConditionType.FAILED:
-                return self.unreadable_bit | self.failed_bit
+                return self.unreadable_bit | self.otherwise_failed_bit
             case ConditionType.STALE:
                 return self.missing_bit - 1
             case ConditionType.ABNORMAL:

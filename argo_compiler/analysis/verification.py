@@ -4,7 +4,7 @@ It reads a mission by the rules of `docs/language.md` alone and uses nothing of 
 format of its witnesses. It visits each step of the mission once.
 """
 
-from argo_compiler.analysis.verification_layout import END, GroupLayout, ProgramPoint
+from argo_compiler.analysis.verification_layout import END, MissionLayout, ProgramPoint
 from argo_compiler.analysis.verification_states import ClaimedStates
 from argo_compiler.analysis.verification_walk import MissionWalk, Proved
 from argo_compiler.analysis.witness import Invariant, Trap
@@ -17,7 +17,7 @@ class Verifier:
 
     def __init__(self, mission: Mission, catalog: Catalog | None) -> None:
         self._mission = mission
-        self._layout = GroupLayout(mission)
+        self._layout = MissionLayout(mission)
         checkpoints = () if catalog is None else catalog.checkpoints
         self._ranges = {
             str(c.id): (c.range.low, c.range.high, c.nominal.low, c.nominal.high)
@@ -37,7 +37,7 @@ class Verifier:
         walk = MissionWalk(
             self._mission, self._layout, states, witness.failures, proved, self._ranges
         )
-        if not states.contains(*walk.first_step()):
+        if not states.contains(*walk.step_to_mission_start()):
             return None
         for here in list(states.readings):
             if not all(states.contains(*step) for step in walk.steps(here)):
@@ -63,7 +63,9 @@ class Verifier:
             if here not in states.readings:
                 continue
             for point, state, _ in walk.steps(here):
-                if point not in points or not states.stays_in_trap(point, state, witness.kept):
+                if point not in points or not states.continues_with_kept_readings(
+                    point, state, witness.kept
+                ):
                     return False
         return any(here in states.readings for here in points)
 

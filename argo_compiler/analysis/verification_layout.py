@@ -8,7 +8,7 @@ groups; or END"""
 END: ProgramPoint = ("end", 0)
 
 
-class GroupLayout:
+class MissionLayout:
     """Nesting of a mission's tasks and groups (G1), by their indices in the mission's lists."""
 
     def __init__(self, mission: Mission) -> None:

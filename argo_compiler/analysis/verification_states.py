@@ -37,7 +37,7 @@ class ClaimedScale:
         return self.missing_bit << 1
 
     @cached_property
-    def failed_bit(self) -> int:
+    def otherwise_failed_bit(self) -> int:
         return self.missing_bit << 2
 
     @cached_property
@@ -72,7 +72,7 @@ class ClaimedScale:
             case ConditionType.UNREADABLE:
                 return self.unreadable_bit
             case ConditionType.FAILED:
-                return self.unreadable_bit | self.failed_bit
+                return self.unreadable_bit | self.otherwise_failed_bit
             case ConditionType.STALE:
                 return all_values
             case ConditionType.ABNORMAL:
@@ -146,18 +146,20 @@ class ClaimedStates:
         scale = self.scales[object_id]
         return (scale.values | (scale.unreadable_bit if failures else 0)) << scale.shift
 
-    def contains(self, point: ProgramPoint, state: int, late: int) -> bool:
+    def contains(self, point: ProgramPoint, state: int, late_readings: int) -> bool:
         """Return True if the readings after a step to a point are among those claimed for it.
 
-        `state` has the possible readings, `late` those that a cancelled action may still report
-        there.
+        `state` has the possible readings, `late_readings` those that a cancelled action may still
+        report there.
         """
         known = self.readings.get(point)
-        if known is None or late & ~self.late.get(point, 0):
+        if known is None or late_readings & ~self.late.get(point, 0):
             return False
-        return not (state | late) & ~known
+        return not (state | late_readings) & ~known
 
-    def stays_in_trap(self, point: ProgramPoint, state: int, kept: KeptReading | None) -> bool:
+    def continues_with_kept_readings(
+        self, point: ProgramPoint, state: int, kept: KeptReading | None
+    ) -> bool:
         """Return True if a step to a point does not end the mission and keeps a trap's readings.
 
         With `kept` None, the readings may be any. Whether the point is one of the trap's is not

@@ -10,7 +10,7 @@ cancelled actions that may still arrive.
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from argo_compiler.analysis.verification_layout import END, GroupLayout, ProgramPoint
+from argo_compiler.analysis.verification_layout import END, MissionLayout, ProgramPoint
 from argo_compiler.analysis.verification_states import (
     ClaimedScale,
     ClaimedStates,
@@ -56,7 +56,7 @@ class MissionWalk:
     def __init__(
         self,
         mission: Mission,
-        layout: GroupLayout,
+        layout: MissionLayout,
         states: ClaimedStates,
         failures: bool,
         proved: Proved,
@@ -81,7 +81,7 @@ class MissionWalk:
             if object_id in waited or object_id not in measured:
                 self._reported |= scale.values << scale.shift
 
-    def first_step(self) -> Step:
+    def step_to_mission_start(self) -> Step:
         """Return the step to the mission's start (M1), where nothing has been measured."""
         state = self._reported
         for scale in self.states.scales.values():
@@ -159,7 +159,7 @@ class MissionWalk:
             return state
         scale = self.states.scales[o]
         others = scale.unreadable_bit if self.failures else 0
-        return self.states.set(state, o, scale.failed_bit | others) | self._reported
+        return self.states.set(state, o, scale.otherwise_failed_bit | others) | self._reported
 
     def _may_fail(self, task: Task) -> bool:
         """Return True if a task may finally fail.

@@ -15,7 +15,7 @@ def make_witnesses(study: Study, loops: Iterable[NonTerminatingLoop]) -> Witness
         all=_invariant(study, study.with_failures, failures=True),
         traps=(
             *(make_trap(study, nodes) for nodes in study.trap_nodes),
-            *(make_trap(study, sorted(loop.nodes), loop.kept_reading) for loop in loops),
+            *(make_trap(study, sorted(loop.nodes), loop.readings_keeping_loop) for loop in loops),
         ),
     )
 

@@ -116,7 +116,10 @@ def _end_poses(goals: Sequence[Task], start: Pose, travel: SiteTravel) -> list[P
         if task.action is not Action.MEASURE:
             end_poses.append(from_start[k])
             continue
-        legs = [travel.leg(origin, task, None) for origin in dict.fromkeys([start, *origins])]
+        legs = [
+            travel.leg_with_action(origin, task, None)
+            for origin in dict.fromkeys([start, *origins])
+        ]
         arrivals = Counter(leg.arrival for leg in legs if isinstance(leg, Leg))
         most_frequent = arrivals.most_common(1)[0][0]
         assert isinstance(most_frequent, Pose)
@@ -126,7 +129,7 @@ def _end_poses(goals: Sequence[Task], start: Pose, travel: SiteTravel) -> list[P
 
 def _require_leg(travel: SiteTravel, start: Pose, task: Task) -> Leg:
     """Return the leg from the start to a task; raises Unreachable if there is none."""
-    leg = travel.leg(start, task, None)
+    leg = travel.leg_with_action(start, task, None)
     if isinstance(leg, NoPath):
         raise Unreachable(f"the robot can't carry out task '{task.name}': {leg.reason}")
     return leg
@@ -153,7 +156,7 @@ def _plan_from(
 
     They are those of planned paths; inf where there is no path.
     """
-    legs = [travel.leg(origin, task, task.velocity) for task in goals]
+    legs = [travel.leg_with_action(origin, task, task.velocity) for task in goals]
     time = [leg.duration if isinstance(leg, Leg) else np.inf for leg in legs]
     return time, [leg.energy if isinstance(leg, Leg) else np.inf for leg in legs]
 

@@ -125,7 +125,7 @@ class SiteTravel:
         return self._robot.power.standing
 
     @property
-    def clean_up_time(self) -> float:
+    def longest_cancellation_time(self) -> float:
         """Greatest time in s from the cancellation of an action until the arm is stowed."""
         return self._round_up(self._robot.sensor.stowing_time) + self.time_step
 
@@ -160,7 +160,9 @@ class SiteTravel:
             raise Unreachable(f"the robot can't carry out task '{task.name}': {path.reason}")
         return path
 
-    def leg(self, origin: RobotPose, task: Task, velocity: float | None) -> Leg | NoPath:
+    def leg_with_action(
+        self, origin: RobotPose, task: Task, velocity: float | None
+    ) -> Leg | NoPath:
         """Return the time and energy of the path from `origin` to a task, and of its action there.
 
         A WAIT takes no time and leaves the robot where it is. If there is no path, or it takes

@@ -189,7 +189,7 @@ class _PathPreviewer:
         try:
             if task.pose is not None:
                 require_pose_within_limits(task.pose, "its pose")
-            leg = self.travel.leg(start, task, task.velocity)
+            leg = self.travel.leg_with_action(start, task, task.velocity)
             if isinstance(leg, NoPath):
                 return PreviewedWay(problem=_problem_text(goal, leg.reason))
             path = self.travel.plan_path(start, task)

@@ -76,7 +76,7 @@ class ConstantTravel:
     A drive to where the robot is takes no time; a measurement takes 2 s.
     """
 
-    clean_up_time = 1.0
+    longest_cancellation_time = 1.0
     standing_power = 0.0
 
     def __init__(self, blocked=(), battery=100.0):
@@ -86,7 +86,7 @@ class ConstantTravel:
     def start_pose(self, mission):  # noqa: ARG002
         return "start"
 
-    def leg(self, origin, task, velocity):
+    def leg_with_action(self, origin, task, velocity):
         place = task.object_id or task.name
         if place in self.blocked or (task.pose and task.pose.x < 0):
             return NoPath("a wall stands in the way")

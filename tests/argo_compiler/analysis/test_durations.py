@@ -136,7 +136,7 @@ def test_the_path_lists_tasks_and_rounds():
         ConstantTravel(),
     )
     assert found.duration is not None
-    assert [(s.words, s.until) for s in found.duration.least.path] == [
+    assert [(s.task_or_rounds_text, s.until) for s in found.duration.least.path] == [
         ("'G' x 3 rounds", 60),
         ("C", 70),
     ]
@@ -204,7 +204,7 @@ def test_a_time_out_need_not_come_after_a_whole_round():
     """T1 may be repeated until the time is up, so that no round is completed."""
 
     class Costly(ConstantTravel):
-        def leg(self, origin, task, velocity):  # noqa: ARG002
+        def leg_with_action(self, origin, task, velocity):  # noqa: ARG002
             return Leg(2.0, 10.0 if task.name == "T2" else 0.1, task.name)
 
     plan = mission(
@@ -265,7 +265,7 @@ def test_an_action_that_begins_when_the_time_is_up_has_not_ended():
     """B takes no time but needs energy; the stop comes before its end."""
 
     class Quick(ConstantTravel):
-        def leg(self, origin, task, velocity):  # noqa: ARG002
+        def leg_with_action(self, origin, task, velocity):  # noqa: ARG002
             return Leg(0.0 if task.name == "B" else 10.0, 1.0, task.name)
 
     rounds = group("G", "A", "B", max_repeat_duration=10, **HARD)

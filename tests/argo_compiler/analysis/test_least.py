@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from argo_compiler.analysis import analyse, unproved_bounds
-from argo_compiler.analysis.bound_verification import is_valid, least_steps
+from argo_compiler.analysis.bound_verification import is_valid, least_steps_if_computable
 from argo_compiler.analysis.bound_witness_search import find_least_witness
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import has_errors
@@ -28,7 +28,7 @@ def witnessed(plan, catalog, travel):
     witnesses = analyse(plan, catalog, travel).witnesses
     if witnesses is None:
         return None, None
-    steps = least_steps(plan, catalog, travel, witnesses.nominal)
+    steps = least_steps_if_computable(plan, catalog, travel, witnesses.nominal)
     return find_least_witness(steps), steps
 
 
@@ -166,8 +166,8 @@ def test_claims_without_a_valid_witness_are_unproved():
 class WanderingTravel(ConstantTravel):
     """Travel in which the robot never stands at the same pose again."""
 
-    def leg(self, origin, task, velocity):
-        leg = super().leg(origin, task, velocity)
+    def leg_with_action(self, origin, task, velocity):
+        leg = super().leg_with_action(origin, task, velocity)
         return replace(leg, arrival=f"{origin}+")
 
 

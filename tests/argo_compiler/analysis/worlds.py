@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from argo_compiler.analysis import Leg, NoPath
 from argo_compiler.analysis.flow import Flow
-from argo_compiler.analysis.reachability import externally_reported_objects
+from argo_compiler.analysis.reachability import objects_that_others_may_report
 from argo_compiler.base.catalog import Area, Catalog
 from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import (
@@ -175,7 +175,7 @@ class MadeUpTravel:
 
     def __init__(self, seed, clean_up=0.0, blocked=(), standing_power=0.0):
         self.seed = seed
-        self.clean_up_time = clean_up
+        self.longest_cancellation_time = clean_up
         self.battery = 5.0
         self.standing_power = standing_power
         self.blocked = blocked
@@ -183,7 +183,7 @@ class MadeUpTravel:
     def start_pose(self, mission):  # noqa: ARG002
         return "start"
 
-    def leg(self, origin, task, velocity):
+    def leg_with_action(self, origin, task, velocity):
         place = task.object_id or f"{task.pose.x:g}"
         if place in self.blocked:
             return NoPath("a wall stands in the way")
@@ -271,7 +271,8 @@ class _World:
         else:
             awaited |= reacting | {r.until for r in mission.reactions if r.until is not None}
         reported = (
-            externally_reported_objects(Flow.from_machine(hfsm, mission)) & self.checkpoints.keys()
+            objects_that_others_may_report(Flow.from_machine(hfsm, mission))
+            & self.checkpoints.keys()
         )
         if self.mode == "eventful":
             self.external = [*sorted(awaited), *sorted(reported)]
@@ -338,14 +339,15 @@ class _World:
     def _execute(self, commands):
         for command in commands:
             if isinstance(command, CancelAction):
-                self.stop_at = self.result.now + self.rng.choice([0, 1]) * self.travel.clean_up_time
+                longest = self.travel.longest_cancellation_time
+                self.stop_at = self.result.now + self.rng.choice([0, 1]) * longest
             else:
                 assert isinstance(command, StartAction)
                 self._start_action(command)
 
     def _start_action(self, command):
         task, now, rng = command.task, self.result.now, self.rng
-        leg = self.travel.leg("start", task, task.velocity)
+        leg = self.travel.leg_with_action("start", task, task.velocity)
         work, arrival = leg.work, leg.arrival
         time, energy = self._longest(self.position, task, task.velocity)
         if isinstance(self.position, _Interrupted):
@@ -364,11 +366,11 @@ class _World:
 
     def _longest(self, position, task, velocity):
         if isinstance(position, _AtPose):
-            leg = self.travel.leg(position.pose, task, velocity)
+            leg = self.travel.leg_with_action(position.pose, task, velocity)
             return leg.duration, leg.energy
         time, energy = self._longest(position.before, position.task, velocity)
         if task.name != position.task.name:
-            leg = self.travel.leg(position.arrival, task, velocity)
+            leg = self.travel.leg_with_action(position.arrival, task, velocity)
             time, energy = time + leg.duration, energy + leg.energy
         return time, energy
 

@@ -78,7 +78,7 @@ def digest_of_results(navigator):
     tasks = [Task(name=str(id), action=Action.MEASURE, object_id=str(id)) for id in (*ids, 99)]
     tasks += [Task(name=str(k), action=Action.WAYPOINT, pose=p) for k, p in enumerate(poses)]
     tasks.append(Task(name="far", action=Action.WAYPOINT, pose=Pose(x=90.0, y=0.0, z=0.0)))
-    sink.update(repr([travel.leg(first, task, 0.2) for task in tasks]).encode())
+    sink.update(repr([travel.leg_with_action(first, task, 0.2) for task in tasks]).encode())
     return sink.hexdigest()
 
 
@@ -139,10 +139,10 @@ def test_ways_of_a_mission_come_from_disk_without_a_lattice(yard_file, monkeypat
     task = Task(name="one", action=Action.MEASURE, object_id="1")
     first = open_site(yard_file)
     dock = first.site.docks[1]
-    leg, way = first.travel.leg(dock, task, None), first.travel.plan_path(dock, task)
+    leg, way = first.travel.leg_with_action(dock, task, None), first.travel.plan_path(dock, task)
     again = open_anew(yard_file)
     monkeypatch.setattr(Navigator, "lattice", None)
-    assert again.travel.leg(dock, task, None) == leg
+    assert again.travel.leg_with_action(dock, task, None) == leg
     assert again.travel.plan_path(dock, task) == way
 
 

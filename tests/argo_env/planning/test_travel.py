@@ -62,10 +62,10 @@ def test_velocities_count_for_the_way_to_the_task(navigator, catalog, travel):
 def test_ways_that_do_not_exist_say_why(travel):
     start = travel.start_pose(Mission(tasks=(measure(1),)))
     far = Task(name="far", action=Action.WAYPOINT, pose=Pose(x=500, y=0, z=0))
-    away = travel.leg(start, far, None)
+    away = travel.leg_with_action(start, far, None)
     assert isinstance(away, NoPath)
     assert "(500.00, 0.00, 0.00)" in away.reason
-    unknown = travel.leg(start, measure(9999), None)
+    unknown = travel.leg_with_action(start, measure(9999), None)
     assert isinstance(unknown, NoPath)
     assert "9999" in unknown.reason
 
@@ -73,7 +73,7 @@ def test_ways_that_do_not_exist_say_why(travel):
 def test_energy_follows_from_times_and_powers(navigator, travel):
     robot = navigator.robot
     start = travel.start_pose(Mission(tasks=(measure(1),)))
-    leg = travel.leg(start, measure(8), None)
+    leg = travel.leg_with_action(start, measure(8), None)
     assert isinstance(leg, Leg)
     assert leg.work == pytest.approx(robot.sensor.measuring_time)
     powers = robot.power.model_dump().values()

@@ -107,7 +107,7 @@ def compare_policies(
             PolicyStatistics(
                 name,
                 bootstrap.mean(prizes[name]),
-                bootstrap.ratio(known - prizes[name], known),
+                bootstrap.ratio_of_sums(known - prizes[name], known),
                 bootstrap.mean(highest - prizes[name]),
                 bootstrap.mean(np.array([o.time for o in episodes])),
                 bootstrap.mean(np.array([o.feasible for o in episodes], dtype=float)),

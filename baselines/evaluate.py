@@ -54,7 +54,7 @@ def comparison_title(comparison: PolicyComparison) -> str:
 
 
 def beaten_reference_warnings(comparison: PolicyComparison) -> list[str]:
-    """Return a warning for each policy that wins more on an instance than the best known route."""
+    """Return one warning for each policy that beats the best known route of any instance."""
     better: dict[str, list[BetterRoute]] = {}
     for route in comparison.better_routes:
         better.setdefault(route.policy, []).append(route)

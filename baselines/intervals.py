@@ -36,9 +36,11 @@ class Bootstrap:
 
     def mean(self, values: NDArray[np.float64]) -> ConfidenceInterval:
         """Return the mean of `values`, one for each instance, with its confidence interval."""
-        return self.ratio(values, np.ones(len(values)))
+        return self.ratio_of_sums(values, np.ones(len(values)))
 
-    def ratio(self, values: NDArray[np.float64], to: NDArray[np.float64]) -> ConfidenceInterval:
+    def ratio_of_sums(
+        self, values: NDArray[np.float64], to: NDArray[np.float64]
+    ) -> ConfidenceInterval:
         """Return the ratio of the sum of `values` to the sum of `to`; 0 where the latter is 0."""
         estimate = self._divide(values.sum(keepdims=True), to.sum(keepdims=True))
         drawn = self._divide(self._weights @ values, self._weights @ to)

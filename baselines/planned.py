@@ -20,8 +20,8 @@ class PlannedPolicy(Policy):
         """Return the nodes to visit from now on, in their order, without the dock at the end."""
         raise NotImplementedError
 
-    def begin(self, observation: Observation, episode_time_budget: float, seed: int) -> None:
-        self._budget, self._seed = episode_time_budget, seed
+    def begin(self, observation: Observation, robot_time_budget: float, seed: int) -> None:
+        self._budget, self._seed = robot_time_budget, seed
         self._make_plan(observation)
 
     def act(self, observation: Observation) -> int:

@@ -20,12 +20,12 @@ class Policy(Protocol):
 
     name: str
 
-    def begin(self, observation: Observation, episode_time_budget: float, seed: int) -> None:
+    def begin(self, observation: Observation, robot_time_budget: float, seed: int) -> None:
         """Prepare for an episode, before its first decision; by default do nothing.
 
         Args:
             observation: first observation of the episode.
-            episode_time_budget: time budget of the episode in simulated s; times in observations
+            robot_time_budget: time budget of the episode in simulated s; times in observations
                 are shares of it.
             seed: seed of all random decisions.
         """

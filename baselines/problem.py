@@ -28,7 +28,7 @@ class OpenProblem:
 
 
 def problem_from_observation(
-    observation: Observation, episode_time_budget: float, objective: Objective = Objective.DURATION
+    observation: Observation, robot_time_budget: float, objective: Objective = Objective.DURATION
 ) -> OpenProblem:
     """Return the route problem of an observation with `full=True`.
 
@@ -37,10 +37,10 @@ def problem_from_observation(
 
     Args:
         observation: the observation.
-        episode_time_budget: time budget of the whole episode in s.
+        robot_time_budget: time budget of the whole episode in s.
         objective: objective of the route problem.
     """
-    ticks = round(episode_time_budget / TICK)
+    ticks = round(robot_time_budget / TICK)
     travel = _ticks(observation["matrix"], ticks)
     home, here = _ticks(observation["home"], ticks), int(observation["place"])
     rows = [*np.flatnonzero(observation["prize"][1:] > 0.0) + 1, here]

@@ -223,7 +223,7 @@ def _better_reference(
 def _search(
     problem: RouteProblem, seconds: float, seed: int
 ) -> Iterator[tuple[int, tuple[int, ...]]]:
-    """Yield upper bounds on the prize of any order, in 0.01, each with an order that was found.
+    """Yield upper bounds on the prize of any order (in hundredths), each with an order found.
 
     Some of its solvers do not support precedence constraints. So without a proof, the relaxation
     without these constraints is solved too. Its bound is valid for the full problem; from its

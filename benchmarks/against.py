@@ -97,7 +97,7 @@ def prepare_mission_run(
     return lambda: simulate(spec, site)
 
 
-def prepare_episodes(seeds: Sequence[int], *, warmed_up: bool = False) -> Work:
+def prepare_next_episode(seeds: Sequence[int], *, warmed_up: bool = False) -> Work:
     """Return a function that runs an episode of Inspect-v0 of at most 40 random legal actions.
 
     Each call takes the next of the seeds, after the last the first. As at the start of training,
@@ -182,8 +182,8 @@ CASES: dict[str, tuple[Callable[[], Work], int]] = {
     "kinematic-rounds": (partial(prepare_mission_run, "kinematic", "protocol_3.txt", ()), 1),
     "tracked": (partial(prepare_mission_run, "tracked"), 1),
     "route": (partial(prepare_mission_run, "route", warmed_up=True), 10),
-    "inspect": (partial(prepare_episodes, range(1_000_000)), 3),
-    "inspect-known": (partial(prepare_episodes, range(3), warmed_up=True), 3),
+    "inspect": (partial(prepare_next_episode, range(1_000_000)), 3),
+    "inspect-known": (partial(prepare_next_episode, range(3), warmed_up=True), 3),
     "import": (prepare_import, 1),
     "report": (prepare_report, 1),
     "film": (prepare_film, 1),

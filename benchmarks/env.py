@@ -80,7 +80,7 @@ def make_random_policy(seed: int = 0) -> Callable:
 def step_argo_batch(count: int) -> Stepper:
     """Yield the number and the time (s) of the steps of a batch of `count` episodes of Route-v0.
 
-    Each call of `step` gives one pair. Episodes that the batch resets in it are not counted.
+    Each call of `step` gives one pair, whose number is `count` less the episodes that it resets.
     """
     env = gym.make_vec(
         "argo/Route-v0",
@@ -311,7 +311,7 @@ def measure_memory_over_resets(options: argparse.Namespace) -> None:
 
 
 def measure_expert_success(options: argparse.Namespace) -> None:
-    """Print how often the expert reaches goals on UMAD: on the same floor, upwards, downwards."""
+    """Print how often the expert reaches goals on the site UMAD: on the same floor, up and down."""
     wrapped = gym.make("argo/Drive-v0", max_way=options.max_way, disable_env_checker=True)
     env: Any = wrapped.unwrapped
     results: dict[str, list[tuple[bool, float, float, bool]]] = {}
@@ -338,7 +338,7 @@ def measure_expert_success(options: argparse.Namespace) -> None:
     env.close()
 
 
-def measure_batch_speedup(options: argparse.Namespace) -> None:
+def measure_process_speedup(options: argparse.Namespace) -> None:
     """Print the speed-up of a batch by several processes, relative to one.
 
     One and several processes alternate. Each line states the processor time of other load in the
@@ -348,12 +348,14 @@ def measure_batch_speedup(options: argparse.Namespace) -> None:
     for id, steps in BATCH_STEPS.items():
         ratios = []
         for seed in range(options.rounds):
-            one, many = (batch_rate(id, options.count or 8, n, seed, steps) for n in (1, processes))
+            one, many = (
+                print_batch_rate(id, options.count or 8, n, seed, steps) for n in (1, processes)
+            )
             ratios.append(many / one)
         print(f"{id}: {median(ratios):.2f} times as many with {processes} processes")
 
 
-def batch_rate(id: str, count: int, processes: int, seed: int, steps: int) -> float:
+def print_batch_rate(id: str, count: int, processes: int, seed: int, steps: int) -> float:
     """Step a batch `steps` times with random legal actions; print and return steps per second."""
     batch: Any = gym.make_vec(id, count, processes=processes).unwrapped
     rng = np.random.default_rng(seed)
@@ -425,7 +427,7 @@ PARTS: dict[str, Callable[[argparse.Namespace], None]] = {
     "inspect": measure_inspect,
     "resets": measure_memory_over_resets,
     "expert": measure_expert_success,
-    "batches": measure_batch_speedup,
+    "batches": measure_process_speedup,
 }
 
 if __name__ == "__main__":

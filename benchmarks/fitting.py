@@ -61,7 +61,8 @@ def fit_calibration(drives: Iterable[TimedDrive], robot: RobotSpec) -> Calibrati
 def nominal_seconds(motion: Motion, robot: RobotSpec, velocity: float | None = None) -> float:
     """Return the seconds that a motion would take at the commanded speed throughout.
 
-    `velocity` (m/s) applies as in `Motion.drive_speed`, and has no effect on turns.
+    `velocity` (m/s) replaces the commanded speed forwards on the flat, and limits it on stairs and
+    backwards. It has no effect on turns.
     """
     if motion.turn:
         return abs(motion.turn) / robot.target_speed(motion.kind)

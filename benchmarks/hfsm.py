@@ -103,22 +103,22 @@ class Rounds:
         self.alpha = 1
         self.beta = 1
 
-    def enter_alpha(self, *_: Any) -> None:
+    def reset_alpha(self, *_: Any) -> None:
         self.alpha = 1
 
-    def enter_beta(self, *_: Any) -> None:
+    def reset_beta(self, *_: Any) -> None:
         self.beta = 1
 
-    def next_alpha(self, *_: Any) -> None:
+    def add_alpha_round(self, *_: Any) -> None:
         self.alpha += 1
 
-    def next_beta(self, *_: Any) -> None:
+    def add_beta_round(self, *_: Any) -> None:
         self.beta += 1
 
-    def alpha_again(self, *_: Any) -> bool:
+    def should_repeat_alpha(self, *_: Any) -> bool:
         return self.alpha < 3
 
-    def beta_again(self, *_: Any) -> bool:
+    def should_repeat_beta(self, *_: Any) -> bool:
         return self.beta < 2
 
     def high(self, value: float) -> bool:
@@ -134,15 +134,15 @@ def build_flat_transitions() -> Run:
 
     model: Any = Rounds()
     rows = [
-        {"trigger": "ended", "source": "A", "dest": "B", "before": "enter_alpha"},
-        {"trigger": "ended", "source": "B", "dest": "D", "before": "enter_beta"},
+        {"trigger": "ended", "source": "A", "dest": "B", "before": "reset_alpha"},
+        {"trigger": "ended", "source": "B", "dest": "D", "before": "reset_beta"},
         {"trigger": "ended", "source": "D", "dest": "E"},
-        {"trigger": "ended", "source": "E", "dest": "D", "conditions": "beta_again",
-         "before": "next_beta"},
+        {"trigger": "ended", "source": "E", "dest": "D", "conditions": "should_repeat_beta",
+         "before": "add_beta_round"},
         {"trigger": "ended", "source": "E", "dest": "C"},
         {"trigger": "ended", "source": "C", "dest": "F", "conditions": "high"},
-        {"trigger": "ended", "source": "C", "dest": "B", "conditions": "alpha_again",
-         "before": "next_alpha"},
+        {"trigger": "ended", "source": "C", "dest": "B", "conditions": "should_repeat_alpha",
+         "before": "add_alpha_round"},
         {"trigger": "ended", "source": "C", "dest": "F"},
         {"trigger": "ended", "source": "F", "dest": "A"},
     ]  # fmt: skip
@@ -156,19 +156,19 @@ def build_hierarchical_transitions() -> Run:
     from transitions.extensions import HierarchicalMachine
 
     model: Any = Rounds()
-    beta = {"name": "Beta", "initial": "D", "children": ["D", "E"], "on_enter": "enter_beta"}
+    beta = {"name": "Beta", "initial": "D", "children": ["D", "E"], "on_enter": "reset_beta"}
     alpha = {"name": "Alpha", "initial": "B", "children": ["B", beta, "C"],
-             "on_enter": "enter_alpha"}  # fmt: skip
+             "on_enter": "reset_alpha"}  # fmt: skip
     rows = [
         {"trigger": "ended", "source": "A", "dest": "Alpha"},
         {"trigger": "ended", "source": "Alpha_B", "dest": "Alpha_Beta"},
         {"trigger": "ended", "source": "Alpha_Beta_D", "dest": "Alpha_Beta_E"},
         {"trigger": "ended", "source": "Alpha_Beta_E", "dest": "Alpha_Beta_D",
-         "conditions": "beta_again", "before": "next_beta"},
+         "conditions": "should_repeat_beta", "before": "add_beta_round"},
         {"trigger": "ended", "source": "Alpha_Beta_E", "dest": "Alpha_C"},
         {"trigger": "ended", "source": "Alpha_C", "dest": "F", "conditions": "high"},
-        {"trigger": "ended", "source": "Alpha_C", "dest": "Alpha_B", "conditions": "alpha_again",
-         "before": "next_alpha"},
+        {"trigger": "ended", "source": "Alpha_C", "dest": "Alpha_B",
+         "conditions": "should_repeat_alpha", "before": "add_alpha_round"},
         {"trigger": "ended", "source": "Alpha_C", "dest": "F"},
         {"trigger": "ended", "source": "F", "dest": "A"},
     ]  # fmt: skip
@@ -204,19 +204,19 @@ def build_python_statemachine() -> Run:
             class Beta(State.Compound):
                 D = State(initial=True)
                 E = State()
-                ended = D.to(E) | E.to(D, cond="beta_again", on="next_beta")
+                ended = D.to(E) | E.to(D, cond="should_repeat_beta", on="add_beta_round")
 
             B = State(initial=True)
             C = State()
             ended = (
-                B.to(Beta, on="enter_beta")
+                B.to(Beta, on="reset_beta")
                 | Beta.to(C)
-                | C.to(B, cond="alpha_again and not high", on="next_alpha")
+                | C.to(B, cond="should_repeat_alpha and not high", on="add_alpha_round")
             )
 
         A = State(initial=True)
         F = State()
-        ended = A.to(Alpha, on="enter_alpha") | Alpha.to(F) | F.to(A)
+        ended = A.to(Alpha, on="reset_alpha") | Alpha.to(F) | F.to(A)
 
     machine: Any = Night(Rounds())
 
@@ -349,15 +349,23 @@ for name in MISSING:
 
 
 def measure_median_rates(
-    count: int, repeats: int, machines: Mapping[str, tuple[Callable[[], Run], bool]] = MACHINES
+    event_count: int,
+    repeats: int,
+    machines: Mapping[str, tuple[Callable[[], Run], bool]] = MACHINES,
 ) -> dict[str, float]:
     """Return the events per second of each machine, the medians of the repeats.
+
+    Args:
+        event_count: number of events in a repeat
+        repeats: number of repeats
+        machines: function that builds each machine, and whether it is hierarchical, which has no
+            effect
 
     Raises:
         SystemExit: A machine executes other tasks than Argo's.
     """
     generator = random.Random(0)
-    values = [generator.uniform(0.0, 10.0) for _ in range(count)]
+    values = [generator.uniform(0.0, 10.0) for _ in range(event_count)]
     expected = build_argo()(values)
     rates: dict[str, list[float]] = {name: [] for name in machines}
     for name, (build, _) in machines.items():
@@ -369,7 +377,7 @@ def measure_median_rates(
             gc.collect()
             before = time.process_time()
             run(values)
-            rates[name].append(count / (time.process_time() - before))
+            rates[name].append(event_count / (time.process_time() - before))
     return {name: statistics.median(repeated) for name, repeated in rates.items()}
 
 

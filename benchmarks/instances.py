@@ -180,7 +180,7 @@ class _Numbers:
     """Numbers in some lines of a file, taken one after the other. Has state: the next number."""
 
     def __init__(self, file: _File, lines: Iterable[int]) -> None:
-        """Read the numbers of the lines; raises ArgoError at the first word that is no number."""
+        """Read the numbers in the lines with these indices; raises ArgoError at any other word."""
         self._file = file
         self._lines = list(lines)
         rows = [_parse_numbers(file, line) for line in self._lines]

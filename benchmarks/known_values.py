@@ -80,7 +80,7 @@ def find_known_value(path: Path, kind: Kind) -> KnownValue | None:
 
 
 def _table_rows(path: Path, name: str) -> Iterator[list[str]]:
-    """Yield the words of each line about a problem in a file beside it."""
+    """Yield the words of each line on the problem at `path` in the file `name` beside it."""
     table = path.with_name(name)
     if table.exists():
         for line in table.read_text(encoding="utf-8").splitlines():

@@ -109,7 +109,7 @@ def _times_with_service(problem: RouteProblem) -> NDArray[np.int64]:
 
 
 def _ordered_pairs(problem: RouteProblem) -> Iterator[tuple[int, int]]:
-    """Yield all pairs of visits of which the first must come before the second."""
+    """Yield all pairs of visits in each precedence constraint, the earlier visit first."""
     for precedence in problem.precedences:
         for k, before in enumerate(precedence.sequence):
             yield from ((before, after) for after in precedence.sequence[k + 1 :])

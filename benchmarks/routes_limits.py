@@ -109,10 +109,10 @@ KINDS: dict[str, AddRules] = {
 }
 
 
-def measure_excess_and_feasibility(
+def measure_overrun_and_feasibility(
     sizes: list[int], limits: list[float], workers: int
 ) -> Iterator[tuple[int, str, float, float, bool]]:
-    """Yield size, kind, limit (s), excess (s) and whether a feasible route was found."""
+    """Yield size, kind, limit (s), time beyond it (s), and whether a feasible route was found."""
     suggest_route(random_problem(3, np.random.default_rng(0)))  # imports the libraries
     for size in sizes:
         for name, kind in KINDS.items():
@@ -137,7 +137,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--workers", type=int, default=1, help="processes")
     options = parser.parse_args(arguments)
     print("| visits | kind | limit | beyond it | route | kept |\n|---|---|---|---|---|---|")
-    for size, name, limit, beyond, feasible in measure_excess_and_feasibility(
+    for size, name, limit, beyond, feasible in measure_overrun_and_feasibility(
         options.sizes, options.limits, options.workers
     ):
         kept = "yes" if beyond <= 0.1 * limit + 0.2 else "no"

@@ -125,7 +125,7 @@ Case = tuple[str, Sequence[Sequence[str]]]
 """Name of a case, and its commands, which are run one after another in a new folder."""
 
 
-def plan_cases() -> Iterator[Case]:
+def mission_cases() -> Iterator[Case]:
     """Yield the cases that read, check, explain, compile, export and rewrite missions."""
     areas = ("--start-area", "1", "--end-area", "2")
     for name in ("mission_1.txt", "protocol_2.txt", "protocol_3.txt", "any_order.txt"):
@@ -195,7 +195,7 @@ def command_results(group: str, only: str, with_prose: bool) -> Iterator[tuple[s
 
     The output consists of exit statuses, what is printed, and files.
     """
-    all_cases = {"plans": plan_cases, "routes": route_cases, "journals": journal_cases}[group]()
+    all_cases = {"plans": mission_cases, "routes": route_cases, "journals": journal_cases}[group]()
     cases = [case for case in all_cases if only in f"{group}: {case[0]}"]
     if not cases:
         return

@@ -75,11 +75,14 @@ def make_mission(size: int) -> dict[str, object]:
     return {"version": 3, "tasks": tasks, "groups": groups}
 
 
-def receive_revisions(address: str, id: str, revisions: int, count: int, times: Connection) -> None:
-    """Subscribe `count` times to a mission until each subscriber has received `revisions` of them.
+def receive_revisions(
+    address: str, id: str, revisions: int, subscribers: int, times: Connection
+) -> None:
+    """Subscribe to a mission, `subscribers` times, until each has received `revisions` revisions.
 
     Runs in a process of its own. Sends None through `times` when all are subscribed, and at the
-    end, by the number of a revision, the time (ns) at which the last subscriber received it.
+    end one dictionary: by the number of each revision the time (ns) at which the last subscriber
+    received it.
     """
 
     async def follow_once(last: Counter[int], ready: asyncio.Semaphore) -> None:
@@ -98,8 +101,8 @@ def receive_revisions(address: str, id: str, revisions: int, count: int, times: 
     async def follow_in_parallel() -> Counter[int]:
         last: Counter[int] = Counter()
         ready = asyncio.Semaphore(0)
-        tasks = [asyncio.create_task(follow_once(last, ready)) for _ in range(count)]
-        for _ in range(count):
+        tasks = [asyncio.create_task(follow_once(last, ready)) for _ in range(subscribers)]
+        for _ in range(subscribers):
             await ready.acquire()
         times.send(None)
         await asyncio.gather(*tasks)
@@ -108,8 +111,8 @@ def receive_revisions(address: str, id: str, revisions: int, count: int, times: 
     times.send(asyncio.run(follow_in_parallel()))
 
 
-def receive_poses(address: str, count: int, seconds: float, gaps: Connection) -> None:
-    """Follow the robot's poses for a number of seconds over `count` connections at the same time.
+def receive_poses(address: str, connections: int, seconds: float, gaps: Connection) -> None:
+    """Follow the robot's poses for a number of seconds, over several connections at once.
 
     Runs in a process of its own. Sends through `gaps` a list of all times (s) between two
     successive poses that the same follower received.
@@ -132,7 +135,7 @@ def receive_poses(address: str, count: int, seconds: float, gaps: Connection) ->
     async def follow_in_parallel() -> list[float]:
         return [
             gap
-            for gaps in await asyncio.gather(*(follow_once() for _ in range(count)))
+            for gaps in await asyncio.gather(*(follow_once() for _ in range(connections)))
             for gap in gaps
         ]
 
@@ -191,7 +194,8 @@ def print_times(name: str, seconds: Sequence[float]) -> None:
 def measure_edits(address: str, size: int, edits: int, subscribers: int) -> None:
     """Print how long edits of a mission of `size` tasks take, in ms.
 
-    They are made without subscribers, with `subscribers`, and with one more that reads nothing.
+    `edits` of them are made without subscribers, as many with `subscribers`, and as many with one
+    subscriber more, which reads nothing.
     """
     with httpx.Client(base_url=f"http://{address}", headers=HEADERS, timeout=60) as client:
         response = client.post(

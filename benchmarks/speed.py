@@ -55,12 +55,12 @@ class Figure:
     short: bool = True
     """whether it is measured with `--smallest`"""
 
-    def relative_speed(self, now: float, stored: float) -> float:
-        """Return the speed of the ratio `now` over that of `stored`; above 1: faster now."""
-        return now / stored if self.more_is_faster else stored / now
+    def relative_speed(self, ratio_now: float, ratio_stored: float) -> float:
+        """Return how many times as fast `ratio_now` is as `ratio_stored`; above 1: faster now."""
+        return ratio_now / ratio_stored if self.more_is_faster else ratio_stored / ratio_now
 
 
-def fixed_work() -> float:
+def run_fixed_work() -> object:
     """Compute for some hundredths of a second with dictionaries and small arrays, as a reference.
 
     The returned number has no meaning.
@@ -79,7 +79,7 @@ def median_ratio_to_fixed_work(
     repeats: int,
     *,
     calls: int = 1,
-    fixed: Work = fixed_work,
+    fixed: Work = run_fixed_work,
     clock: Clock = time.process_time,
 ) -> float:
     """Return the time of the prepared work over that of `fixed`, the median of the repeats.
@@ -197,7 +197,7 @@ def compare_edits_with_fixed_work(repeats: int) -> float:
 
         def fixed() -> None:
             for _ in range(3):  # about as much as the service does for ten edits
-                fixed_work()
+                run_fixed_work()
             for _ in range(EDITS):
                 file.write(bytes(300))
                 file.flush()

@@ -34,12 +34,12 @@ def open_world() -> tuple[Navigator, World]:
     return opened.navigator, World(opened.site, opened.robot)
 
 
-def plan_flight(navigator: Navigator, tower: str, storey: int, up: bool) -> Path:
-    """Return the path in a stair tower from floor `storey` to the one above, or else back down."""
+def plan_stair_path(navigator: Navigator, tower: str, lower_floor: int, up: bool) -> Path:
+    """Return the path in a stair tower from a floor to the one above, or else back down."""
     floors = {f.number: f.z for f in navigator.site.spec.floors}
     (ax, ay), (bx, by) = LANDINGS[tower]
-    low = Pose(x=ax, y=ay, z=floors[storey], yaw=0.0)
-    high = Pose(x=bx, y=by, z=floors[storey + 1], yaw=0.0)
+    low = Pose(x=ax, y=ay, z=floors[lower_floor], yaw=0.0)
+    high = Pose(x=bx, y=by, z=floors[lower_floor + 1], yaw=0.0)
     return navigator.plan(low, high) if up else navigator.plan(high, low)
 
 
@@ -48,7 +48,7 @@ def _plan_on_slab(navigator: Navigator) -> Path:
 
 
 LAPS = {"slab": _plan_on_slab} | {
-    f"{tower} {'up' if up else 'down'}": partial(plan_flight, tower=tower, storey=1, up=up)
+    f"{tower} {'up' if up else 'down'}": partial(plan_stair_path, tower=tower, lower_floor=1, up=up)
     for tower, up in product(LANDINGS, (True, False))
 }
 

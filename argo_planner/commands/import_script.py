@@ -19,7 +19,7 @@ from argo_planner.terminal.files import (
 from argo_planner.terminal.importing import import_and_warn, show_explanation
 from argo_planner.terminal.options import EndArea, Force, SiteOption, StartArea
 from argo_planner.terminal.verbosity import is_quiet
-from argo_planner.use_cases.importing import SourceKind, source_kind
+from argo_planner.use_cases.importing import SourceKind, guess_source_kind
 
 
 def import_command(
@@ -34,7 +34,7 @@ def import_command(
 ) -> None:
     """Read a script, a ROS bag or an isar mission, and write the mission as JSON."""
     upload = read_upload(script)
-    if source_kind(upload) is SourceKind.MISSION and isinstance(upload.content, bytes):
+    if guess_source_kind(upload) is SourceKind.MISSION and isinstance(upload.content, bytes):
         decode_mission(upload.content, upload.name)  # raises the errors of a broken mission
         raise Invalid(
             f"{script} is a mission already: use it with `argo run` or `argo compile` as it is"

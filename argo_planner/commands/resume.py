@@ -20,7 +20,7 @@ from argo_planner.terminal.conclusion import Conclusion
 from argo_planner.terminal.events import KINDS, READING_FORM, parse_events
 from argo_planner.terminal.files import check_outputs
 from argo_planner.terminal.options import Force, Report
-from argo_planner.terminal.run_display import run_with_display_and_recording
+from argo_planner.terminal.run_display import run_and_describe_recording
 from argo_planner.terminal.run_storage import (
     JOURNAL,
     RunStorage,
@@ -95,7 +95,7 @@ def resume_command(
             conclusion = Conclusion(report, render, RunStorage(journal, force=force), interruption)
             begun = time.monotonic()
             with conclusion.exit_with_hint_on_interruption():
-                record, recorded = run_with_display_and_recording(
+                record, recorded = run_and_describe_recording(
                     book.header.spec.mission.max_duration,
                     recording,
                     Path(book.header.spec.source) if book.header.spec.source else None,

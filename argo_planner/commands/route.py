@@ -22,18 +22,18 @@ from argo_planner.terminal.files import check_outputs, read_upload, require_miss
 from argo_planner.terminal.importing import import_and_warn
 from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea
 from argo_planner.terminal.order_tables import reordered_mission_lines, show_order, show_risk
-from argo_planner.terminal.words import add_keep_order_option, error_text
-from argo_planner.use_cases.importing import SourceKind, require_no_areas, source_kind
+from argo_planner.terminal.words import error_text, insert_keep_order_option
+from argo_planner.use_cases.importing import SourceKind, guess_source_kind, require_no_areas
 from argo_planner.use_cases.no_order import require_order
 from argo_planner.use_cases.routing import (
     MAX_BYTES,
     TIME_LIMIT,
     SuggestedOrder,
+    certify_order,
     parse_requirements,
-    require_mission_time_limit,
+    require_any_time_limit,
     suggest_order,
     suggest_robust_order,
-    verify_order,
 )
 
 
@@ -103,14 +103,14 @@ def route_command(
         require_mission_output(output)
     wanted = add_options(_read(requirements), budget, keep_order, before or [])
     upload = read_upload(source)
-    if source_kind(upload) is not SourceKind.SCRIPT:
+    if guess_source_kind(upload) is not SourceKind.SCRIPT:
         require_no_areas(upload.name, start_area, end_area)
     opened = open_site(site)
     if pictures:
         _check_pictures(pictures, opened, force)
     imported = import_and_warn(upload, opened, start_area, end_area)
     if robust:
-        require_mission_time_limit(imported.mission, wanted)
+        require_any_time_limit(imported.mission, wanted)
     found = suggest_order(imported, opened, wanted, time_limit=time_limit, seed=seed)
     console = Console(highlight=False)
     spread = SPREADS[risk or Spread.CAUTIOUS]
@@ -158,7 +158,7 @@ def _draw(found: SuggestedOrder, site: OpenedSite, folder: Path, console: Consol
 
 
 def _verify(found: SuggestedOrder, console: Console) -> None:
-    certificate = verify_order(found)
+    certificate = certify_order(found)
     show_certificate(found, certificate, console)
     if certificate.refuted:
         raise typer.Exit(1)
@@ -168,7 +168,7 @@ def _require_order(source: Path, found: SuggestedOrder, console: Console, verify
     try:
         require_order(found, str(source))
     except Conflict as error:
-        console.print(add_keep_order_option(error_text(error)), soft_wrap=True, markup=False)
+        console.print(insert_keep_order_option(error_text(error)), soft_wrap=True, markup=False)
         if verify:
             _verify(found, console)
         raise typer.Exit(2) from None

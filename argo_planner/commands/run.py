@@ -38,7 +38,7 @@ from argo_planner.terminal.options import (
     given_options,
     option_name,
 )
-from argo_planner.terminal.run_display import run_with_display_and_recording
+from argo_planner.terminal.run_display import run_and_describe_recording
 from argo_planner.terminal.run_storage import JOURNAL, RunStorage, require_no_unfinished_run
 from argo_planner.terminal.signals import defer_first_signal
 from argo_planner.use_cases.reporting import REPORT_FILES
@@ -218,7 +218,7 @@ def run_command(
             report, render, RunStorage(outputs.journal_path, recording, force), interruption
         )
         with conclusion.exit_with_hint_on_interruption():
-            record, recorded = run_with_display_and_recording(
+            record, recorded = run_and_describe_recording(
                 checked.spec.mission.max_duration,
                 recording,
                 source,

@@ -12,8 +12,8 @@ from argo_planner.terminal import completion
 from argo_planner.terminal.files import check_outputs, print_written, write_content
 from argo_planner.terminal.options import Force
 from argo_planner.use_cases.sites import (
-    draw_site_report,
-    list_sites,
+    draw_site_report_png,
+    list_shipped_sites,
     make_site_report,
     require_free_name,
     site_yaml_with_name,
@@ -43,7 +43,7 @@ def sites_command(
     if site is None:
         if output or picture:
             raise Invalid("-o and --picture need a site: name one")
-        for one in list_sites():
+        for one in list_shipped_sites():
             print(f"{one.name}: {one.title}, floors: {one.floors}, checkpoints: {one.checkpoints}")
         return
     if output:
@@ -56,7 +56,7 @@ def sites_command(
         _write_description(opened, output)
     report = make_site_report(opened)
     if picture:
-        write_content(picture, draw_site_report(opened, report))
+        write_content(picture, draw_site_report_png(opened, report))
         print_written(picture, "picture of the site's floors")
     for note in report.notes:
         print(f"{site}: note: {note}")

@@ -36,7 +36,7 @@ def _adds_nothing(found: SuggestedOrder, one: CheckedClaim) -> bool:
     """Return True if a claim is about a bound that tells nothing about this mission.
 
     The bounds on the cost and on the prize tell nothing if the order is proven to be the best, or
-    if there is none. The bound on the prize tells nothing either if no task is optional.
+    if no order was found. The bound on the prize tells nothing either if no task is optional.
     """
     if one.claim is Claim.PRIZE_BOUND and not found.planned.problem.selective:
         return True

@@ -80,14 +80,19 @@ def show_results(
         console.print("A requirement that is not decided needs more worlds: give more --seeds.")
 
 
-def show_means(means: Sequence[ControlledMean], drive: str | None, console: Console) -> None:
-    """Print means estimated with the help of runs with the cheap `drive`; None: there is none."""
-    if drive is not None and not means:
-        console.print(f"Too few worlds could be run to use the drive {drive} for the estimates.")
+def show_means(means: Sequence[ControlledMean], cheap_drive: str | None, console: Console) -> None:
+    """Print means estimated with the help of runs with a cheap drive.
+
+    `cheap_drive` is None if there are no such runs: then no means exist, and nothing is printed.
+    """
+    if cheap_drive is not None and not means:
+        console.print(
+            f"Too few worlds could be run to use the drive {cheap_drive} for the estimates."
+        )
     for mean in means:
         control = mean.control
         console.print(
-            f"{mean.quantity.capitalize()} with the help of the drive {drive}: correlation "
+            f"{mean.quantity.capitalize()} with the help of the drive {cheap_drive}: correlation "
             f"{control.correlation:.2f}, its runs take {in_percent(control.cost)} of the time"
             + ("" if control.pays else "; using it does not pay off"),
             soft_wrap=True,
@@ -101,7 +106,7 @@ def show_means(means: Sequence[ControlledMean], drive: str | None, console: Cons
             continue
         for estimate, basis in (
             (mean.uncontrolled, f"{mean.expensive} worlds alone"),
-            (mean.controlled, f"these and {mean.cheap} worlds with the drive {drive}"),
+            (mean.controlled, f"these and {mean.cheap} worlds with the drive {cheap_drive}"),
         ):
             between = f"{shown(estimate.low)} to {shown(estimate.high)}"
             console.print(f"  from {basis}: {shown(estimate.value)} ({between})", soft_wrap=True)
@@ -187,7 +192,7 @@ def _failing(results: EvaluationResults, files: Mapping[str, Path]) -> Iterator[
 
 
 def show_comparison(compared: PlanComparison, console: Console) -> None:
-    """Print which of two plans succeeds more often or is faster, and how certain that is."""
+    """Print which of two evaluated missions is better, by its runs, and how certain that is."""
     pairs = compared.successes
     table = Table(title="A minus B, in the same worlds", title_justify="left")
     table.add_column("")

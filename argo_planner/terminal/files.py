@@ -24,9 +24,9 @@ STANDARD_OUTPUT = Path("-")
 
 
 def read_upload(source: Path) -> Upload:
-    """Read a script, a mission file or a bag; the use cases find out which of them it is.
+    """Read a script or a mission file; the upload of a ROS bag only holds its path.
 
-    A bag is not read here; its upload holds the path.
+    The use cases find out which of them it is. Any folder counts as a bag.
 
     Raises:
         ArgoError: The file can't be read.
@@ -51,7 +51,7 @@ def check_outputs(
 
     Args:
         inputs: files that are read; a text is the name or the file of a site
-        files: files to be written
+        files: files to be written; None and streams such as `-` are skipped
         folders: folders to be written, each with the names of the files that are written into it
         force: whether existing files may be replaced
     """
@@ -101,9 +101,9 @@ def require_mission_output(output: Path) -> None:
 
 
 def write_content(path: Path, content: str | bytes | Mapping[str, bytes]) -> None:
-    """Write a file, or a folder of files; the path `-` is standard output.
+    """Write a file, or several files into a folder; a file with the path `-` is standard output.
 
-    Text is written as UTF-8 with Unix line ends.
+    Other files in the folder stay. Text is written as UTF-8 with Unix line ends.
 
     Raises:
         Unavailable: The path can't be written to.

@@ -16,7 +16,7 @@ from argo_compiler.route.robust_spread import TravelSpread
 from argo_compiler.route.tour_pauses import TourPause, pauses
 from argo_env.formatting import clock
 from argo_env.planning.opening import OpenedSite
-from argo_planner.terminal.words import add_keep_order_option
+from argo_planner.terminal.words import insert_keep_order_option
 from argo_planner.use_cases.routing import SuggestedOrder, duration_problem, estimate_completions
 
 _MAX_VIOLATIONS = 3  # violations of the written order that are listed
@@ -118,7 +118,7 @@ def _lines(found: SuggestedOrder) -> Iterator[str]:
         yield f"Note: the time of {name} is over before {members}: it includes the drive there"
     kept = list(dict.fromkeys(p.words for p in problem.precedences))
     for words in kept[:_MAX_PRECEDENCES]:
-        yield f"Kept: {add_keep_order_option(words)}"
+        yield f"Kept: {insert_keep_order_option(words)}"
     if len(kept) > _MAX_PRECEDENCES:
         yield f"Kept: {len(kept) - _MAX_PRECEDENCES} more"
     for reason in planned.reasons:
@@ -130,7 +130,7 @@ def _lines(found: SuggestedOrder) -> Iterator[str]:
 def _unreached(found: SuggestedOrder) -> Iterator[tuple[str, list[int]]]:
     """Yield groups whose time is over before all of their tasks have been reached once.
 
-    Each comes with the indices of the visits that are not reached in time, of one task or more.
+    Each comes once, with the indices of all its visits that the suggested order reaches too late.
     """
     planned, route = found.planned, found.route
     problem, order = planned.problem, found.route.order
@@ -157,7 +157,7 @@ def _pause(found: SuggestedOrder, pause: TourPause) -> str:
 
 
 def _violations_text(found: SuggestedOrder) -> str:
-    """Return a clause that names the requirements which the written order violates."""
+    """Return a clause on the requirements that the written order violates; empty if none."""
     limit = found.planned.problem.words.get("max_duration", "")
     broken = [
         limit  # in place of the violation's text, which has the problem's units

@@ -40,7 +40,7 @@ def show_record(record: RunRecord, console: Console) -> None:
 
 
 def _problem_lines(record: RunRecord) -> Iterator[str]:
-    """Yield a line for each item that the headline counts, and each fault that did not happen."""
+    """Yield a line for each finding, contact and mishap, and each fault that did not happen."""
     for finding in record.findings:
         detail = "" if finding.is_reading or not finding.detail else f": {finding.detail}"
         yield ", ".join(filter(None, (finding.in_words, finding.whereabouts))) + detail

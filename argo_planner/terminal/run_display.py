@@ -81,7 +81,7 @@ class RunDisplay(Observer, Closing):
         self._progress.stop()
 
 
-def run_with_display_and_recording(
+def run_and_describe_recording(
     total: float | None,
     recording: Path | None,
     source: Path | None,

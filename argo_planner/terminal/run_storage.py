@@ -91,7 +91,8 @@ def _is_unfinished(path: Path) -> bool:
 def is_report_of(book: Journal, folder: Path) -> bool:
     """Return True if the report in a folder is of the journal's run.
 
-    The result is False if the report has more than the journal, so that a new report loses nothing.
+    The result is also False if the report contains more of the run than the journal does, because
+    a new report would lose that.
     """
     try:
         record = RunRecord.model_validate_json((folder / RECORD).read_bytes())

@@ -47,8 +47,8 @@ def error_text(error: ArgoError, prefix: str = "") -> str:
 def error_text_with_route_commands(error: ArgoError, source: str) -> str:
     """Return the message of an error, followed by `argo route` commands with its remedies.
 
-    It is for commands that search for an order without having these options themselves. `source`
-    is the file of the mission.
+    It is for commands that search for an order, but lack the options of `argo route` that are the
+    remedies. `source` is the file of the mission.
     """
     commands = [
         f"argo route {shlex.quote(source)} {_REMEDY_TEXTS[remedy]}" for remedy in error.remedies
@@ -56,7 +56,7 @@ def error_text_with_route_commands(error: ArgoError, source: str) -> str:
     return f"{error} ({', '.join(commands)})" if commands else str(error)
 
 
-def add_keep_order_option(text: str) -> str:
+def insert_keep_order_option(text: str) -> str:
     """Return the text with `(--keep-order)` after each mention of the written order."""
     from argo_compiler.reorder.precedences import AS_WRITTEN
 

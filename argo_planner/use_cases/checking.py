@@ -24,9 +24,9 @@ from argo_env.planning.site_warnings import above_own_speed_warnings, view_warni
 from argo_planner.use_cases.importing import (
     SourceKind,
     Upload,
+    guess_source_kind,
     load_unchecked_mission,
     require_no_areas,
-    source_kind,
 )
 
 MAX_POSES = 1_000
@@ -64,7 +64,7 @@ def check_source(
     Raises:
         Invalid: Areas are given for a mission, which has its own.
     """
-    if source_kind(upload) is not SourceKind.SCRIPT:
+    if guess_source_kind(upload) is not SourceKind.SCRIPT:
         require_no_areas(upload.name, start_area, end_area)
     try:
         loaded = load_unchecked_mission(upload, catalog, start_area, end_area)

@@ -156,7 +156,7 @@ def _cases(
                 opened = open_site(_site(site, folder), load_robot(robot)).prepare()
                 imported = import_mission(upload, opened, entry.start_area, entry.end_area)
                 for policy in file.policies:
-                    mission = apply_policy(imported, opened, policy)
+                    mission = reorder_by_policy(imported, opened, policy)
                     for drive in file.drives:
                         for sensor in file.sensors:
                             spec = RunSpec(
@@ -186,7 +186,7 @@ def make_case(
     )
 
 
-def apply_policy(imported: ImportedMission, site: OpenedSite, policy: str) -> Mission:
+def reorder_by_policy(imported: ImportedMission, site: OpenedSite, policy: str) -> Mission:
     """Return the mission with its tasks in the order that a policy chooses.
 
     Args:

@@ -70,7 +70,7 @@ class LoadedMission:
     def diagnostics_with_positions(
         self, diagnostics: Iterable[Diagnostic]
     ) -> tuple[Diagnostic, ...]:
-        """Return copies of diagnostics with positions in `file`; if that is None, without any."""
+        """Return copies of all diagnostics, with positions in `file` unless it is None."""
         if self.file is None:
             return tuple(f.model_copy(update={"span": None}) for f in diagnostics)
         if isinstance(self.file, Script):
@@ -90,7 +90,7 @@ class ImportedMission:
     """these and the warnings of `check`, by position"""
 
 
-def source_kind(upload: Upload) -> SourceKind:
+def guess_source_kind(upload: Upload) -> SourceKind:
     """Return the kind of an upload by its name and content; a script if it is nothing else."""
     if not isinstance(upload.content, bytes) or is_bag_content(upload.name, upload.content):
         return SourceKind.BAG
@@ -112,7 +112,7 @@ def load_unchecked_mission(
             its own.
     """
     _require_no_run(upload)
-    kind, name = source_kind(upload), upload.name
+    kind, name = guess_source_kind(upload), upload.name
     _log.info("%s is read as a %s", name, kind)
     if kind is not SourceKind.SCRIPT:
         require_no_areas(name, start_area, end_area)

@@ -13,11 +13,11 @@ from argo_planner.use_cases.routing import SuggestedOrder
 
 def require_order(found: SuggestedOrder, source_name: str) -> None:
     """Raise Conflict, with the reason, if there is no order or only one without tasks."""
-    if why := find_no_order_error(found):
+    if why := missing_order_error(found):
         raise Conflict(f"{source_name}: {why}", remedies=why.remedies)
 
 
-def find_no_order_error(found: SuggestedOrder) -> Conflict | None:
+def missing_order_error(found: SuggestedOrder) -> Conflict | None:
     """Return an error that explains why there is no order, or only one without tasks, else None."""
     if found.suggestion.route is None:
         why = _no_route_error(found)

@@ -59,7 +59,7 @@ class SuggestedOrder:
 
     @property
     def route(self) -> Tour:
-        """The suggested order; raises Conflict if there is none (see `find_no_order_error`)."""
+        """The suggested order; raises Conflict if there is none (see `missing_order_error`)."""
         if self.suggestion.route is None:
             raise Conflict("no order meets all requirements")
         return self.suggestion.route
@@ -169,8 +169,8 @@ def _progress_text(progress: SearchProgress, unit: float) -> str:
     return f"{best} so far, none takes less than {bound}"
 
 
-def require_mission_time_limit(mission: Mission, requirements: Requirements) -> None:
-    """Raise Invalid if neither the mission nor the requirements have any time limit."""
+def require_any_time_limit(mission: Mission, requirements: Requirements) -> None:
+    """Raise Invalid without a maximum duration, a budget and the end of any time window."""
     limits = [mission.max_duration, requirements.budget, *(w.latest for w in requirements.windows)]
     limits += [t.window.latest for t in mission.tasks if t.window and t.window.hard]
     if all(limit is None for limit in limits):
@@ -234,7 +234,7 @@ def duration_problem(mission: Mission, site: OpenedSite) -> str | None:
 
 
 @stage("verifying the order")
-def verify_order(found: SuggestedOrder) -> Certificate:
+def certify_order(found: SuggestedOrder) -> Certificate:
     """Return which claims of the search are confirmed by code that is independent of it."""
     return certify(found.planned.problem, found.suggestion, _VERIFICATION_TIME)
 

@@ -38,7 +38,7 @@ class SiteReport:
         return tuple(flaw.message for flaw in self.flaws)
 
 
-def list_sites() -> tuple[SiteSummary, ...]:
+def list_shipped_sites() -> tuple[SiteSummary, ...]:
     """Return summaries of the sites that Argo ships."""
     return tuple(
         SiteSummary(
@@ -55,7 +55,7 @@ def make_site_report(site: OpenedSite) -> SiteReport:
     return SiteReport(tuple(violations(site.site.spec)), found.flaws, found.states)
 
 
-def draw_site_report(site: OpenedSite, report: SiteReport) -> bytes:
+def draw_site_report_png(site: OpenedSite, report: SiteReport) -> bytes:
     """Return a PNG picture of the site's floors in which the flaws of the report are marked."""
     # The import is slow, and few commands need the picture.
     from argo_env.pictures.site_plan import draw_site_plan
@@ -69,14 +69,14 @@ def site_yaml_with_name(site: OpenedSite, name: str) -> str:
     The copy is meant to be changed, and the old name stands for the site itself.
 
     Raises:
-        Conflict: The name stands for another site.
+        Conflict: It is the name of a shipped site, or begins as those of generated sites do.
     """
     require_free_name(name)
     return to_yaml(site.site.spec.model_copy(update={"name": name}))
 
 
 def require_free_name(name: str) -> None:
-    """Raise Conflict if the name of a site stands for another site already."""
+    """Raise Conflict if it is the name of a shipped site or one for generated sites."""
     if is_generated_name(name):
         raise Conflict(f"{PREFIX}… names a generated site, not a file; choose another name")
     if name in site_names():

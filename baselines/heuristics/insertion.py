@@ -29,11 +29,11 @@ def insert_and_improve(problem: RouteProblem, start: Sequence[int] = ()) -> tupl
 
     Args:
         problem: a problem whose visits are all optional, without time windows, rounds and
-            batteries. Its precedence constraints must be `needed`: a visit is only allowed if its
-            predecessors come before it. The returned order satisfies them.
+            batteries. Its precedence constraints must have `needed` set: a visit is only
+            allowed if its predecessors come before it. The returned order satisfies them.
         start: order within the maximum duration with which the search starts. Visits without
-            their predecessors before them are dropped from it, so a drop must not make an order
-            longer.
+            their predecessors before them are dropped from it; the travel times must be such
+            that this makes no order longer.
     """
     search = _Search(problem)
     order = search.drop_violations(start)

@@ -81,7 +81,7 @@ class LearnedPolicy:
         """Return a policy with the weights of a file, by default the shipped ones."""
         return cls(Scorer(path))
 
-    def begin(self, observation: Observation, episode_time_budget: float, seed: int) -> None:
+    def begin(self, observation: Observation, robot_time_budget: float, seed: int) -> None:
         """Do nothing: there is nothing to prepare."""
 
     def act(self, observation: Observation) -> int:
@@ -110,7 +110,7 @@ class SampledPolicy:
         """Return a policy with the weights of a file, by default the shipped ones."""
         return cls(Scorer(path), rollouts)
 
-    def begin(self, observation: Observation, episode_time_budget: float, seed: int) -> None:  # noqa: ARG002
+    def begin(self, observation: Observation, robot_time_budget: float, seed: int) -> None:  # noqa: ARG002
         """Discard the plan of the last episode, and seed the draws."""
         self._rng = generator(seed, "sampled routes")
         self._matrix = None

@@ -55,7 +55,7 @@ def draw_curve(logs: dict[str, Points], picture: Path) -> None:
 
 
 def _draw_set(panel: Axes, points: Points, lessons: int) -> None:
-    """Plot one validation set; the first `lessons` states learned from are those of lessons."""
+    """Plot one validation set; `lessons` is the number of states learned from in lessons."""
     steps = [step / 1e6 for step, _ in points]
     prizes = [prize for _, prize in points]
     panel.axvspan(0, lessons / 1e6, color="#e8eef4", label="lessons")

@@ -49,17 +49,17 @@ class Lessons:
         return Lessons(observation, self.target[rows], self.value[rows])
 
 
-def make_lessons(source: RouteSource, size: int, count: int, seed: int) -> Lessons:
-    """Make at least `count` samples with `size` checkpoints; equal arguments give equal samples.
+def make_lessons(source: RouteSource, size: int, min_count: int, seed: int) -> Lessons:
+    """Make at least `min_count` samples with `size` checkpoints, the same for equal arguments.
 
     A sample is a state on a route through a small problem, with the exact values of its actions.
-    There may be more than `count`, as samples are made in batches of problems.
+    There may be more than `min_count`, as samples are made in batches of problems.
     """
     rng = generator(seed, "lessons", size)
     samples: list[tuple[dict[str, Floats], Floats, float]] = []
     with stage(f"making lessons with {size} checkpoints") as report:
-        while len(samples) < count:
-            report(len(samples) / count)
+        while len(samples) < min_count:
+            report(len(samples) / min_count)
             problems = [_draw_problem(source, size, rng) for _ in range(_BATCH)]
             oracle = Oracle(
                 RemainingRoutes(*(np.stack(parts) for parts in zip(*problems, strict=True)))
@@ -116,7 +116,7 @@ def _nearest_neighbour_time(start: Floats, between: Floats, home: Floats) -> flo
 def _follow_route(
     oracle: Oracle, k: int, rng: np.random.Generator
 ) -> Iterator[tuple[dict[str, Floats], Floats, float]]:
-    """Yield samples on a random route through problem k: observation, target, and prize to win.
+    """Yield samples on a random route through problem k: observation, target, most prize left.
 
     Most steps are drawn from the target distribution, the others from all legal actions.
     """

@@ -36,8 +36,9 @@ def rule_prizes_and_times_left(
         before: 1 where row must be visited before column.
 
     Returns:
-        The prize that each rule wins if the node is next, and the time that it has left before the
-        drive to the dock. Each has the shape (batch, n + 1, rules); 0 for nodes that are not legal.
+        The prize that each rule wins if the node is next, and the time that it has left at its last
+        node, where the drive to the dock is still to be paid. Each has the shape
+        (batch, n + 1, rules); 0 for nodes that are not legal.
     """
     batch, size = prize.shape
     state, first = legal.nonzero(as_tuple=True)

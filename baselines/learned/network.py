@@ -53,7 +53,7 @@ class RouteNetwork(nn.Module):
             Logits of being the next node; logits of being visited at all; and the prize that can be
             won, 0 at nodes out of reach. Each has the shape (batch, n + 1).
         """
-        nodes, pairs, open_, prizes = extract_features_open_nodes_and_prizes(observation)
+        nodes, pairs, open_, prizes = network_inputs(observation)
         x = self.node(nodes)
         batch, size = open_.shape
         bias = self.pair(pairs).view(batch, size, size, len(self.layers), -1).permute(3, 0, 4, 1, 2)
@@ -91,7 +91,7 @@ class _Layer(nn.Module):
         return x
 
 
-def extract_features_open_nodes_and_prizes(
+def network_inputs(
     observation: Mapping[str, Tensor],
 ) -> tuple[Tensor, Tensor, Tensor, Tensor]:
     """Compute the inputs of the network from an observation.

@@ -61,29 +61,31 @@ class Oracle:
         self._needs &= ~sets
         self._sets = np.argsort(-self._prize, axis=1, kind="stable").astype(np.int32)
 
-    def legal_actions(self, k: int, visited: int, travel: Floats, left: float) -> Ints:
-        """Return the checkpoints that may be visited next on route k.
+    def legal_actions(self, route_index: int, visited: int, travel: Floats, left: float) -> Ints:
+        """Return the checkpoints that may be visited next on a route.
 
         Args:
-            k: index of the route in the batch.
+            route_index: index of the route in the batch.
             visited: set of visited checkpoints, as a mask with bit i for checkpoint i.
             travel: times in s from the robot's node to the end of a visit of each checkpoint.
             left: time left in s.
         """
         free = (self._bits & visited) == 0
-        free &= (self._predecessors[k] & ~np.int32(visited)) == 0
-        return np.flatnonzero(free & (travel + self.routes.home[k] <= left)).astype(np.int32)
+        free &= (self._predecessors[route_index] & ~np.int32(visited)) == 0
+        return np.flatnonzero(free & (travel + self.routes.home[route_index] <= left)).astype(
+            np.int32
+        )
 
     def action_prizes_and_times(
-        self, k: int, visited: int, travel: Floats, left: float, actions: Ints
+        self, route_index: int, visited: int, travel: Floats, left: float, actions: Ints
     ) -> tuple[Floats, Floats]:
-        """Return the values of legal actions on route k; see `legal_actions` for the arguments.
+        """Return the values of legal actions on a route; see `legal_actions` for the arguments.
 
         Returns:
             The highest prize that can be won from each action on, its own included; and the least
             time in s from the present state until the robot is docked with that prize.
         """
-        sets = self._sets[k]
+        sets = self._sets[route_index]
         sets = sets[(sets & visited) == 0]
         best = np.full(len(actions), -1.0, np.float32)
         time = np.full(len(actions), np.inf, np.float32)
@@ -92,11 +94,11 @@ class Oracle:
         # The sets with the highest prizes come first, so most actions soon have their value.
         while done < len(sets):
             rest = sets[done : done + size]
-            prize = self._prize[k][rest][:, None]
-            times = self._times[k][rest][:, actions] + steps
+            prize = self._prize[route_index][rest][:, None]
+            times = self._times[route_index][rest][:, actions] + steps
             fits = times <= left
             fits &= (rest[:, None] & bits) == 0
-            fits &= (self._needs[k][rest][:, None] & ~(bits | np.int32(visited))) == 0
+            fits &= (self._needs[route_index][rest][:, None] & ~(bits | np.int32(visited))) == 0
             best = np.maximum(best, np.where(fits, prize, -1.0).max(axis=0))
             # Prizes are sums in single precision: equal ones may differ in their last bits.
             fits &= prize >= best - _EQUAL
@@ -104,14 +106,15 @@ class Oracle:
             if prize[-1, 0] < best.min() - _EQUAL:
                 break
             done, size = done + size, size * 4
-        return best + self.routes.prizes[k, actions], time
+        return best + self.routes.prizes[route_index, actions], time
 
 
 def _docking_times(routes: RemainingRoutes, predecessors: Ints) -> Floats:
     """Return the least time in s to visit all of a set and dock, from each checkpoint.
 
     The shape is (batch, 2^m, m): set, then checkpoint from which the robot departs; inf: impossible
-    in any order that precedence within the set allows. A checkpoint in the set is no valid start.
+    in any order that precedence within the set allows. The entries of checkpoints in the
+    set have no meaning.
     """
     batch, m = routes.prizes.shape
     table = np.full((1 << m, batch, m), np.inf, np.float32)
@@ -130,7 +133,7 @@ def _docking_times(routes: RemainingRoutes, predecessors: Ints) -> Floats:
 
 @lru_cache(maxsize=4)
 def _sets_by_size(m: int) -> list[list[Ints]]:
-    """Return the sets with 1 to m members: for each size and each k, those with the member k."""
+    """Return all sets of 1 to m members as bit masks; `[size - 1][k]` has those with member k."""
     sets = np.arange(1 << m, dtype=np.int32)
     counts = np.bitwise_count(sets)
     return [

@@ -221,7 +221,7 @@ class _ProgressCallback(BaseCallback):
 
 
 def _train_with_ppo(state: TrainingState, logger: Logger) -> None:
-    """Carry out one part of the training, with MaskablePPO, on instances that no other part has."""
+    """Carry out one part of the training, with MaskablePPO; no two such parts share instances."""
     settings = state.settings
     part = state.part - settings.lesson_parts
     seed = int(generator(settings.seed, "practise", part).integers(2**31))

@@ -14,7 +14,7 @@ from argo_compiler.isar import InspectionView, to_isar
 from argo_compiler.ros import Storage, to_ros1_bag, to_ros2_bag
 from argo_planner.terminal.files import read_upload
 from argo_planner.use_cases.exporting import exporters
-from argo_planner.use_cases.importing import SourceKind, load_unchecked_mission, source_kind
+from argo_planner.use_cases.importing import SourceKind, guess_source_kind, load_unchecked_mission
 from tests.argo_compiler.script.conftest import CATALOG
 from tests.mission_writing import measure
 
@@ -45,7 +45,7 @@ def sources(tmp_path):
 def test_each_form_of_a_mission_is_read(sources):
     own, _, isar, *_ = sources
     for source in sources:
-        kind = source_kind(read_upload(source))
+        kind = guess_source_kind(read_upload(source))
         assert kind is not SourceKind.SCRIPT
         assert (kind is SourceKind.MISSION) == (source == own)
         if source != isar:

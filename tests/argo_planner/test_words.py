@@ -4,7 +4,7 @@ import pytest
 
 from argo_compiler.base.errors import Conflict, Invalid, Remedy, RemedyChoice
 from argo_compiler.diagnostics import Diagnostic, Severity
-from argo_planner.terminal.words import add_keep_order_option, add_options_to_hints, error_text
+from argo_planner.terminal.words import add_options_to_hints, error_text, insert_keep_order_option
 
 
 @pytest.mark.parametrize("remedy", Remedy)
@@ -47,6 +47,6 @@ def test_hints_name_the_options(hint, remedy, choice, said):
 
 def test_an_order_that_is_kept_names_the_option():
     assert (
-        add_keep_order_option("kept: the order as written")
+        insert_keep_order_option("kept: the order as written")
         == "kept: the order as written (--keep-order)"
     )

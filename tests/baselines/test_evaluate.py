@@ -168,8 +168,8 @@ def test_intervals_of_differences_are_paired():
     unpaired = bootstrap.mean(values + 0.5).value - bootstrap.mean(values).value
     difference = bootstrap.mean((values + 0.5) - values)
     assert difference.low == pytest.approx(difference.high) == pytest.approx(unpaired)
-    assert bootstrap.ratio(0.1 * values, values).low == pytest.approx(0.1)
-    assert bootstrap.ratio(np.zeros(100), np.zeros(100)).value == 0.0
+    assert bootstrap.ratio_of_sums(0.1 * values, values).low == pytest.approx(0.1)
+    assert bootstrap.ratio_of_sums(np.zeros(100), np.zeros(100)).value == 0.0
 
 
 def read_picture(path):

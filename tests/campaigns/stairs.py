@@ -22,7 +22,7 @@ from argo_env.drives.tracked.drive import TrackedDrive
 from argo_env.robot.pose import BodyPose
 from argo_env.seeding import generator
 from argo_env.site import load_site
-from benchmarks.tracked import LANDINGS, open_world, plan_flight
+from benchmarks.tracked import LANDINGS, open_world, plan_stair_path
 
 START_ERROR = 0.05  # m, largest displacement of the start to each side
 TURN_ERROR = math.radians(5.0)
@@ -66,7 +66,7 @@ class ClimbOutcome:
 def run(climb: Climb) -> ClimbOutcome:
     """Drive one climb."""
     navigator, world = open_world()
-    path = plan_flight(navigator, climb.tower, climb.storey, climb.up)
+    path = plan_stair_path(navigator, climb.tower, climb.storey, climb.up)
     rng = generator(climb.seed, "tracked", climb.tower, climb.storey, int(climb.up))
     traction = Traction().with_scaled_grip(1.0 + GRIP_ERROR * rng.uniform(-1.0, 1.0))
     mass = 1.0 + MASS_ERROR * rng.uniform(-1.0, 1.0)

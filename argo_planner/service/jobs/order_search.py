@@ -8,7 +8,7 @@ from argo_env.planning.opening import open_site
 from argo_env.run.record import Reordering
 from argo_planner.service.processes.job_process import ReportProgress
 from argo_planner.use_cases.importing import ImportedMission
-from argo_planner.use_cases.no_order import find_no_order_error
+from argo_planner.use_cases.no_order import missing_order_error
 from argo_planner.use_cases.routing import duration_problem, suggest_order
 
 
@@ -62,7 +62,7 @@ def search_order(
     found = suggest_order(
         imported, opened, requirements, time_limit=time_limit, on_progress=on_progress
     )
-    if why := find_no_order_error(found):
+    if why := missing_order_error(found):
         return OrderFound(why_none=str(why), reasons=found.suggestion.reasons)
     reordered = found.mission
     visits = found.planned.visits

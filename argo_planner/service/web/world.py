@@ -32,7 +32,7 @@ from argo_planner.service.world.previews import (
     PreviewedMission,
     PreviewedWay,
     preview_mission,
-    preview_way,
+    preview_path,
 )
 from argo_planner.service.world.standing_map import standing_map
 
@@ -148,14 +148,14 @@ async def put_obstacles(
 
 
 @router.post("/world/way", operation_id="preview_way", response_model=PreviewedWay)
-async def preview_a_way(service: Service, _: Viewer, asked: JsonBody[WayAsked]) -> Response:
+async def preview_a_path(service: Service, _: Viewer, asked: JsonBody[WayAsked]) -> Response:
     """Return the path that the robot would take, with its time, climb and energy."""
     goal = asked.task or asked.goal
     if goal is None or (asked.task and asked.goal):
         raise Invalid("the end of the path is not clear: give either a `goal` or a `task`")
     obstacles = service.obstacles.present.obstacles
     return json_response(
-        await service.run_on_site(preview_way, service.site, asked.start, goal, obstacles)
+        await service.run_on_site(preview_path, service.site, asked.start, goal, obstacles)
     )
 
 

@@ -51,14 +51,14 @@ class DrawnNode:
     """further data of the node (glTF `extras`)"""
 
 
-def to_glb(root: str, nodes: Sequence[DrawnNode]) -> bytes:
-    """Return the nodes as a GLB file, below a node named `root` that turns z up into y up."""
+def to_glb(root_name: str, nodes: Sequence[DrawnNode]) -> bytes:
+    """Return the nodes as a GLB file, below a node named `root_name` that turns z up into y up."""
     parts = _DocumentParts()
     children: list[list[int]] = [[] for _ in nodes]
     top: list[int] = []
     for index, node in enumerate(nodes):
         (top if node.parent is None else children[node.parent]).append(index + 1)
-    gltf_nodes = [{"name": root, "rotation": _UPRIGHT, "children": top}]
+    gltf_nodes = [{"name": root_name, "rotation": _UPRIGHT, "children": top}]
     gltf_nodes += [parts.add_node(node, below) for node, below in zip(nodes, children, strict=True)]
     document = {
         "asset": {"version": "2.0", "generator": "argo"},
@@ -90,7 +90,7 @@ class _DocumentParts:
         self.views: list[dict[str, Any]] = []
 
     def add_node(self, node: DrawnNode, children: list[int]) -> dict[str, Any]:
-        """Add the meshes of a node, and return the node as glTF."""
+        """Add the meshes of a node to the document; return the node as glTF, without adding it."""
         gltf_node: dict[str, Any] = {
             "name": node.name,
             "translation": node.position,

@@ -206,8 +206,8 @@ def _matrix(q: Quaternion) -> NDArray[np.float64]:
 def prism(sides: int, capped: bool = True) -> UnitShape:
     """Return a regular prism along z, inscribed in a cylinder of diameter 1 and length 1.
 
-    With three or four sides it is stretched to fill the unit cube; four sides make a box. Without
-    caps it has no faces at its ends.
+    It is centred at the origin. With three or four sides it is stretched to fill the unit cube;
+    four sides make a box. Without caps it has no faces at its ends.
     """
     turn = 2 * math.pi / sides
     angles = turn * (np.arange(sides) + 0.5) - (math.pi / 2 if sides == 3 else 0.0)

@@ -100,7 +100,7 @@ class PreviewedMission(Model):
     """whether `ways` has all paths; False: it has only the first MOST_WAYS"""
 
 
-def preview_way(
+def preview_path(
     site: OpenedSite, start: Pose, goal: Task | Pose, obstacles: Sequence[Obstacle] = ()
 ) -> PreviewedWay:
     """Return the path from `start` to a pose or a task, with its time, climb and energy.
@@ -109,7 +109,7 @@ def preview_way(
     states why.
 
     Raises:
-        Invalid: A pose is too far away for any site, or the task is one to which no path can lead.
+        Invalid: A pose is too far away for any site, or the task is a START task.
         DiagnosticError: The task itself has an error.
     """
     require_pose_within_limits(start, "the start")
@@ -241,7 +241,7 @@ def _problem_text(goal: Task | Pose, reason: str) -> str:
 
 
 def _default_order(tasks: dict[str, Task], first: str) -> list[str]:
-    """Return `first` and the tasks that unconditional transitions lead to, up to a repetition."""
+    """Return `first` and the tasks that follow unconditionally, up to the first repeated one."""
     order: dict[str, None] = {}
     name: str | None = first
     while name is not None and name not in order:

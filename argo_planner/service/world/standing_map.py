@@ -89,8 +89,8 @@ class StandingMap:
     def to_bytes(self) -> bytes:
         """Return the map as bytes: a line of JSON, then the arrays, compressed by zlib.
 
-        The codes come first, then the heights (16 bits, low byte first), both row by row and layer
-        by layer.
+        The codes come first, then the heights: signed 16-bit numbers, low byte first, in units of
+        `step` (m) above `z`. Both are stored layer by layer, and each layer row by row.
         """
         layers, rows, columns = self.codes.shape
         header = {
@@ -135,18 +135,18 @@ def read_standing_map(content: bytes) -> StandingMap:
 
 
 def standing_map(
-    site: OpenedSite, floor: int, heading: int, obstacles: Sequence[Obstacle] = ()
+    site: OpenedSite, floor: int, heading_index: int, obstacles: Sequence[Obstacle] = ()
 ) -> StandingMap:
     """Return a map of where on a floor the robot can stand with a heading.
 
-    It also states where the robot can get from the docks and back. `heading` is a number of equal
-    steps counter-clockwise from the x axis. A floor without any surface gives a map without cells.
-    Raises NotFound if there is no such floor, Invalid if there is no such heading.
+    It also states where the robot can get from the docks and back. `heading_index` is a number
+    of equal steps counter-clockwise from the x axis. A floor without any surface gives a map
+    without cells. Raises NotFound if there is no such floor, Invalid if there is no such heading.
     """
     z = site.site.floor(floor).z
-    if not 0 <= heading < HEADINGS:
+    if not 0 <= heading_index < HEADINGS:
         raise Invalid(
-            f"there is no heading {heading}: give a number from 0 (along the x axis) to "
+            f"there is no heading {heading_index}: give a number from 0 (along the x axis) to "
             f"{HEADINGS - 1}, counter-clockwise"
         )
     codes = _ground_codes(site, tuple(obstacles))
@@ -157,7 +157,7 @@ def standing_map(
     if not len(cells):
         empty = np.zeros((1, 0, 0))
         return StandingMap(
-            floor, heading, heading_angle(heading), (0.0, 0.0), CELL, z,
+            floor, heading_index, heading_angle(heading_index), (0.0, 0.0), CELL, z,
             empty.astype(np.uint8), empty.astype(np.int16),
         )  # fmt: skip
     i, j = surface.i[cells], surface.j[cells]
@@ -169,10 +169,12 @@ def standing_map(
     shape = int(layer.max()) + 1, int(j.max()) - j0 + 1, int(i.max()) - i0 + 1
     map_codes, heights = np.zeros(shape, np.uint8), np.zeros(shape, np.int16)
     indices = layer, j - j0, i - i0
-    map_codes[indices] = codes[cells, heading]
+    map_codes[indices] = codes[cells, heading_index]
     heights[indices] = np.round((surface.z[cells] - z) / _STEP)
     origin = surface.grid.x0 + i0 * CELL, surface.grid.y0 + j0 * CELL
-    return StandingMap(floor, heading, heading_angle(heading), origin, CELL, z, map_codes, heights)
+    return StandingMap(
+        floor, heading_index, heading_angle(heading_index), origin, CELL, z, map_codes, heights
+    )
 
 
 @lru_cache(maxsize=4)

@@ -15,7 +15,7 @@ from argo_env.run.session import resume, simulate
 from argo_env.run.spec import RunSpec
 from argo_planner.service.world.description import describe_world, world_digest
 from argo_planner.service.world.obstacles import with_obstacles
-from argo_planner.service.world.previews import WayKind, preview_mission, preview_way
+from argo_planner.service.world.previews import WayKind, preview_mission, preview_path
 from tests.argo_planner.service.test_world_standing import crate
 from tests.mission_writing import drive as waypoint
 from tests.mission_writing import measure as measuring
@@ -66,19 +66,19 @@ def test_previewed_times_are_those_of_the_drive(site, seed):
 
 def test_a_path_is_drawn_from_the_start_of_the_robot_to_its_end(site):
     dock = site.site.docks[1]
-    way = preview_way(site, dock, measure(20))
+    way = preview_path(site, dock, measure(20))
     assert math.dist(way.points[0][1:4], (dock.x, dock.y, dock.z)) < 0.3
     assert way.points[-1][1:4] == pytest.approx((way.end.x, way.end.y, way.end.z), abs=1e-3)
     assert all(a[0] <= b[0] for a, b in pairwise(way.points))
     length = sum(math.dist(a[1:4], b[1:4]) for a, b in pairwise(way.points))
     assert length == pytest.approx(way.distance, abs=0.01)
     assert way.points[-1][0] + way.work == pytest.approx(way.time, abs=0.11)
-    assert preview_way(site, dock, way.end).work == 0
+    assert preview_path(site, dock, way.end).work == 0
 
 
 def test_an_unreachable_pose_is_reported_with_a_reason(site):
     nowhere = Pose(x=100, y=0, z=0)
-    way = preview_way(site, site.site.docks[1], nowhere)
+    way = preview_path(site, site.site.docks[1], nowhere)
     assert way.time is None
     assert "no place that the robot can reach" in way.problem
     seen = preview_mission(site, chain(waypoint("far", pose=nowhere), measure(1)))
@@ -109,7 +109,7 @@ def test_branches_rounds_and_waits_are_distinguished(site):
     }
     assert not seen.at_least
     assert seen.time == pytest.approx(sum(w.way.time for w in seen.ways[:3]) + 30, abs=0.01)
-    back = preview_way(site, seen.ways[1].way.end, tasks[0])
+    back = preview_path(site, seen.ways[1].way.end, tasks[0])
     assert back == next(w.way for w in seen.ways if w.kind is WayKind.ROUND)
 
 
@@ -126,12 +126,12 @@ def test_totals_state_which_times_are_unknown(site):
 
 def test_previews_and_runs_avoid_an_obstacle_alike(site):
     start, goal = Pose(x=4.0, y=1.5, z=0.0), Pose(x=4.0, y=10.0, z=0.0, yaw=1.57)
-    free = preview_way(site, start, goal)
+    free = preview_path(site, start, goal)
     middle = next(p for p in free.points if p[0] > free.time / 2)
     before = free.points[free.points.index(middle) - 1]
     x, y = ((a + b) / 2 for a, b in zip(before[1:3], middle[1:3], strict=True))
     crates = (crate("a", x, y, 0.0, (0.4, 0.4, 0.8), 0.3),)
-    round_it = preview_way(site, start, goal, crates)
+    round_it = preview_path(site, start, goal, crates)
     assert round_it.time > free.time
     tasks = starting("START", pose=start), waypoint("there", pose=goal)
     mission, changed_site = chain(*tasks), with_obstacles(site, crates)
@@ -164,7 +164,7 @@ def test_checkpoints_behind_obstacles_are_reported(site):
         if before.floor > 1:
             assert after.stands is None
             assert "can't be" in after.problem or "no path" in after.problem
-            way = preview_way(site, site.site.docks[1], measure(before.id), wall)
+            way = preview_path(site, site.site.docks[1], measure(before.id), wall)
             assert way.problem
     assert any(c.stands for c in description.checkpoints if c.floor == 1)
 

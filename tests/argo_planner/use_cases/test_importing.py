@@ -12,9 +12,9 @@ from argo_env.planning.inspection_views import inspection_views_by_object_id
 from argo_planner.use_cases.importing import (
     SourceKind,
     Upload,
+    guess_source_kind,
     import_mission,
     load_unchecked_mission,
-    source_kind,
 )
 from tests.yard import measure, mission
 
@@ -61,7 +61,7 @@ def uploads(site):
 @pytest.mark.parametrize("kind", SourceKind)
 def test_uploads_are_recognized_and_imported(uploads, site, kind):
     for upload in uploads[kind]:
-        assert source_kind(upload) is kind
+        assert guess_source_kind(upload) is kind
         imported = import_mission(upload, site)
         measured = [task.object_id for task in imported.mission.tasks if task.object_id]
         assert measured == ["1", "2"]

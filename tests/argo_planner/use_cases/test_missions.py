@@ -25,7 +25,7 @@ from argo_planner.use_cases.no_order import require_order
 from argo_planner.use_cases.reporting import report_files
 from argo_planner.use_cases.routing import (
     parse_requirements,
-    require_mission_time_limit,
+    require_any_time_limit,
     suggest_order,
 )
 from argo_planner.use_cases.running import (
@@ -34,7 +34,7 @@ from argo_planner.use_cases.running import (
     with_mission,
 )
 from argo_planner.use_cases.schemas import FileKind, schema
-from argo_planner.use_cases.sites import list_sites, make_site_report, site_yaml_with_name
+from argo_planner.use_cases.sites import list_shipped_sites, make_site_report, site_yaml_with_name
 from tests.yard import measure, mission, waypoint
 
 DOCK = Pose(x=1.05, y=1.05, z=0.02)
@@ -102,7 +102,7 @@ def test_no_order_is_a_conflict_that_names_no_option(imported, site):
     with pytest.raises(DiagnosticError, match=r"wanted:1:1.*route\.wrong-field"):
         parse_requirements(b"budgets: 3 s\n", "wanted")
     with pytest.raises(Invalid, match="nothing limits") as unlimited:
-        require_mission_time_limit(PLAN, parse_requirements(b"mandatory: [1]\n", "wanted"))
+        require_any_time_limit(PLAN, parse_requirements(b"mandatory: [1]\n", "wanted"))
     assert unlimited.value.remedies == (Remedy.GIVE_BUDGET,)
 
 
@@ -137,7 +137,7 @@ def test_sites(site, tmp_path):
         path.write_bytes(content)
         return open_site(str(path))
 
-    assert {one.name for one in list_sites()} >= {"umad", "darmstadt"}
+    assert {one.name for one in list_shipped_sites()} >= {"umad", "darmstadt"}
     report = make_site_report(site)
     assert report.errors == ()
     mine = site_yaml_with_name(site, "mine")

@@ -10,7 +10,7 @@ from argo_env.drives.drive import DriveStatus, Trouble
 from argo_env.drives.tracked.drive import WINDOW, StallDetector, TrackedDrive
 from argo_env.navigation.path import Motion, Path, wrap
 from argo_env.robot.pose import BodyPose
-from benchmarks.tracked import plan_flight
+from benchmarks.tracked import plan_stair_path
 from tests.argo_env.drives.test_route import level
 from tests.yard import simulated
 
@@ -54,7 +54,7 @@ def follow(drive, path, velocity=None, most=2000, start=None, world=None, touche
 )
 def test_takes_a_storey_of_each_tower(drive, ground, navigator, robot, tower, up):
     """The west tower has one long flight, the east tower two and a landing with a turn."""
-    path = plan_flight(navigator, f"{tower} tower", 2, up)
+    path = plan_stair_path(navigator, f"{tower} tower", 2, up)
     start = path.start
     begun = BodyPose(start.x + 0.03, start.y - 0.03, start.z, start.yaw + math.radians(4))
     touched = set()

@@ -234,7 +234,7 @@ class LeastSteps:
         """Return the least time (s) and energy (Wh) of the drive to task `i` and of its action.
 
         It is the least over all positions that the robot may have at the point `source`. A WAIT has
-        no drive: it takes its duration, if that is given, and no energy.
+        no drive and takes no energy; it takes its duration, or 0 s if it has none.
         """
         task = self.mission.tasks[i]
         if task.wait is not None:

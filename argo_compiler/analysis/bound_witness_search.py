@@ -53,8 +53,8 @@ class _Search:
         """Return the least time (s) or energy (Wh) until each point, and the period of each group.
 
         The values until points count from the mission's start. A group's period is the least from
-        the end of one of its rounds to the end of the next; if `planned`, it is at least the
-        group's `every`. Returns None if the search takes too long.
+        the end of one of its rounds to the end of the next; if `planned` and `of_time`, it is at
+        least the group's `every`. Returns None if the search takes too long.
         """
         groups = self.steps.mission.groups
         self._steps_left = _MOST_STEPS * (100 + len(self.steps.mission.tasks) + len(groups))

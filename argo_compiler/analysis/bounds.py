@@ -31,7 +31,7 @@ class MissionBounds:
     def task_end_bounds(self) -> tuple[TimeAndEnergyAtEnd, ...]:
         """Bounds on the time and energy at the end of each leaf, over all its visits.
 
-        They say little if `duration` is None, as then, for example, travel times are unknown.
+        They say little if `duration` is None: without travel times, for example, most are infinite.
         """
         return task_end_bounds(self.lengths, self.mission_level)
 
@@ -56,8 +56,9 @@ def compute_bounds(
 ) -> MissionBounds:
     """Return the bounds of a mission on duration and energy, and its loops without limit.
 
-    There is no upper bound if `endless` (some execution path never ends), or if a loop may be
-    repeated without limit, even if no transition leads from that loop to the mission's end.
+    There is no upper bound (its value is None) if `endless` (some execution path never ends), or if
+    a loop may be repeated without limit, even if no transition leads from that loop to the
+    mission's end.
 
     Raises:
         BoundsTooLargeError: The computation would take too long.
@@ -103,8 +104,8 @@ def _bounds(
 ) -> Bounds | None:
     """Return the bounds on the `time` (s) or `energy` (Wh) of a mission, over all paths to its end.
 
-    `level` is the graph of the whole mission; if `endless`, there is no upper bound. Returns None
-    if no path reaches the end because rounds that take no time never use up a group's time limit.
+    `level` is the graph of the whole mission; if `endless`, the upper bound is None.
+    Returns None if no path reaches the end: rounds that take no time never use up a time limit.
     """
     least = min(
         (level.least[quantity][node] + getattr(cost, quantity).least, k)
@@ -134,7 +135,8 @@ def _path(
 ) -> tuple[Stretch, ...]:
     """Return the execution path of the least or greatest time or energy to one exit of a level.
 
-    `end` is the index of the exit in the level's list. A very long path lacks its middle.
+    `end` is the index of the exit in the level's list. The middle parts of a very long path are
+    left out.
     """
     predecessors = (level.least_predecessors if shortest else level.most_predecessors)[quantity]
     distance = (level.least if shortest else level.most)[quantity]

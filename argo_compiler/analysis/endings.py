@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 
 from argo_compiler.analysis.non_terminating_loops import NonTerminatingLoop
 from argo_compiler.analysis.study import Study
-from argo_compiler.base.listing import quoted_list_text
+from argo_compiler.base.listing import brief_quoted_list
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Task
@@ -94,7 +94,7 @@ def _follow(leaves: tuple[int, ...]) -> str:
 
 def _tasks(study: Study, leaves: tuple[int, ...]) -> str:
     return (
-        f"task{'s' if len(leaves) > 1 else ''} {quoted_list_text([study.name(i) for i in leaves])}"
+        f"task{'s' if len(leaves) > 1 else ''} {brief_quoted_list([study.name(i) for i in leaves])}"
     )
 
 
@@ -115,7 +115,7 @@ def _unbounded_loops(study: Study, trapped: set[int]) -> Iterator[Diagnostic]:
         parts = [
             *([_tasks(study, loop.leaves)] if loop.leaves else []),
             *(
-                [f"group{'s' if len(groups) > 1 else ''} {quoted_list_text(groups)}"]
+                [f"group{'s' if len(groups) > 1 else ''} {brief_quoted_list(groups)}"]
                 if groups
                 else []
             ),

@@ -11,7 +11,7 @@ from argo_compiler.analysis.results import Bound, Bounds, Stretch
 from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.travel import NoPath, Travel
 from argo_compiler.analysis.windows import diagnose_task_time_limits, diagnose_windows
-from argo_compiler.base.listing import quoted_list_text
+from argo_compiler.base.listing import brief_quoted_list
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.diagnostics.subject import subject_of
@@ -136,10 +136,10 @@ def _too_long(study: Study, duration: Bounds, limit: float) -> Iterator[Diagnost
 def _cut_short(
     study: Study, bounds: MissionBounds, limit: float, longest: Bound | None
 ) -> Iterator[Diagnostic]:
-    """Yield a diagnostic on tasks that are not done if the reaction to TIME_UP ends the mission.
+    """Yield one diagnostic on what may not be done as the reaction to TIME_UP ends the mission.
 
     There is none if the mission always ends within `limit` (s) when nothing fails. `longest` is the
-    upper bound on the duration with failures and reactions.
+    upper bound on the duration with failures and reactions; None if it could not be computed.
     """
     assert bounds.duration is not None
     most = bounds.duration.most.value
@@ -164,8 +164,14 @@ def _cut_short(
         "cut-short",
         f"the mission may take {up_to}, longer than its maximum duration of "
         f"{time_words(limit)}: {ends}"
-        + (f"; if nothing fails, {quoted_list_text(lost)} will not be done in time" if lost else "")
-        + (f"; {quoted_list_text(unsure)} may not be done, or not in all rounds" if unsure else ""),
+        + (
+            f"; if nothing fails, {brief_quoted_list(lost)} will not be done in time"
+            if lost
+            else ""
+        )
+        + (
+            f"; {brief_quoted_list(unsure)} may not be done, or not in all rounds" if unsure else ""
+        ),
         "leave out tasks, shorten groups, or allow more time",
         subject="max_duration",
     )

@@ -63,7 +63,7 @@ def find_loops_kept_by_readings(study: Study) -> Iterator[NonTerminatingLoop]:
 
 
 def _is_within(inner: NonTerminatingLoop, outer: NonTerminatingLoop) -> bool:
-    """Return True if `inner` lies within `outer` and no further reading keeps `outer` going."""
+    """Return True if `inner` lies within `outer` and all readings of `outer` keep it going too."""
     if inner.object_id != outer.object_id or outer.readings & ~inner.readings:
         return False
     smaller = inner.nodes < outer.nodes
@@ -129,7 +129,7 @@ class _Search:
                     yield i, o
 
     def readings(self, leaf: int, object_id: str) -> Iterator[int]:
-        """Yield the possible readings of an object at a leaf, each as one bit."""
+        """Yield the possible readings of an object at a leaf, each as a mask with one bit set."""
         state = self.study.nominal.states[leaf]
         assert state is not None
         possible = self.study.nominal.fields.get(state, object_id)

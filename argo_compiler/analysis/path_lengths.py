@@ -62,6 +62,9 @@ class Hop(NamedTuple):
 class LevelGraph:
     """Graph of a level that is entered at one leaf from one source, and the distances in it.
 
+    A level is the mission without the insides of its groups, or a group without those of the groups
+    in it; each of these groups is one node.
+
     The distances `least` and `most`, and the predecessors on the shortest and longest paths, are
     computed for each quantity, `time` and `energy`, when the graph is complete.
     """
@@ -116,6 +119,8 @@ class PathLengths:
     def mission_level(self) -> LevelGraph:
         """Return the graph of the mission's level, with the distances from the mission's start.
 
+        Its nodes are the leaves outside of groups, and the outermost groups.
+
         Raises:
             BoundsTooLargeError: The computation would take too long.
         """
@@ -141,7 +146,7 @@ class PathLengths:
                 keys.append(wanted)
 
     def first_and_later_round_graphs(self, entry: GroupEntry) -> Iterator[LevelGraph]:
-        """Yield the graph of a group's first round for one entry, and that of its later rounds.
+        """Yield the graph of a group's first round for one entry, and that of later rounds if any.
 
         An entry is the group, the leaf at which it is entered, and what ended before.
         """

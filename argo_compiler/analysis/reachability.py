@@ -395,7 +395,7 @@ class ReachabilitySearch:
         return leaf.deadline is not None and leaf.missed is None and leaf.failure is None
 
     def _evaluate_guards(self, node: int, state: int) -> list[_GuardResult]:
-        """Return status, target and readings, if taken, of each transition that may be evaluated.
+        """Return status, target and readings when taken, of each transition that may be evaluated.
 
         `state` has the readings that are possible before the leaf's action. The order is that of
         the transitions; the unconditional one comes last, if it can be taken. Other nodes have no

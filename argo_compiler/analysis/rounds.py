@@ -179,11 +179,11 @@ class _Combination:
         return Cost(time, cost.energy + self._idle_energy(rounds))
 
     def _end_if_waited(self, rounds: float, period: float) -> float:
-        """Return the latest time in s at which `rounds` rounds have ended, with a wait for one.
+        """Return the latest time in s at which `rounds` rounds have ended, with one wait.
 
-        Rounds are due each `every` s. There are two cases: the second round starts when it is due
-        and the others follow without a wait, or the last round starts when it is due. `period` is
-        the duration of a later round in s.
+        Rounds are due each `every` s. The result is the later one of two cases: the second round
+        starts when it is due and the others follow without a wait, or the last round starts when it
+        is due. `period` is the duration of a later round in s.
         """
         if math.isinf(rounds):
             return math.inf
@@ -357,7 +357,8 @@ def _due_before(limit: float, every: float) -> float:
 def _periods_started(time: float, period: float, side: int) -> float:
     """Return how many periods start from 0 to `time`, both included; the first starts at 0.
 
-    If rounding leaves doubt, `side` decides: 1 for the greater number, -1 for the smaller one.
+    `period` is not 0. If rounding leaves doubt, `side` decides: 1 for the greater number, -1 for
+    the smaller one.
     """
     return 1 + math.floor(time / period + side * _TOLERANCE)
 

@@ -176,7 +176,8 @@ class Study:
     ) -> Diagnostic:
         """Return a diagnostic about a leaf's task, one of its transitions, or a `subject`.
 
-        Without a severity, the diagnostic has the severity of its code.
+        `transition` is an index into all of the task's transitions. For a leaf that the machine
+        adds, only `subject` counts. Without a severity, the diagnostic has that of its code.
         """
         span = None
         if leaf is not None and self.is_mission_task(leaf):

@@ -70,6 +70,6 @@ class Travel(Protocol):
         Args:
             origin: Pose from which the robot starts.
             task: Task to execute.
-            velocity: Speed in m/s; None for the robot's planning speed.
+            velocity: Speed in m/s, in place of the task's; None for the robot's planning speed.
         """
         ...

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.transitions import reason_never_taken
-from argo_compiler.base.listing import quoted_list_text
+from argo_compiler.base.listing import brief_quoted_list
 from argo_compiler.diagnostics import Diagnostic
 
 _MOST_REASONS = 3  # transitions to a task that a message mentions
@@ -79,13 +79,13 @@ def _add_reason(
 def _why(reasons: list[str], unreachable: list[str]) -> str:
     names = list(dict.fromkeys(unreachable))
     if names and reasons:
-        reasons = [*reasons, f"{quoted_list_text(names)} can't be reached either"]
+        reasons = [*reasons, f"{brief_quoted_list(names)} can't be reached either"]
     elif len(names) == 1:
         reasons = [
-            f"only {quoted_list_text(names)} leads to it, and that task can't be reached either"
+            f"only {brief_quoted_list(names)} leads to it, and that task can't be reached either"
         ]
     elif names:
         reasons = [
-            f"only {quoted_list_text(names)} lead to it, and those tasks can't be reached either"
+            f"only {brief_quoted_list(names)} lead to it, and those tasks can't be reached either"
         ]
     return "; ".join(reasons) or "no transition leads to it"

@@ -54,7 +54,7 @@ class Scale:
 
     @cached_property
     def all_bits(self) -> int:
-        """Set of all readings, those without a value included."""
+        """Mask of all bits: of all values, of no reading, and of unreadable and failed ones."""
         return (1 << self.width) - 1
 
     def satisfying_bits(self, condition: Condition) -> int:

@@ -46,8 +46,8 @@ def unproved(mission: Mission, catalog: Catalog | None, analysis: Analysis) -> t
 def _is_proved(verdict: Verdict, with_failures: bool, nominal: bool) -> bool:
     """Return True if what a verdict excludes is proved impossible.
 
-    `with_failures` and `nominal` state whether the proofs leave it possible with failures and
-    without.
+    `with_failures` and `nominal` are True if, by the proofs, the event that the verdict is about is
+    possible with failures and without.
     """
     if verdict is Verdict.NEVER:
         return not with_failures

@@ -49,7 +49,7 @@ class ClaimedScale:
         return (1 << self.width) - 1
 
     def region_bits_overlapping(self, low: float, high: float) -> int:
-        """Return the bits of the regions with at least one value from `low` to `high`, or equal."""
+        """Return the bits of the regions with a value from `low` to `high`, both included."""
         first, last = bisect_left(self.bounds, low), bisect_left(self.bounds, high)
         first_bit = 2 * first + (low in self.bounds[first : first + 1])
         last_bit = 2 * last + (high in self.bounds[last : last + 1])

@@ -175,7 +175,10 @@ class MissionWalk:
         return window is not None and window.hard and window.latest is not None
 
     def _may_fail_by_time(self, task: Task) -> bool:
-        """Return True if a task may fail while its action or an earlier one is being cancelled."""
+        """Return True if a task may fail as its hard window closes or its own time limit ends.
+
+        Its action, or an earlier one, may then still be being cancelled.
+        """
         return self._can_miss_window(task) or (self.failures and task.time_limit is not None)
 
     def _may_fail_otherwise(self, task: Task) -> bool:

@@ -18,8 +18,8 @@ def collector_held() -> Iterator[None]:
 
     The collector examines all live objects each time that many new ones have been created, and
     finds nothing to free while the new data is still in use. There is one collector for the whole
-    process, so only one thread at a time pauses it; data that other threads build meanwhile may see
-    it run again before they are done.
+    process, so only one thread at a time pauses it. Another thread that enters meanwhile runs its
+    block at once, and the collector may run again before that block is done.
     """
     if not _holding.acquire(blocking=False):
         yield

@@ -11,7 +11,8 @@ def lazy_names(
 ) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
     """Return the `__getattr__` and `__dir__` (PEP 562) of a package with lazily imported names.
 
-    `homes` has, for each module within the package, the names that the package offers from it.
+    `homes` has the names that the package offers from each of its modules, by the module's name
+    relative to the package.
     """
     home_of = {name: f"{package}.{home}" for home, names in homes.items() for name in names}
 

@@ -14,7 +14,7 @@ def listed(items: Iterable[object], conjunction: str = "and") -> str:
     return f"{', '.join(words[:-1])} {conjunction} {words[-1]}"
 
 
-def quoted_list_text(names: Sequence[str]) -> str:
+def brief_quoted_list(names: Sequence[str]) -> str:
     """Return names in quotes, such as `'A', 'B' and 'C'`.
 
     A long list shows its first names, and the number of the others.

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from argo_compiler.base.nearest_name import nearest_name
 from argo_compiler.checks.checked_item import CheckedItem
 from argo_compiler.checks.instant_loops import MIN_TIME_S
-from argo_compiler.checks.timing import has_timing_or_failure_branch
+from argo_compiler.checks.timing import has_failure_branch_or_time_rule
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Action, Group, Mission, Stop, Task
 from argo_compiler.il.grouping import (
@@ -228,7 +228,7 @@ def _stays_inside(task: Task, around: GroupRange, position: Mapping[str, int]) -
 
     This is a quick test: it returns False for any task with more than one transition.
     """
-    if len(task.transitions) != 1 or has_timing_or_failure_branch(task):
+    if len(task.transitions) != 1 or has_failure_branch_or_time_rule(task):
         return False
     to = position.get(task.transitions[0].target)
     return to is not None and around.contains(to)

@@ -67,7 +67,7 @@ def _may_be_missed(task: Task) -> bool:
 
 
 def _instant_successors(task: Task) -> Iterator[str]:
-    """Yield the names of the tasks that may follow `task` if it took no time."""
+    """Yield the names of the tasks that may follow at the moment when `task` is entered."""
     continues = _ends_at_once(task)
     fails = _fails_at_once(task)
     if _may_be_missed(task) and task.window is not None:

@@ -65,7 +65,8 @@ def _check_rank(
 ) -> Iterator[Diagnostic]:
     """Yield a diagnostic if a previous reaction has the same rank: one would wait for the other.
 
-    `ranked` has, by rank, the first of the previous reactions in the mission's list.
+    `ranked` has, by rank, the first of the previous reactions in the mission's list; it is not
+    changed.
     """
     other = ranked.get(reaction.urgency)
     if (

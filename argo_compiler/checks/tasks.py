@@ -10,7 +10,7 @@ from argo_compiler.checks.timing import (
     check_unused_fields,
     check_wait,
     check_window,
-    has_timing_or_failure_branch,
+    has_failure_branch_or_time_rule,
 )
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Action, Mission, OnFailure, Task
@@ -85,7 +85,7 @@ class TaskChecks:
                         "a mission begins at one pose: remove all START tasks but one",
                     )
                 yield from check_unused_fields(self._item(i, task), task)
-            if has_timing_or_failure_branch(task):
+            if has_failure_branch_or_time_rule(task):
                 yield from self._check_timing(self._item(i, task), task)
             transitions = task.transitions
             if len(transitions) != 1 or transitions[0].conditions:

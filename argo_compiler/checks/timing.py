@@ -27,7 +27,7 @@ _USED_BY = {
 _DEFAULTS = {field: getattr(_PLAIN, field) for field in _USED_BY}
 
 
-def has_timing_or_failure_branch(task: Task) -> bool:
+def has_failure_branch_or_time_rule(task: Task) -> bool:
     """Return True if a task has a wait, window or reading limit, or a branch after its failure.
 
     Most tasks have none of these, and need fewer checks.

@@ -68,7 +68,10 @@ def diagnostic_of(
     severity: Severity | None = None,
     choice: RemedyChoice | None = None,
 ) -> Diagnostic:
-    """Return a diagnostic; without `severity` it has the severity of its code in `CODES`."""
+    """Return a diagnostic; without `severity` it has the severity of its code in `CODES`.
+
+    Without `hint` it has none.
+    """
     return Diagnostic(
         code=code,
         severity=severity or CODES[code].severity,
@@ -87,7 +90,7 @@ def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
 
 
 def by_position(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """Return the diagnostics sorted by position in the source, then by severity and code.
+    """Return the diagnostics sorted by source position, then severity (errors first) and code.
 
     Diagnostics without a span come last, in their given order.
     """

@@ -67,7 +67,7 @@ def checked_edit_result(
 
     `requested` are the subjects (paths of parts of the mission) whose change was requested, with
     all their parts: such a change is no consequence. `renamed_tasks` and `renamed_groups` map
-    former names to new names. Takes linear time.
+    former names to new names; None: nothing is renamed. Takes linear time.
 
     Raises EditConflict or EditInvalid if `check` finds errors in `after` that `before` does not
     have: EditInvalid if all of them are errors in every mission.

@@ -124,8 +124,8 @@ class MissionDraft:
         self.groups = [g for g in self.groups if not _is_only_task(entry, g)]
         self.tasks.remove(entry)
 
-    def move(self, entry: DraftTask, anchor: DraftTask | None, into: str | None) -> None:
-        """Move a task behind another one, the anchor; to the start of the list if that is None.
+    def move(self, entry: DraftTask, after: DraftTask | None, into: str | None) -> None:
+        """Move a task behind the task `after`; to the start of the list if that is None.
 
         The effects on groups are those of `remove` and `insert`; `into` is as there. If the moved
         task was the last one of a group, the group's new last task takes over the target of the
@@ -141,7 +141,7 @@ class MissionDraft:
                 "add another task to the group first",
                 subject_of("groups", into),
             )
-        new_end, stays = entry.before, anchor in (entry, entry.before)
+        new_end, stays = entry.before, after in (entry, entry.before)
         ended_groups = [g for g in self.groups if g.last is entry and g.first is not entry]
         if stays and into is not None:
             ended_groups = [
@@ -152,13 +152,13 @@ class MissionDraft:
                 raise _group_end_conflict(ended_groups, entry, new_end)
             if not stays and not entry.leads_to_next:
                 _take_over_target(entry, new_end)
-        if anchor is entry:
-            anchor = entry.before
+        if after is entry:
+            after = entry.before
         self.remove(entry)
-        self.insert(entry, anchor, into)
+        self.insert(entry, after, into)
 
-    def insert(self, entry: DraftTask, anchor: DraftTask | None, into: str | None) -> None:
-        """Insert a task behind another one, the anchor; at the start of the list if that is None.
+    def insert(self, entry: DraftTask, after: DraftTask | None, into: str | None) -> None:
+        """Insert a task behind the task `after`; at the start of the list if that is None.
 
         At a group's border the task is outside of the group, or inside if `into` names it. If it
         becomes the group's last task, it takes over the target of the former last task, unless it
@@ -166,12 +166,12 @@ class MissionDraft:
         leads to the new one. Raises EditNotFound if there is no such group, EditConflict if the
         group does not extend to this position.
         """
-        self.tasks.insert_after(anchor, entry)
+        self.tasks.insert_after(after, entry)
         if into is not None:
             self._add_to_groups(entry, into)
 
-    def rename(self, entry: DraftTask, name: str) -> None:
-        """Rename a task; `mission` then renames it wherever the mission names it."""
+    def rename_with_references(self, entry: DraftTask, name: str) -> None:
+        """Rename a task; `mission` then returns it with the new name wherever it is named."""
         self.new_names[entry.task.name] = name
         entry.task = entry.task.model_copy(update={"name": name})
 
@@ -274,7 +274,7 @@ def _is_only_task(entry: DraftTask, g: DraftGroup) -> bool:
 
 
 def _replace_group_end(last: DraftTask, entry: DraftTask) -> None:
-    """Make `entry`, which follows `last`, the last task of a group, the group's new last task."""
+    """Adapt the targets of a group's last task, `last`, and of `entry`, which takes its place."""
     leads_there = default_target(last.task) == entry.task.name
     if not last.leads_to_next and entry.leads_to_next and not leads_there:
         _take_over_target(last, entry)
@@ -282,7 +282,11 @@ def _replace_group_end(last: DraftTask, entry: DraftTask) -> None:
 
 
 def _take_over_target(last: DraftTask, entry: DraftTask) -> None:
-    """Give `entry`, a group's new last task, the unconditional target of the former one, `last`."""
+    """Replace the unconditional target of `entry` by that of `last`, which then leads onwards.
+
+    `entry` is a group's new last task and `last` the former one. `last` then leads to the next task
+    of the list.
+    """
     entry.task = with_default_target(entry.task, default_target(last.task))
     entry.leads_to_next = False
     last.leads_to_next = True

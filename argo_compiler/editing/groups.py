@@ -80,7 +80,7 @@ def wrap_tasks(mission: Mission, group: Group) -> Edited:
 
 
 def dissolve_group(mission: Mission, name: str) -> Edited:
-    """Remove a group; its tasks stay, and the groups in it move one level up.
+    """Remove a group; its tasks stay, and groups in it move one level up, also in their names.
 
     Raises EditNotFound, or EditConflict if a group in it would get a name that is taken.
     """

@@ -54,7 +54,7 @@ class LinkedList(Generic[_Item]):
             self.last = item
 
     def remove(self, item: _Item) -> None:
-        """Remove the item and link its neighbours to each other."""
+        """Remove an item that is in the list, and link its neighbours to each other."""
         if item.before is not None:
             item.before.after = item.after
         else:

@@ -53,9 +53,9 @@ def add_task(
     """Add a task: before or after another one, `first` of all but START, or last.
 
     A task without transitions leads to the next task of the list; one with transitions keeps them.
-    A task that led to the next task of the list now leads to the new one. At a group's border the
-    task is outside of the group; with `into` it is in that group. Without a `group` of its own it
-    is displayed in the group around it.
+    If the unconditional transition of the task before it led to the next task of the list, it now
+    leads to the new one. At a group's border the task is outside of the group; with `into` it is in
+    that group. Without a `group` of its own it is displayed in the group around it.
 
     Raises:
         EditConflict: a task of this name exists, or the group does not extend to this position.
@@ -77,7 +77,7 @@ def add_task(
 
 
 def replace_task(mission: Mission, name: str, task: Task) -> Edited:
-    """Replace a task by another one, which has a name of its own.
+    """Replace a task by another one, which may have another name.
 
     If the new task has no transitions, it gets those of the replaced task; if it has no `group`, it
     is displayed where the replaced task was. References to the replaced task name the new one.
@@ -90,7 +90,7 @@ def replace_task(mission: Mission, name: str, task: Task) -> Edited:
     if task.name != name:
         if draft.has_task(task.name):
             raise name_taken("task", task.name, subject_of("tasks", task.name))
-        draft.rename(entry, task.name)
+        draft.rename_with_references(entry, task.name)
     _require_targets(draft.names, task)
     if task.transitions:
         entry.leads_to_next = False
@@ -143,10 +143,10 @@ def move_task(
 ) -> Edited:
     """Move a task: before or after another one, `first` of all but START, or last.
 
-    A task that led to the next task of the list leads to the next one in the new order; a
-    transition that led elsewhere still leads there. At a group's border the task is outside of the
-    group; with `into` it is in that group. A group that started or ended with it now starts or ends
-    with its neighbour; a group of this task alone is removed.
+    An unconditional transition that led to the next task of the list leads to the next one in the
+    new order; a transition that led elsewhere still leads there. At a group's border the task is
+    outside of the group; with `into` it is in that group. A group that started or ended with it now
+    starts or ends with its neighbour; a group of this task alone is removed.
 
     Raises EditNotFound, EditConflict and EditInvalid as `add_task` does.
     """
@@ -170,7 +170,7 @@ def rename_task(mission: Mission, name: str, new_name: str) -> Edited:
     if new_name != name:
         if draft.has_task(new_name):
             raise name_taken("task", new_name, subject_of("tasks", new_name))
-        draft.rename(entry, new_name)
+        draft.rename_with_references(entry, new_name)
     return checked_edit_result(mission, draft.mission(), renamed_tasks=draft.new_names)
 
 

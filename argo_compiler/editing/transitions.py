@@ -50,8 +50,8 @@ def add_transition(
 ) -> Edited:
     """Add a transition to a task, before the one at a position; as the last one if `at` is None.
 
-    Positions count from 0. Raises as `set_transitions` does, and EditNotFound for a position that
-    the task does not have.
+    Positions count from 0; the number of transitions means the end, too. Raises as
+    `set_transitions` does, and EditNotFound for other positions.
     """
     old_transitions = _find_task(mission, task).transitions
     at = len(old_transitions) if at is None else at

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 from argo_compiler.base.model import Pose
 from argo_compiler.base.number_text import number_text
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.export.exporter import battery_report_refusals, raise_refusals, refusal
+from argo_compiler.export.exporter import battery_level_report_refusals, raise_refusals, refusal
 from argo_compiler.export.xml import Attributes, XmlWriter
 from argo_compiler.il import (
     Action,
@@ -107,7 +107,7 @@ class _Tree:
         return self.xml.text()
 
     def _refusals(self) -> Iterator[Diagnostic]:
-        yield from battery_report_refusals(self.mission.reactions)
+        yield from battery_level_report_refusals(self.mission.reactions)
         for reaction in self.mission.reactions:
             if reaction.response is not Response.REPORT:
                 yield refusal(
@@ -365,8 +365,9 @@ class _Tree:
     def _close_group(self, r: GroupRange, end: Task | None) -> None:
         """Write the nodes that end a group's round: another round, or what follows the group.
 
-        `end` is the last task of the group if no group around it ends with that task too, and None
-        otherwise: what follows is decided only once, after the outermost of these groups.
+        `end` is the last task of the group if no group around it ends with that task too. It is
+        None otherwise, and what follows is not written: it is decided only once, after the
+        outermost of these groups.
         """
         xml, group = self.xml, r.group
         n = self.group_numbers[group.name]

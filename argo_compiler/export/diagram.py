@@ -46,22 +46,22 @@ class Diagram:
         self.ids = {leaf.id: f"t{i}" for i, leaf in enumerate(hfsm.leaves)}
         self.ids |= {c.id: f"g{i}" for i, c in enumerate(hfsm.composites)}
 
-    def choice_id(self, id: str) -> str:
+    def round_end_choice_id(self, group_id: str) -> str:
         """Return the diagram's id of the choice at the end of a group's round: `r1` for `g1`.
 
-        `id` is the machine's id of the group.
+        `group_id` is the machine's id of the group.
         """
-        return self.ids[id].replace("g", "r")
+        return self.ids[group_id].replace("g", "r")
 
     def id_unless_mission_end(self, id: str) -> str | None:
         """Return the diagram's id of the machine's state `id`, or None for the mission's end."""
         return None if id == DONE else self.ids[id]
 
-    def elements_and_group_ends(self) -> Iterator[tuple[int, Leaf | Composite | None]]:
+    def elements_and_ends_with_depths(self) -> Iterator[tuple[int, Leaf | Composite | None]]:
         """Yield all leaves and groups in order, each with the number of groups that contain it.
 
-        None instead of a leaf or group marks the end of a group. This is not recursive, as groups
-        may be nested to any depth.
+        None instead of a leaf or group marks the end of a group, with the same number as the group.
+        This is not recursive, as groups may be nested to any depth.
         """
         depth = 0
         pending: list[str | None] = list(reversed(self.hfsm.mission.children))
@@ -85,7 +85,7 @@ class Diagram:
             yield from (self._arrow(self.ids[leaf.id], t) for t in transitions if t)
         for group in self.hfsm.composites[1:]:
             for transition in group.transitions:
-                yield self._arrow(self.choice_id(group.id), transition, group)
+                yield self._arrow(self.round_end_choice_id(group.id), transition, group)
             if group.timeout:
                 arrow = self._arrow(self.ids[group.id], group.timeout, group)
                 yield replace(arrow, source_group=group)
@@ -94,7 +94,7 @@ class Diagram:
         self, source: str, transition: StateTransition, group: Composite | None = None
     ) -> Arrow:
         if transition.completes is not None:
-            target: str | None = self.choice_id(transition.completes)
+            target: str | None = self.round_end_choice_id(transition.completes)
         else:
             target = self.id_unless_mission_end(transition.target or DONE)
         return Arrow(source, target, transition_label(transition, group))

@@ -34,7 +34,7 @@ def refusal(
     return diagnostic_of(f"export.{code}", message, hint, span=span)
 
 
-def battery_report_refusals(reactions: Iterable[Reaction]) -> Iterator[Diagnostic]:
+def battery_level_report_refusals(reactions: Iterable[Reaction]) -> Iterator[Diagnostic]:
     """Yield a refusal for each reaction that only reports a battery level.
 
     This is for formats that have no place for the level: the robot would not know at which charge

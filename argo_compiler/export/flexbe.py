@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from importlib.resources import files
 
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.export.exporter import battery_report_refusals, raise_refusals, refusal
+from argo_compiler.export.exporter import battery_level_report_refusals, raise_refusals, refusal
 from argo_compiler.export.xml import XmlWriter
 from argo_compiler.hfsm import Composite, Hfsm, Leaf, StateTransition, TransitionKind
 from argo_compiler.hfsm.model import DONE, MISSION, RETURN
@@ -45,7 +45,7 @@ def to_flexbe(mission: Mission, hfsm: Hfsm) -> Mapping[str, bytes]:
 
 
 def _refusals(hfsm: Hfsm) -> Iterator[Diagnostic]:
-    yield from battery_report_refusals(state.reaction for state in hfsm.reactions)
+    yield from battery_level_report_refusals(state.reaction for state in hfsm.reactions)
     for state in hfsm.reactions:
         if state.reaction.response is not Response.REPORT:
             yield refusal(
@@ -132,7 +132,8 @@ class _Behavior:
     def _ranges(self) -> dict[str, tuple[int, int]]:
         """Return the numbers of the first and the last task in each state, by the state's id.
 
-        A task's state has one task; the state of a group or of the mission has those inside it.
+        Both numbers are included. A task's state has one task; the state of a group or of the
+        mission has those inside it, (1, 0) if there are none.
         """
         ranges = {id: (number, number) for id, number in self.numbers.items()}
         for composite in reversed(self.hfsm.composites):
@@ -150,8 +151,8 @@ class _Behavior:
 
         `machine` is the id of the composite. `target` is as in the memory that the states share:
         the number of a task, the negative of a group's depth for the end of the group's round, or
-        `end` or `aborted`. The
-        outcome is the label of the machine's child with the target, `round` or `left`.
+        `end` or `aborted`. The outcome is the label of the machine's child that is the target or
+        contains it, `round` for the end of this machine's round, and `left` for all else.
         """
         if isinstance(target, str):
             return "left"

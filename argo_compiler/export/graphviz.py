@@ -25,7 +25,7 @@ def _lines(hfsm: Hfsm) -> list[str]:
         '  start [shape=point, width=0.15, label=""];',
         '  done [shape=doublecircle, width=0.15, label=""];',
     ]
-    for depth, item in diagram.elements_and_group_ends():
+    for depth, item in diagram.elements_and_ends_with_depths():
         indent = "  " * min(1 + depth, 20)
         if item is None:
             lines.append(f"{indent}}}")
@@ -34,7 +34,9 @@ def _lines(hfsm: Hfsm) -> list[str]:
             lines.append(f"{indent}{diagram.ids[item.id]} [label={label}];")
         else:
             # Outside of the cluster, as an edge from a cluster's border can't end inside it.
-            lines.append(f'{indent}{diagram.choice_id(item.id)} [shape=diamond, label=""];')
+            lines.append(
+                f'{indent}{diagram.round_end_choice_id(item.id)} [shape=diamond, label=""];'
+            )
             lines.append(f"{indent}subgraph cluster_{diagram.ids[item.id]} {{")
             lines.append(f"{indent}  label={_quoted(item.name)};")
     if hfsm.reactions:

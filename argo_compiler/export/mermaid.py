@@ -35,7 +35,7 @@ def _lines(diagram: Diagram) -> list[str]:
 
 def _states(diagram: Diagram) -> list[str]:
     lines: list[str] = []
-    for depth, item in diagram.elements_and_group_ends():
+    for depth, item in diagram.elements_and_ends_with_depths():
         indent = "    " * min(1 + depth, 20)
         if item is None:
             lines.append(f"{indent}}}")
@@ -43,7 +43,7 @@ def _states(diagram: Diagram) -> list[str]:
             label = _escape(task_label_with_limits(item.task))
             lines.append(f'{indent}state "{label}" as {diagram.ids[item.id]}')
         else:
-            lines.append(f"{indent}state {diagram.choice_id(item.id)} <<choice>>")
+            lines.append(f"{indent}state {diagram.round_end_choice_id(item.id)} <<choice>>")
             lines.append(f'{indent}state "{_escape(item.name)}" as {diagram.ids[item.id]} {{')
     return lines
 

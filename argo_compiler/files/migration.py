@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
-from argo_compiler.base.listing import quoted_list_text
+from argo_compiler.base.listing import brief_quoted_list
 from argo_compiler.diagnostics import Diagnostic, diagnostic_of
 from argo_compiler.files.json_places import JsonPath
 from argo_compiler.il import Action, EventKind, Mission, Mode, OnFailure, Response, Task
@@ -113,7 +113,7 @@ def _changes(mission: Mission) -> Iterator[Diagnostic]:
     if failing:
         yield diagnostic_of(
             "file.meaning-changed",
-            f"if {quoted_list_text(failing)} fails, conditions no longer use the value of an "
+            f"if {brief_quoted_list(failing)} fails, conditions no longer use the value of an "
             "earlier measurement",
             "add a transition with a READING_FAILED condition, or a `failure_target`, for this "
             "case",
@@ -141,7 +141,7 @@ def _changes(mission: Mission) -> Iterator[Diagnostic]:
     if with_pose := [task.name for task in mission.tasks if _has_own_pose(task)]:
         yield diagnostic_of(
             "file.meaning-changed",
-            f"the pose of {quoted_list_text(with_pose)} was never used, and has been removed",
+            f"the pose of {brief_quoted_list(with_pose)} was never used, and has been removed",
             "set it again if the robot must measure from that pose",
             "tasks",
         )
@@ -154,8 +154,8 @@ def _has_own_pose(task: Task) -> bool:
 def _velocity_warning(differ: tuple[str, ...]) -> Diagnostic:
     return diagnostic_of(
         "file.meaning-changed",
-        f"the velocity of the path to {quoted_list_text(differ)} depended on the previous task; it "
-        "is now the lowest of these velocities",
+        f"the velocity of the path to {brief_quoted_list(differ)} depended on the previous task; "
+        "it is now the lowest of these velocities",
         "a velocity now applies to the path to its task, from wherever the robot comes: save the "
         f"mission as version {VERSION}, and set `velocity` of the task",
         "tasks",

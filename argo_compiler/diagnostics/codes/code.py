@@ -27,15 +27,15 @@ class Code:
 
 
 def error(meaning: str, remedy: str) -> Code:
-    """Return the entry of a code in the registry, with the severity of an error."""
+    """Return a new entry for the registry of codes, with the severity of an error."""
     return Code(Severity.ERROR, meaning, remedy)
 
 
 def warning(meaning: str, remedy: str) -> Code:
-    """Return the entry of a code in the registry, with the severity of a warning."""
+    """Return a new entry for the registry of codes, with the severity of a warning."""
     return Code(Severity.WARNING, meaning, remedy)
 
 
 def note(meaning: str, remedy: str) -> Code:
-    """Return the entry of a code in the registry, with the severity of a note."""
+    """Return a new entry for the registry of codes, with the severity of a note."""
     return Code(Severity.NOTE, meaning, remedy)

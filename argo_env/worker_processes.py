@@ -69,19 +69,20 @@ def context_with(*modules: str) -> ForkServerContext:
     return context
 
 
-def ignore_sigint_and_end_with_parent(parent: int | None = None) -> None:
+def ignore_sigint_and_end_with_parent(parent_outside_multiprocessing: int | None = None) -> None:
     """Ignore SIGINT, and end this process when its parent ends, even if the parent is killed.
 
     Args:
-        parent: process id of the parent, needed only if `multiprocessing` did not start this
-            process. If it is needed and None, the process does not end with its parent.
+        parent_outside_multiprocessing: process id of the parent, needed only if
+            `multiprocessing` did not start this process. If it is needed and None, the process does
+            not end with its parent.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     known_parent = multiprocessing.parent_process()
     if known_parent is not None and known_parent.sentinel is not None:
         end: Callable[[], object] = partial(wait, [known_parent.sentinel])
-    elif parent is not None:
-        end = partial(_wait_for, parent)
+    elif parent_outside_multiprocessing is not None:
+        end = partial(_wait_for, parent_outside_multiprocessing)
     else:
         return
     threading.Thread(target=_end_after, args=(end,), daemon=True).start()

@@ -143,7 +143,7 @@ def argo(
 
 
 def main() -> None:
-    """Run the command; an error becomes one message and exit status 2."""
+    """Run the command; an ArgoError becomes one message and exit status 2."""
     output = guard_stdout_and_stderr()
     try:
         status = _carry_out()
@@ -175,7 +175,7 @@ def _carry_out() -> int:
 
 
 def _report_error(error: BaseException) -> int:
-    """Print an error and return the exit status; raise it again if it is a defect of Argo."""
+    """Print an ArgoError and return the exit status; raise other errors again."""
     if isinstance(error, SystemExit) and isinstance(error.code, int):
         return error.code
     if isinstance(error, ArgoError):

@@ -75,7 +75,7 @@ def resting_poses(world: World, motion: Motion, robot: RobotSpec) -> list[BodyPo
         [x[:, None] + along * cos - left * sin, y[:, None] + along * sin + left * cos], axis=-1
     )
     above = np.repeat(guess + _PROBE_HEIGHT, len(along))
-    heights = world.surface_heights_below(points.reshape(-1, 2), above).reshape(
+    heights = world.surface_or_ray_end_heights(points.reshape(-1, 2), above).reshape(
         count, len(offsets), 2
     )
     z, slope = rest_height_and_slope(offsets, heights.max(axis=2))

@@ -40,5 +40,5 @@ def relative_heights_along_tracks(world: World, pose: BodyPose) -> NDArray[np.fl
     """
     cos, sin = math.cos(pose.yaw), math.sin(pose.yaw)
     points = _GROUND @ np.array([[cos, sin], [-sin, cos]]) + np.array([pose.x, pose.y])
-    heights = world.surface_heights_below(points, np.full(len(points), pose.z + _ABOVE))
+    heights = world.surface_or_ray_end_heights(points, np.full(len(points), pose.z + _ABOVE))
     return np.clip(heights - pose.z, -DEPTH, DEPTH)

@@ -111,11 +111,11 @@ class DisplacedCheckpoint(CheckpointFault):
         assert self.turn is not None
         assert self.roll is not None
         placement = Placement(self.offset, math.radians(self.turn), math.radians(self.roll))
-        targets.world.displace(self.checkpoint, placement)
+        targets.world.set_displacement(self.checkpoint, placement)
 
     def revert(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.checkpoint is not None
-        targets.world.displace(self.checkpoint, AS_PLANNED)
+        targets.world.set_displacement(self.checkpoint, AS_PLANNED)
 
 
 def _abnormal(checkpoint: SiteCheckpoint, rng: np.random.Generator) -> float:

@@ -94,13 +94,13 @@ def pump_sound(pump: str, fault: PumpFault | None) -> NDArray[np.float32]:
     return result
 
 
-def alarm_sound(start: float, samples: int, level: float) -> NDArray[np.float64]:
-    """Return the pressure (Pa) of the alarm in `samples` samples from time `start` (s) on.
+def alarm_sound(start_seconds: float, samples: int, level: float) -> NDArray[np.float64]:
+    """Return the pressure (Pa) of the alarm in `samples` samples from `start_seconds` on.
 
     There are RATE samples a second. Tones begin at the multiples of ALARM_PERIOD, whenever the
     alarm began.
     """
-    time = start + np.arange(samples) / RATE
+    time = start_seconds + np.arange(samples) / RATE
     tone = math.sqrt(2) * pressure(level) * np.sin(2 * math.pi * ALARM_TONE * time)
     return np.asarray(np.where(time % ALARM_PERIOD < ALARM_ON, tone, 0.0))
 

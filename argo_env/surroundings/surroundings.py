@@ -101,7 +101,7 @@ class Surroundings:
 
     @property
     def sources(self) -> tuple[Source, ...]:
-        """Sources that are active now, in the order in which they began; equal ones add up."""
+        """Sources that are active now, in the order in which they began, equal ones included."""
         return tuple(source for source, _ in self._active)
 
     @property

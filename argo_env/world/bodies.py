@@ -142,7 +142,7 @@ class Bodies(Connection):
         pybullet.resetJointState(body, joint, position, physicsClientId=self._client)
         self._scene_changed = True
 
-    def displace(self, checkpoint_id: int, placement: Placement) -> None:
+    def set_displacement(self, checkpoint_id: int, placement: Placement) -> None:
         """Set the displacement of a checkpoint from its planned pose, instead of an earlier one.
 
         Raises NotFound if there is no such checkpoint.
@@ -270,9 +270,9 @@ class Bodies(Connection):
             self._pose_unsynced = False
 
     def _box(self, body: int, links: Iterable[int]) -> SolidBounds:
-        """Return the upright box around links of a body."""
+        """Return the box around links of a body, parallel to the site's axes."""
         boxes = [pybullet.getAABB(body, link, physicsClientId=self._client) for link in links]
-        return SolidBounds.box_around_all(
+        return SolidBounds.one_box_around_all(
             [SolidBounds(np.array(low), np.array(high)) for low, high in boxes]
         )
 
@@ -339,9 +339,10 @@ def _without_visuals(path: Path) -> str:
 
 @lru_cache(maxsize=_CACHED_SITES)
 def _bounds_of(elements: tuple[Element, ...]) -> tuple[SolidBounds, NDArray[np.bool_]]:
-    """Return the upright boxes around all solids, and which solids wheels and tracks may stand on.
+    """Return boxes parallel to the site's axes around all solids, and which solids are walkable.
 
-    As in PyBullet, a solid is walkable if any of the elements with its material is walkable.
+    Wheels and tracks may stand on walkable solids. As in PyBullet, a solid is
+    walkable if any of the elements with its material is walkable.
     """
     parts = [(e.material, s) for e in elements for s in e.solids]
     half = np.array([half_extents(solid) for _, solid in parts])

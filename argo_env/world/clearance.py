@@ -22,7 +22,7 @@ _MIN_VERTICAL_GAP = 0.05  # m: boxes with a larger vertical gap need no horizont
 
 @dataclass(frozen=True, eq=False)
 class SolidBounds:
-    """Upright bounding box, or many: arrays have the shape (3,) or (n, 3)."""
+    """Bounding box parallel to its frame's axes, or many: arrays of shape (3,) or (n, 3)."""
 
     low: NDArray[np.float64]
     """m, lowest corner"""
@@ -39,7 +39,7 @@ class SolidBounds:
         return np.asarray((self.high - self.low) / 2)
 
     @staticmethod
-    def box_around_all(boxes: "list[SolidBounds]") -> "SolidBounds":
+    def one_box_around_all(boxes: "list[SolidBounds]") -> "SolidBounds":
         """Return the smallest box that contains all the boxes."""
         low, high = [box.low for box in boxes], [box.high for box in boxes]
         return SolidBounds(np.min(low, axis=0), np.max(high, axis=0))
@@ -71,7 +71,7 @@ class _ClearPose:
     """m that any point of the robot may move up or down"""
 
     def covers(self, pose: BodyPose, full: SolidBounds, upper: SolidBounds) -> bool:
-        """Return True if a robot with these boxes is surely clear at `pose` too."""
+        """Return True if a robot with the same boxes is surely clear at `pose` too."""
         if self.full is not full or self.upper is not upper:
             return False
         clear_pose = self.pose
@@ -167,11 +167,11 @@ def _radius(box: SolidBounds) -> float:
 
 
 def _gaps(solids: SolidBounds, pose: BodyPose, box: SolidBounds) -> tuple[float, float]:
-    """Return the least horizontal and vertical gaps (m) of a level robot's box to upright boxes.
+    """Return the least horizontal and vertical gaps (m) of a level robot's box to solids' boxes.
 
-    Upright boxes with a vertical gap of at least _MIN_VERTICAL_GAP count for the vertical one, all
-    others for the horizontal one, which is less than 0 if boxes overlap. A gap for which no box
-    counts is _GATHER_RANGE.
+    The solids' boxes are parallel to the site's axes. Those with a vertical gap of at least
+    _MIN_VERTICAL_GAP count for the vertical one, all others for the horizontal one, which is less
+    than 0 if boxes overlap. A gap for which no box counts is _GATHER_RANGE.
     """
     low, high = solids.low[:, 2], solids.high[:, 2]
     up = np.maximum(low - (pose.z + box.high[2]), (pose.z + box.low[2]) - high)
@@ -194,7 +194,7 @@ def _gaps(solids: SolidBounds, pose: BodyPose, box: SolidBounds) -> tuple[float,
 
 
 def _gaps_tilted(solids: SolidBounds, pose: BodyPose, box: SolidBounds) -> tuple[float, float]:
-    """Return the least gap (m) between a tilted robot's box and upright boxes, twice.
+    """Return the least gap (m) between a tilted robot's box and the solids' boxes, twice.
 
     It is less than 0 if boxes overlap. The gap is one in any direction, so it stands for the
     horizontal and the vertical one of `_gaps`.

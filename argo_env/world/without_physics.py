@@ -37,7 +37,7 @@ class AnyWorld(Protocol):
         """Return the name of the first obstacle between two points (m); None if there is none."""
         ...
 
-    def displace(self, checkpoint_id: int, placement: Placement) -> None:
+    def set_displacement(self, checkpoint_id: int, placement: Placement) -> None:
         """Set the displacement of a checkpoint from its planned pose, instead of an earlier one."""
         ...
 
@@ -64,7 +64,7 @@ class WorldWithoutPhysics:
     def show_value(self, checkpoint_id: int, value: float) -> None:
         """Do nothing: this world has no instruments."""
 
-    def displace(self, checkpoint_id: int, placement: Placement) -> None:
+    def set_displacement(self, checkpoint_id: int, placement: Placement) -> None:
         """Set the displacement of a checkpoint from its planned pose, instead of an earlier one.
 
         This does not check that there is such a checkpoint.

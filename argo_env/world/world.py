@@ -102,8 +102,9 @@ class World(Bodies):
     def set_drive_touches(self, touches: tuple[Touch, ...]) -> None:
         """Set the contacts that a drive with forces has had since the last call.
 
-        The next call of `touches` returns these contacts, the later calls do not. After the first
-        call of this function, `touches` itself looks for contacts of the arm only, for good.
+        They replace those of an earlier call. The next call of `touches` returns them, the later
+        calls do not. After the first call of this function, `touches` itself looks for contacts of
+        the arm only, for good.
         """
         self._drive_touches = touches
 
@@ -111,7 +112,7 @@ class World(Bodies):
         """Return the robot's contacts, except of its tracks and flippers with walkable ground.
 
         After a call of `set_drive_touches`, they are the present ones of the arm, and those that
-        were set since the last call of this function.
+        were set last, unless an earlier call of this function has returned them.
         """
         touches = []
         for contact in self._contacts():
@@ -166,11 +167,11 @@ class World(Bodies):
         return contacts
 
     def arm_obstacle(self, positions: Mapping[str, float], clearance: float) -> str | None:
-        """Return the name of an obstacle nearer than `clearance` (m) to the arm at `positions`.
+        """Return the name of any obstacle nearer than `clearance` (m) to the arm at `positions`.
 
-        These are positions of joints (rad) by name; after the check, all joints are where they were
-        before. An obstacle is an element, a checkpoint, a screen, or another link of the robot.
-        Returns None if there is none.
+        These are positions of joints (rad) by name; other joints stay where they are. After the
+        check, all joints are where they were before. An obstacle is an element, a checkpoint, a
+        screen, or another link of the robot. Returns None if there is none.
         """
         names = list(positions)
         before = dict(zip(names, self.joint_positions(names), strict=True))
@@ -223,7 +224,7 @@ class World(Bodies):
             )
         return contacts
 
-    def surface_heights_below(
+    def surface_or_ray_end_heights(
         self, points: NDArray[np.float64], from_heights: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """Return the height (m) of the first solid under each of `points` (x and y), shape (n, 2).
@@ -253,8 +254,8 @@ class World(Bodies):
     ) -> tuple[list[str | None], NDArray[np.float64]]:
         """Return materials and outward normals of the surfaces seen from `origin` towards `ends`.
 
-        The shapes of `ends` and of the normals are (n, 3). The material is None where there is
-        nothing, and "" for checkpoints and screens.
+        The shapes of `ends` and of the normals are (n, 3). Where there is nothing, the material
+        is None and the normal is zero. The material is "" for checkpoints and screens.
         """
         hits = self._rays(origin, ends)
         site = self._site_body

@@ -276,5 +276,5 @@ def _compare(
 
 
 def _folder_name(name: str) -> str:
-    """Return the name of an evaluation as the name of a folder."""
+    """Return the name of a folder: that of an evaluation, with `-` for unsuitable characters."""
     return "".join(letter if letter.isalnum() or letter in "-_." else "-" for letter in name)

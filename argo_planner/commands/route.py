@@ -197,7 +197,10 @@ def add_options(
 
 
 def _validate_option(name: str, option: str, value: object) -> Requirements:
-    """Return the requirements of one option."""
+    """Return requirements with `value` in the field `name`; raise Invalid if it is wrong.
+
+    `option` is the text that was given for the option, for the message.
+    """
     try:
         return Requirements.model_validate({name: value})
     except ValidationError as error:

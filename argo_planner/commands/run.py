@@ -73,7 +73,10 @@ class _Outputs:
         return self.journal or (self.report and self.report / JOURNAL)
 
     def require_valid(self, *inputs: Path | str | None) -> None:
-        """Raise ArgoError if an output can't be written or is one of the inputs."""
+        """Raise ArgoError if an output can't be written, exists or is one of the inputs.
+
+        With `--force`, it may exist. None among the inputs does not count.
+        """
         if not self.force:
             require_no_unfinished_run(self.report, self.journal)
         check_outputs(
@@ -247,7 +250,7 @@ def _times_text(record: RunRecord, loading: float, running: float) -> str:
 
 
 def _require_no_spec_options(context: typer.Context, source: Path) -> None:
-    """Raise Invalid if an option is given although the spec of a run sets its value."""
+    """Raise Invalid if an option is given that is set by the spec of a run, which `source` is."""
     for name in given_options(context):
         if name in _SPEC_OPTIONS:
             raise Invalid(

@@ -101,7 +101,7 @@ class Scene:
         world.place_robot(pose)
         world.set_arm_degrees(world.robot.arm_raised)
         world.light = float(rng.uniform(0.3, 1.0))
-        world.displace(planned.id, placement)
+        world.set_displacement(planned.id, placement)
         scale = planned.range
         world.show_value(planned.id, scale.low + share * (scale.high - scale.low))
         screen = None
@@ -122,7 +122,7 @@ class Scene:
                 reason = str(failure).split(": ", 1)[1]
             seconds = time.perf_counter() - begun
         finally:
-            world.displace(planned.id, AS_PLANNED)
+            world.set_displacement(planned.id, AS_PLANNED)
             if screen is not None:
                 world.remove_screen(screen)
         return Trial(

@@ -71,7 +71,7 @@ def find_flight(world: World, motion: Motion, gauge: float) -> Flight:
     above = high.z + share * (low.z - high.z) + 0.5
     left = gauge / 2 * np.array([-ahead[1], ahead[0]])
     points = np.array([high.x, high.y]) + along[:, None] * np.array(ahead) + left
-    z = world.surface_heights_below(points, above)
+    z = world.surface_or_ray_end_heights(points, above)
     on_top = np.flatnonzero(z > high.z - _STEP)
     at_foot = np.flatnonzero(z > low.z + _STEP)
     top = float(along[on_top[-1]]) if len(on_top) else 0.0

@@ -149,13 +149,15 @@ def _apply_list_change(items: Sequence[Item], change: ListChange[Item]) -> tuple
     known.update((item_name(item), item) for item in change.put)
     moved = {name for name, _ in change.placed}
     unmoved = [item_name(i) for i in items if item_name(i) in known and item_name(i) not in moved]
-    order = insert_placed(unmoved, change.placed)
+    order = insert_after_predecessors(unmoved, change.placed)
     if len(order) != len(known):
         raise KeyError("this is a change of another mission")
     return tuple(known[name] for name in order)
 
 
-def insert_placed(unmoved: Sequence[str], placed: Sequence[tuple[str, str | None]]) -> list[str]:
+def insert_after_predecessors(
+    unmoved: Sequence[str], placed: Sequence[tuple[str, str | None]]
+) -> list[str]:
     """Return the unmoved names with the placed ones inserted, one after the other, in linear time.
 
     `placed` has names with their predecessors. Each name is inserted directly after its

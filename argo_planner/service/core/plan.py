@@ -154,7 +154,10 @@ class MissionPlan:
         return self._with_revision(revision, mission)
 
     def plan_before(self, revision: int) -> "MissionPlan":
-        """Return the plan as it was before a revision of its history, with an empty history."""
+        """Return the plan as it was before a revision of its history, with an empty history.
+
+        This does not check that the revision is in the history.
+        """
         mission = self._mission_before(revision)
         return MissionPlan(mission, revision - 1)
 

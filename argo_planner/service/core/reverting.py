@@ -8,7 +8,7 @@ from argo_compiler.il import Group, Mission, Reaction, Task
 from argo_planner.service.core.change import (
     HEADER,
     LISTS,
-    insert_placed,
+    insert_after_predecessors,
     item_name,
     new_and_moved_names,
 )
@@ -106,7 +106,7 @@ class _ListMerge:
                 ordered.add(name)
             if name in ordered:
                 last = name
-        return tuple(items[name] for name in insert_placed(unmoved, placed))
+        return tuple(items[name] for name in insert_after_predecessors(unmoved, placed))
 
     def _has_moved(self, name: str) -> bool:
         """Return True if the item has another predecessor now than after the change.

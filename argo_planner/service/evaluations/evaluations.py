@@ -87,7 +87,7 @@ class EvaluationFolder:
                     )
         return sorted(evaluations, key=lambda evaluation: evaluation.job.begun)
 
-    def with_stored_rows(self, job: EvaluationJob) -> EvaluationJob:
+    def with_stored_results(self, job: EvaluationJob) -> EvaluationJob:
         """Return an evaluation that was ended early, with the results of its rows on disk.
 
         Returns the job unchanged if there are no rows or they can't be read.
@@ -131,7 +131,7 @@ class EvaluationFolder:
             return evaluation
         why = "the service ended before all was run"
         job = evaluation.job.model_copy(update={"state": JobState.INTERRUPTED, "problem": why})
-        return evaluation.model_copy(update={"job": self.with_stored_rows(job)})
+        return evaluation.model_copy(update={"job": self.with_stored_results(job)})
 
 
 class Evaluations:
@@ -212,7 +212,7 @@ class Evaluations:
             job = self.find(id)
             if job.state is JobState.RUNNING:
                 raise Conflict(f"evaluation {id} is running: cancel it first")
-            self._jobs.discard_ended_job(id)
+            self._jobs.discard_if_present(id)
             await asyncio.to_thread(self._folder.delete, id)
 
     async def delete_for_mission(self, plan: str) -> None:
@@ -295,7 +295,7 @@ class Evaluations:
             assert isinstance(job, EvaluationJob)
             async with self._turn:
                 if job.state in (JobState.CANCELLED, JobState.INTERRUPTED):
-                    job = await asyncio.to_thread(self._folder.with_stored_rows, job)
+                    job = await asyncio.to_thread(self._folder.with_stored_results, job)
                     self._jobs.replace_unless_discarded(job)
                 try:
                     ended = StoredEvaluation(order=evaluation.order, job=job)

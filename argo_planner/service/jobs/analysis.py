@@ -39,8 +39,9 @@ class Analyst:
     async def analyse_revision(self, mission: Mission, revision: int) -> AnalysisFound:
         """Analyse a mission, and return the analysis or the problem that prevented it.
 
-        The result has one or the other; no error is raised. `revision` is the number of the
-        mission's revision, which the result repeats. Analyses run one after the other.
+        The result has one or the other; no error is raised, except after `close`. `revision` is the
+        number of the mission's revision, which the result repeats. Analyses run one after the
+        other.
         """
         for _ in range(2):  # the second time in a new process
             pool = self._pool
@@ -58,7 +59,7 @@ class Analyst:
         return AnalysisFound(revision=revision, problem=problem)
 
     def close(self) -> None:
-        """Kill the process; an `analyse_revision` under way returns no result."""
+        """Kill the process; an `analyse_revision` under way then raises an error."""
         self._pool.shutdown(wait=True, kill_workers=True)
 
 

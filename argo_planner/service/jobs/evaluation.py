@@ -135,10 +135,11 @@ def evaluate_mission(
 ) -> EvaluationStanding:
     """Execute the runs that have no row in the folder yet, and return the final results.
 
-    It ends before all runs are executed if its requirements are decided or the rates are known to
-    its width. `report` is called with the progress. In either case, the folder then has the rows,
-    the report and, if `spec` has no obstacles, the specs of the failed runs. Raises ArgoError if
-    something can't be run at all, or the folder can't be written.
+    It ends before all runs are executed if the requirements of `spec` are decided, or the rates
+    are known to the width that `spec` asks for. `report` is called with the progress. At the end,
+    early or not, the folder has the rows, the report and, if `spec` has no obstacles, the specs of
+    the failed runs. Raises ArgoError if something can't be run at all, or the folder can't be
+    written.
     """
     from argo_env.evaluation.report.page import write_evaluation_report  # matplotlib
 

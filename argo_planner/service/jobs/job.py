@@ -63,8 +63,8 @@ class OrderJob(_Job):
         """Return a copy of the job with its result, in the state `done`."""
         return self.model_copy(update={"state": JobState.DONE, "found": found})
 
-    def as_sent_to_members(self) -> "OrderJob":
-        """Return what members of the mission's room are sent: the job without the new mission."""
+    def without_new_mission(self) -> "OrderJob":
+        """Return a copy without the new mission, which members of the mission's room are sent."""
         found = self.found and self.found.model_copy(update={"mission": None})
         return self.model_copy(update={"found": found})
 
@@ -91,8 +91,8 @@ class EvaluationJob(_Job):
         """Return a copy of the job with its final results, in the state `done`."""
         return self.model_copy(update={"state": JobState.DONE, "standing": standing})
 
-    def as_sent_to_members(self) -> "EvaluationJob":
-        """Return what members of the mission's room are sent: the whole job."""
+    def without_new_mission(self) -> "EvaluationJob":
+        """Return the job itself: it has no new mission. Members of the room are sent it."""
         return self
 
     def without_result(self) -> "EvaluationJob":

@@ -60,14 +60,15 @@ class Jobs:
     def start(self, job: Job, work: JobProcess[Any], on_end: OnEnd = _do_nothing) -> Job:
         """Start the work of a job, and return the job.
 
-        `on_end` is called after the work is done, has failed or was cancelled, not after `close`.
+        `on_end` is called after the work is done, has failed or was cancelled, not after
+        `kill_running`.
         """
         task = asyncio.get_running_loop().create_task(self._watch(job.id, work))
         self._running[job.id] = _RunningJob(work, task, on_end)
         return self._store(job)
 
     async def cancel_running(self, id: str) -> Job:
-        """Cancel a running job, and return it in its last state.
+        """Cancel a running job, and return it as cancelled.
 
         Raises NotFound if there is no such job, Conflict if it has already ended.
         """
@@ -86,11 +87,11 @@ class Jobs:
         if job.id in self._jobs:
             self._store(job)
 
-    def discard_ended_job(self, id: str) -> None:
-        """Remove the ended job with this id, if there is one."""
+    def discard_if_present(self, id: str) -> None:
+        """Remove the job with this id, which has ended, if there is one."""
         self._jobs.pop(id, None)
 
-    async def close(self) -> None:
+    async def kill_running(self) -> None:
         """End all running jobs at once; neither their state changes nor is `on_end` called."""
         all_running, self._running = [*self._running.values()], {}
         for running in all_running:

@@ -52,7 +52,7 @@ class OrderSearches:
         )
         return job
 
-    def find_result(self, id: str) -> tuple[OrderJob, Mission]:
+    def job_and_new_mission(self, id: str) -> tuple[OrderJob, Mission]:
         """Return the job of a search, and the mission in the order that it has found.
 
         Raises NotFound if there is no such job or it is no search, Conflict if it has found no

@@ -53,7 +53,10 @@ class Mailbox:
         self._changed.set()
 
     def post_newest(self, kind: str, message: str) -> None:
-        """Add a message that replaces the waiting message of the same `kind`, if there is one."""
+        """Add a message that replaces the waiting message of the same `kind`, if there is one.
+
+        It takes the place of that message. Does nothing if the mailbox is closed.
+        """
         if self._closed is None:
             self._newest[kind] = message
             self._changed.set()

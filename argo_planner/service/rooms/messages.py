@@ -25,7 +25,8 @@ class Findings(Model):
     """number of further diagnostics, which are left out"""
 
     @staticmethod
-    def from_diagnostics(diagnostics: tuple[Diagnostic, ...]) -> "Findings":
+    def from_first_diagnostics(diagnostics: tuple[Diagnostic, ...]) -> "Findings":
+        """Return the first MOST_DIAGNOSTICS diagnostics, and the number of the others."""
         first = diagnostics[:MOST_DIAGNOSTICS]
         return Findings.model_construct(diagnostics=first, more=len(diagnostics) - len(first))
 

@@ -230,7 +230,7 @@ class PlanRoom:
 
     def publish_job(self, job: Job) -> None:
         """Send a job to all members; it replaces an earlier state of the job that still waits."""
-        text = JobTold.model_construct(job=job.as_sent_to_members()).model_dump_json()
+        text = JobTold.model_construct(job=job.without_new_mission()).model_dump_json()
         for _, mailbox in self._members.values():
             mailbox.post_newest(job.id, text)
 
@@ -243,17 +243,17 @@ class PlanRoom:
         if self._members.pop(client, None) is not None:
             self._broadcast(MembersTold(members=self._member_list()))
 
-    async def close(self, move_file: Callable[[], None] | None = None) -> None:
+    async def close(self, move_file_first: Callable[[], None] | None = None) -> None:
         """Wait for the change under way, then disconnect all members and close the file.
 
-        `move_file`, if given, is called first to move the file away. If it raises an error, the
-        room stays open and the error is passed on.
+        `move_file_first`, if given, is called after the wait and before all else, to move the file
+        away. If it raises an error, the room stays open and the error is passed on.
         """
         async with self._turn:
             if self._closed:
                 return
-            if move_file is not None:
-                await asyncio.to_thread(move_file)
+            if move_file_first is not None:
+                await asyncio.to_thread(move_file_first)
                 self._broadcast(DeletedTold())
             self.close_at_once()
 
@@ -308,7 +308,7 @@ class PlanRoom:
             raise Conflict("the mission was closed or deleted in the meantime: open it again")
 
     def _check(self) -> Findings:
-        return Findings.from_diagnostics(check(self.document.plan.mission, self._catalog))
+        return Findings.from_first_diagnostics(check(self.document.plan.mission, self._catalog))
 
     def _schedule_analysis(self) -> None:
         if self._analyst is None:

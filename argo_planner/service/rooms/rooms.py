@@ -89,10 +89,10 @@ class PlanRooms:
             await asyncio.to_thread(self._folder.restore, id)
         return await self.open(id)
 
-    async def destroy(self, id: str) -> None:
+    async def delete_from_bin(self, id: str) -> None:
         """Delete a plan in the bin permanently; raises NotFound if the bin does not have it."""
         async with self._turn:
-            await asyncio.to_thread(self._folder.destroy, id)
+            await asyncio.to_thread(self._folder.delete_from_bin, id)
 
     async def close(self) -> None:
         """Close all rooms and the folder."""

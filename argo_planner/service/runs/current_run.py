@@ -37,7 +37,9 @@ class CurrentRun:
         self._followers: dict[str, Mailbox] = {}
         self.book = RequestBook("")
 
-    def replace_run(self, stored: StoredRun, requests: Iterable[RequestState] = ()) -> None:
+    def replace_run_silently(
+        self, stored: StoredRun, requests: Iterable[RequestState] = ()
+    ) -> None:
         """Make another run the current one, with an empty log and its earlier requests.
 
         The run must be on disk already. `load_missing_entries` fills the log. Followers stay, and
@@ -79,13 +81,13 @@ class CurrentRun:
         """Number of entries in the log."""
         return len(self._entries)
 
-    def subscribe(self, client: str, after_first: int | None) -> Mailbox:
+    def subscribe(self, client: str, skip_first: int | None) -> Mailbox:
         """Add a follower with the id `client`, and return its mailbox.
 
-        The mailbox gets the state of the run, then the entries after the first `after_first` ones
+        The mailbox gets the state of the run, then its entries without the first `skip_first` ones
         (None: all entries), then all further messages.
         """
-        mailbox = Mailbox([self._state_text(), *self._entries[after_first or 0 :]])
+        mailbox = Mailbox([self._state_text(), *self._entries[skip_first or 0 :]])
         self._followers[client] = mailbox
         return mailbox
 
@@ -174,7 +176,7 @@ class CurrentRun:
             _log.error("run %s: its state could not be stored: %s", id, error)
 
     def _publish_request(self, request: RequestState) -> None:
-        """Post the state of a request; if it is over, post the run state that it led to first."""
+        """Post the state of a request; if it is over, first post the state of the run."""
         message = RequestTold.model_construct(run=self.stored.state.id, request=request)
         texts = [self._state_text()] if request.over else []
         self._post(*texts, message.model_dump_json())

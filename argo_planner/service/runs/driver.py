@@ -134,11 +134,11 @@ class SupervisedRun:
         self._skipped = [*skipped] if simulation.taken_over else []
 
     @property
-    def skipped(self) -> tuple[str, ...]:
+    def marked_to_skip(self) -> tuple[str, ...]:
         """Tasks whose next visit is left out when the robot is given back."""
         return tuple(self._skipped)
 
-    def skip(self, name: str) -> None:
+    def mark_to_skip(self, name: str) -> None:
         """Mark the next visit of a task as skipped; it is left out when the robot is given back.
 
         Raises Conflict if no person has the robot or the task is already skipped, NotFound if the
@@ -162,15 +162,16 @@ class SupervisedRun:
         """Return the tasks that the person has done and those skipped, for giving the robot back.
 
         `mission` is the mission with which the run continues, which may have been edited. A skipped
-        task is left out if `mission` has a task of the same name with another action, checkpoint or
-        pose, but not if it has no task of this name. Tasks that were done are never left out.
+        task is missing from the result if `mission` has a task of the same name with another
+        action, checkpoint or pose, but not if it has no task of this name. Tasks that were done are
+        always in it.
         """
         old = self._simulation.spec.mission
         names = (name for name in self._skipped if _is_same(old.task(name), mission.task(name)))
         skipped = (ByHand(task=name, skipped=True) for name in names)
         return (*self._simulation.done_by_hand, *skipped)
 
-    def clear_skipped(self) -> None:
+    def clear_marks_to_skip(self) -> None:
         """Remove all marks of skipped tasks, after the robot was given back."""
         self._skipped.clear()
 
@@ -249,7 +250,7 @@ class RunDriver:
         return self._pace.speed
 
     @property
-    def requests(self) -> tuple[RequestState, ...]:
+    def pending_and_latest_requests(self) -> tuple[RequestState, ...]:
         """Pending requests and the latest settled ones, in the order in which they came."""
         return self._book.pending_and_latest()
 
@@ -348,12 +349,12 @@ class RunDriver:
                 "reaction": machine.reaction,
                 "rounds": dict(machine.rounds),
                 "tasks": tuple(TaskCount(**dict(tally)) for tally in progress.tallies),
-                "skipped": self._supervised.skipped,
+                "skipped": self._supervised.marked_to_skip,
                 "readings": tuple(self._reporter.readings.values()),
                 "charge": self._charge(),
                 "silent_since": simulation.silent_since,
                 "entries": self._reporter.count,
-                "requests": self.requests,
+                "requests": self.pending_and_latest_requests,
                 "speed": self._pace.speed,
                 "headline": simulation.record().headline if self.over else None,
             }
@@ -372,13 +373,13 @@ class RunDriver:
             case asked.ChangeSpeed(speed=speed):
                 self._pace.set_speed(speed, simulation.now, self._clock())
             case asked.SkipTask(task=name):
-                self._supervised.skip(name)
+                self._supervised.mark_to_skip(name)
             case asked.GiveRobotBack():
                 if not simulation.taken_over:
                     raise Conflict("nobody has the robot, so that it can't be given back")
                 by_hand = self._supervised.done_then_skipped(simulation.spec.mission)
                 simulation.handle(GiveBack(by_hand))
-                self._supervised.clear_skipped()
+                self._supervised.clear_marks_to_skip()
                 return lambda: simulation.ended or not simulation.taken_over
             case asked.GoOnEdited(mission=mission, revision=revision):
                 if not simulation.taken_over:
@@ -429,7 +430,7 @@ class RunDriver:
         return lambda: True
 
     def _settle_requests(self) -> None:
-        """Settle the requests that have taken effect, and all of them if the run has ended."""
+        """Settle the requests that have taken effect; the others fail if the run has ended."""
         settled = []
         for id, has_effect in [*self._effects.items()]:
             progress, reason = RequestProgress.CONFIRMED, None

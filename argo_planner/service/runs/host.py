@@ -47,7 +47,7 @@ class RobotConnection:
     def __init__(self) -> None:
         self._mailbox: Mailbox | None = None
 
-    def connect(self) -> Mailbox:
+    def replace_connection(self) -> Mailbox:
         """Begin a new connection, close an earlier one, and return the mailbox of the new one."""
         self.close("the robot has connected again")
         self._mailbox = Mailbox()
@@ -133,7 +133,7 @@ class RunHost:
                 return
             current, last = self._current, runs[0]
             file = self._folder.request_file(last.state.id)
-            current.replace_run(last, await self._disk.run(file.load_requests))
+            current.replace_run_silently(last, await self._disk.run(file.load_requests))
             await self._handle_loss("the service has ended during the run", may_stop=True)
             if self._after_restart is AfterRestart.GO_ON and (
                 current.stored.state.status is RunStatus.INTERRUPTED
@@ -172,7 +172,7 @@ class RunHost:
             stored = StoredRun(order=order, state=first)
             await self._disk.run(self._folder.create_run, stored)
             self._worker = None  # the process of the earlier run sends nothing that matters now
-            self._current.replace_run(stored)
+            self._current.replace_run_silently(stored)
             await self._start_process()
             return first
 
@@ -269,13 +269,13 @@ class RunHost:
         journal = await self._disk.run(self._folder.last_journal, run)
         raise _missing_report_error(await self.read_state(run), file, journal, is_writing)
 
-    def subscribe(self, client: str, after_first: int | None = None) -> Mailbox:
+    def subscribe(self, client: str, skip_first: int | None = None) -> Mailbox:
         """Add a follower of the robot's runs with the id `client`, and return its mailbox.
 
-        The mailbox gets the state of the current run, its entries after the first `after_first`
+        The mailbox gets the state of the current run, its entries without the first `skip_first`
         ones (None: all entries), then all further messages.
         """
-        return self._current.subscribe(client, after_first)
+        return self._current.subscribe(client, skip_first)
 
     def unsubscribe(self, client: str) -> None:
         """Remove the follower with this id, if there is one."""
@@ -288,7 +288,7 @@ class RunHost:
         has meanwhile connected again, so that `mailbox` is not that of its present connection.
         """
         if self._worker is not None and self.robot.has_mailbox(mailbox):
-            self._worker.queue_or_drop_robot_message(message)
+            self._worker.queue_unless_half_full(message)
 
     async def close(self) -> None:
         """Kill all processes and end all connections; the run can be resumed from its journal."""

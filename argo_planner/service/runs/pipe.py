@@ -33,7 +33,7 @@ class WorkerPipe:
         self._pipe.send(message)
 
     def wait_for_message(self, timeout: float) -> None:
-        """Wait until a message arrives, at most `timeout` s; not at all if a request is waiting."""
+        """Wait for any message, at most `timeout` s; not at all if a request is to be taken."""
         if not self._requests:
             self._receive(timeout)
 

@@ -73,7 +73,7 @@ class RunProcess:
         except queue.Full:
             raise self._overload_error() from None
 
-    def queue_or_drop_robot_message(self, message: str) -> None:
+    def queue_unless_half_full(self, message: str) -> None:
         """Queue a message of the remote robot for the process; drop it if the queue is half full.
 
         The rest of the queue is left for people's requests. The robot repeats a dropped message, as
@@ -110,7 +110,7 @@ class RunProcess:
     def kill_and_wait(self) -> None:
         """Kill the process, and wait until the reading thread has called `on_exit` and ended.
 
-        The caller must not block the thread in which the callbacks do their work.
+        Call this in another thread than the one in which the callbacks do their work.
         """
         self._process.kill()
         self._reader.join()

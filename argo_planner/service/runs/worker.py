@@ -223,6 +223,6 @@ class _RunWorker:
         limit = spec.mission.max_duration
         update = {"revision": revision, "max_duration": limit, "speed": driver.speed, "skipped": ()}
         self._state = self._state.model_copy(update=update)
-        new_driver, new_simulation = self._begin(journal, stack, driver.requests)
+        new_driver, new_simulation = self._begin(journal, stack, driver.pending_and_latest_requests)
         new_driver.confirm_requests_to_continue()
         return new_driver, new_simulation

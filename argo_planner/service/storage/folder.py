@@ -120,7 +120,7 @@ class PlanFolder(Closing):
         """
         self._move(self._deleted_path(id), self._path(id), id)
 
-    def destroy(self, id: str) -> None:
+    def delete_from_bin(self, id: str) -> None:
         """Delete a plan in the bin permanently; raises NotFound if the bin does not have it."""
         path = self._deleted_path(id)
         _require_file(path, id)

@@ -10,7 +10,7 @@ from argo_compiler.base.model import Model
 from argo_env.files.checked_lines import checked_object
 from argo_planner.service.storage.plan_file import (
     parse_first_line,
-    read_plan_bytes,
+    read_plan_bytes_or_raise,
     replaced_file_path,
 )
 
@@ -36,9 +36,9 @@ def read_plan_summary(path: Path) -> PlanSummary:
     there is no such file.
     """
     try:
-        summary = _summarize(path.stem, read_plan_bytes(path))
+        summary = _summarize(path.stem, read_plan_bytes_or_raise(path))
         if summary is None and os.path.exists(previous := replaced_file_path(path)):
-            summary = _summarize(path.stem, read_plan_bytes(previous))
+            summary = _summarize(path.stem, read_plan_bytes_or_raise(previous))
     except NotFound:
         raise
     except ArgoError as error:

@@ -162,11 +162,11 @@ def open_plan_file(path: Path) -> PlanFile:
         Invalid: Nothing in it can be read, or another version of Argo has written it.
         Unavailable: It can't be opened or written.
     """
-    content = read_plan_bytes(path)
+    content = read_plan_bytes_or_raise(path)
     parsed = _parse(content)
     previous = replaced_file_path(path)
     if parsed is None and os.path.exists(previous):
-        parsed_previous = _parse(read_plan_bytes(previous))
+        parsed_previous = _parse(read_plan_bytes_or_raise(previous))
         if parsed_previous is not None:
             lost = "its first line is damaged: this is an earlier state of the mission"
             return _recover(path, parsed_previous, lost)
@@ -345,7 +345,7 @@ def _open(path: Path, flags: int = _FLAGS) -> int:
         raise Unavailable(f"{path.name} can't be opened: {error.strerror}") from error
 
 
-def read_plan_bytes(path: Path) -> bytes:
+def read_plan_bytes_or_raise(path: Path) -> bytes:
     """Return the bytes of a plan's file.
 
     Raises NotFound if there is no such file, Unavailable if it can't be read, Invalid if it is too

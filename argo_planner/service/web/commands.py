@@ -90,8 +90,8 @@ async def write_script(
 
 
 @router.get("/reading", operation_id="read_back", response_model=MissionReading)
-async def read_sentences(service: Service, _: Viewer, id: PlanId) -> Response:
-    """Return the mission in plain sentences, by task; `text` is a script made from the mission."""
+async def read_plain_sentences(service: Service, _: Viewer, id: PlanId) -> Response:
+    """Return the mission in plain sentences, by task; the field `text` is a script made from it."""
     document = (await service.rooms.open(id)).document
     reading = await asyncio.to_thread(
         explain_mission, require_valid_mission(document, service.site), service.site
@@ -100,7 +100,7 @@ async def read_sentences(service: Service, _: Viewer, id: PlanId) -> Response:
 
 
 @router.get("/analysis", operation_id="read_analysis", response_model=AnalysisFound)
-async def read_analysis(service: Service, _: Viewer, id: PlanId) -> Response:
+async def read_last_analysis(service: Service, _: Viewer, id: PlanId) -> Response:
     """Return the last analysis and its revision; 404 until the mission has been analysed."""
     room = await service.rooms.open(id)
     if room.last_analysis is None:

@@ -35,7 +35,7 @@ class LimitedProtocol(HttpToolsProtocol):
     _timeout: asyncio.TimerHandle | None = None
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
-        """Wait for the first request; if there are too many connections, refuse one of them.
+        """Wait for the first request; if there are too many connections, refuse one with 503.
 
         That is the one that has waited longest for its first request, or this one if none waits.
         """
@@ -79,7 +79,7 @@ class LimitedProtocol(HttpToolsProtocol):
             self._timeout = None
 
 
-def raise_file_limit() -> None:
+def raise_file_limit_for_connections() -> None:
     """Raise the limit of open files to four per connection, as far as the hard limit allows."""
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     wanted = 4 * MAX_CONNECTIONS

@@ -98,7 +98,7 @@ class Guard:
                 await _refuse(problem_from_error(_too_large(scope)), scope, receive, send)
 
     def _check_origin(self, scope: Scope, headers: Headers) -> Problem | None:
-        """Return a problem if the host, the origin or the fetching site is not allowed."""
+        """Return a problem if the header Host, Origin or Sec-Fetch-Site is not allowed."""
         hosts = headers.getlist("host")
         name = hosts[0].rpartition(":")[0] if hosts and _has_port(hosts[0]) else "".join(hosts)
         if len(hosts) != 1 or not (

@@ -110,7 +110,7 @@ async def accept_order(
 
     412 if the mission has changed since the search started, or since the revision in `If-Match`.
     """
-    job, mission = service.orders.find_result(id)
+    job, mission = service.orders.job_and_new_mission(id)
     room = await service.rooms.open(job.mission)
     command = ReplacePlan.model_construct(
         id=accepted.id, mission=mission, about="a suggested order"
@@ -123,9 +123,9 @@ async def accept_order(
 
 
 @router.get("/jobs/{id}/preview", operation_id="preview_job", response_model=PreviewedMission)
-async def preview_job(service: Service, _: Viewer, id: JobId) -> Response:
+async def preview_job_paths(service: Service, _: Viewer, id: JobId) -> Response:
     """Return the paths of the mission in the order that a search found; 409 until there is one."""
-    mission = service.orders.find_result(id)[1]
+    mission = service.orders.job_and_new_mission(id)[1]
     obstacles = service.obstacles.present.obstacles
     return json_response(
         await service.run_on_site(preview_mission, service.site, mission, obstacles)

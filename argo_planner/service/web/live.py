@@ -39,7 +39,7 @@ async def follow_mission(
     """
     service: PlanningService = socket.app.state.service
     visitor: Visitor = socket.scope["visitor"]
-    if not await accept_socket(socket, plan=id):
+    if not await accept_socket(socket, required_plan=id):
         return
     client = next_client_id()
     try:
@@ -64,22 +64,22 @@ def next_client_id() -> str:
 
 
 async def accept_socket(
-    socket: WebSocket, role: AccessRole = AccessRole.VIEW, plan: str | None = None
+    socket: WebSocket, role: AccessRole = AccessRole.VIEW, required_plan: str | None = None
 ) -> bool:
     """Accept a connection and return True, or refuse it with a problem and return False.
 
     Args:
         socket: The connection that a client has requested.
         role: Role that the client must have.
-        plan: Id of a mission plan that must exist; None: the feed is of no plan.
+        required_plan: Id of a mission plan that must exist; None: the feed is of no plan.
     """
     visitor: Visitor = socket.scope["visitor"]
     try:
         visitor.require(role)
         if getattr(socket.app.state, "sockets", 0) >= MAX_SOCKETS:
             raise Unavailable(f"{MAX_SOCKETS} pages are open already: close some of them")
-        if plan is not None:
-            await socket.app.state.service.rooms.open(plan)
+        if required_plan is not None:
+            await socket.app.state.service.rooms.open(required_plan)
     except ArgoError as error:
         await socket.send_denial_response(problem_response(problem_from_error(error)))
         return False

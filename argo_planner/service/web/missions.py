@@ -38,7 +38,7 @@ from argo_planner.service.web.requests import (
     Service,
     Viewer,
     created_response,
-    file_responses,
+    file_route_arguments,
     json_response,
     make_router,
     openapi_link,
@@ -181,7 +181,7 @@ async def rename_mission(
 async def duplicate_mission(
     service: Service, _: Planner, id: PlanId, given: JsonBody[NameGiven]
 ) -> Response:
-    """Create a mission with the present content of another one, without its revisions."""
+    """Create a copy of the present state of a mission, without its revisions and versions."""
     room = await service.rooms.open(id)
     return await _create(service, given.name, room.document.plan.mission)
 
@@ -220,7 +220,7 @@ async def restore_mission(service: Service, _: Planner, id: PlanId) -> Response:
 @router.delete("/bin/{id}", operation_id="destroy_mission", status_code=204)
 async def destroy_mission(service: Service, _: Planner, id: PlanId) -> Response:
     """Delete a mission in the bin for ever, with its evaluations."""
-    await service.rooms.destroy(id)
+    await service.rooms.delete_from_bin(id)
     await service.evaluations.delete_for_mission(id)
     delete_import_notes(service.folder, id)
     return Response(status_code=204)
@@ -229,7 +229,7 @@ async def destroy_mission(service: Service, _: Planner, id: PlanId) -> Response:
 @router.get(
     "/missions/{id}/export/{format}",
     operation_id="export_mission",
-    **file_responses(
+    **file_route_arguments(
         "the file, or a zip archive if the format has several files",
         "application/octet-stream",
         "application/zip",

@@ -104,7 +104,7 @@ def make_router(*tags: str, prefix: str = "/api") -> APIRouter:
     return APIRouter(prefix=prefix, tags=[*tags], dependencies=AUTHENTICATION, responses=problems)
 
 
-def file_responses(description: str, *media: str) -> dict[str, Any]:
+def file_route_arguments(description: str, *media: str) -> dict[str, Any]:
     """Return keyword arguments for a route that responds with a file of a type in `media`."""
     content = {one: {"schema": {"type": "string", "format": "binary"}} for one in media}
     responses = {200: {"description": description, "content": content}}

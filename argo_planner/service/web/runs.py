@@ -37,7 +37,7 @@ from argo_planner.service.web.requests import (
     Service,
     Viewer,
     created_response,
-    file_responses,
+    file_route_arguments,
     json_response,
     make_router,
     openapi_links,
@@ -189,7 +189,7 @@ async def list_entries(
 @router.get(
     "/runs/{run}/report/{file}",
     operation_id="read_report",
-    **file_responses("the file", "text/html", "application/json", "image/png"),
+    **file_route_arguments("the file", "text/html", "application/json", "image/png"),
 )
 async def read_run_report(
     service: Service, _: Viewer, run: RunId, file: Annotated[str, Path(max_length=40)]
@@ -206,7 +206,7 @@ async def read_run_report(
 @router.get(
     "/runs/{run}/pictures/{checkpoint}/{milliseconds}",
     operation_id="read_picture",
-    **file_responses("the picture", "image/png"),
+    **file_route_arguments("the picture", "image/png"),
 )
 async def read_picture(
     service: Service,
@@ -253,7 +253,7 @@ async def connect_robot(socket: WebSocket) -> None:
     service: PlanningService = socket.app.state.service
     if not await accept_socket(socket, AccessRole.OPERATE):
         return
-    mailbox = service.runs.robot.connect()
+    mailbox = service.runs.robot.replace_connection()
     try:
         await exchange_messages(
             socket, mailbox, lambda text: service.runs.receive_from_robot(mailbox, text)

@@ -24,7 +24,7 @@ from argo_planner.service.runs.host import AfterRestart, RunHost
 from argo_planner.service.storage.folder import PlanFolder
 from argo_planner.service.web.access import TokenBook
 from argo_planner.service.web.app import OpenService, make_app
-from argo_planner.service.web.connections import raise_file_limit, server_options
+from argo_planner.service.web.connections import raise_file_limit_for_connections, server_options
 from argo_planner.service.web.guard import Guard, GuardSettings
 from argo_planner.service.web.requests import PlanningService
 from argo_planner.service.world.obstacle_store import ObstacleStore
@@ -94,7 +94,7 @@ def make_service_opener(
             finally:
                 thread.shutdown(wait=False, cancel_futures=True)
                 await runs.close()
-                await jobs.close()
+                await jobs.kill_running()
                 await rooms.close()
         finally:
             analyst.close()
@@ -116,7 +116,7 @@ def listen(host: str, port: int) -> socket.socket:
 
 def serve(spec: ServiceSpec, listening: socket.socket) -> None:
     """Run the service at a listening socket; return after a signal has ended it."""
-    raise_file_limit()
+    raise_file_limit_for_connections()
     app = make_app(make_service_opener(spec.plans, spec.site, spec.after_restart, spec.foxglove))
     guard = Guard(app, spec.tokens, spec.guard)
     uvicorn.Server(uvicorn.Config(guard, **server_options())).run(sockets=[listening])

@@ -20,7 +20,7 @@ from argo_planner.service.web.requests import (
     PlanningService,
     Service,
     Viewer,
-    file_responses,
+    file_route_arguments,
     json_response,
     make_router,
 )
@@ -60,7 +60,7 @@ class WayAsked(Model):
 
 def _cached_file(media: str) -> dict[str, Any]:
     """Return the arguments of a route that responds with a file, or with 304 if it is unchanged."""
-    arguments = file_responses("the file", media)
+    arguments = file_route_arguments("the file", media)
     arguments["responses"][304] = {"description": "the client has the present file"}
     return arguments
 
@@ -101,7 +101,7 @@ async def read_checkpoint_mesh(
 @router.get(
     "/world/floors/{floor}/standing/{heading}", operation_id="read_standing", **_cached_file(MAP)
 )
-async def read_standing(
+async def read_standing_map(
     request: Request,
     service: Service,
     _: Viewer,

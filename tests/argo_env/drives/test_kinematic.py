@@ -132,7 +132,7 @@ def above_ground(simulation, poses):
     sides = [(-math.sin(p.yaw) * d, math.cos(p.yaw) * d) for p in poses for d in (-0.23, 0.23)]
     points = np.repeat([[p.x, p.y] for p in poses], 2, axis=0) + np.array(sides)
     below = np.repeat([p.z + 0.5 for p in poses], 2)
-    surface = simulation.surface_heights_below(points, below).reshape(-1, 2).max(axis=1)
+    surface = simulation.surface_or_ray_end_heights(points, below).reshape(-1, 2).max(axis=1)
     return np.array([p.z for p in poses]) - surface
 
 

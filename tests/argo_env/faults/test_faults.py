@@ -312,7 +312,7 @@ class TestChangedSite:
         points = np.array([[1.8, 4.9], [1.45, 4.9], [2.15, 4.9], [9.0, 1.6], [9.3, 1.6]])
         below = np.full(5, 3.3)
         with World(umad, robot, elements=site_with_faults(umad, resolved).elements) as world:
-            hollow, *rest = world.surface_heights_below(points, below).tolist()
+            hollow, *rest = world.surface_or_ray_end_heights(points, below).tolist()
             assert hollow < 2.4
             assert rest == pytest.approx([2.5, 2.5, 2.7, 2.5], abs=1e-3)
             assert world.site is umad

@@ -137,8 +137,8 @@ def test_a_checkpoint_that_is_moved_to_the_robot_is_touched(worlds, umad):
         assert [sorted_touches(world) for world in worlds] == [[], []]
     checkpoint = umad.checkpoints[0]
     x, y, z = checkpoint.position
-    call_both(worlds, "displace", checkpoint.id, Placement((8.35 - x, 1.6 - y, 12.7 - z)))
+    call_both(worlds, "set_displacement", checkpoint.id, Placement((8.35 - x, 1.6 - y, 12.7 - z)))
     usual_touches, all_touches = (sorted_touches(world) for world in worlds)
     assert usual_touches == all_touches != []
-    call_both(worlds, "displace", checkpoint.id, Placement())
+    call_both(worlds, "set_displacement", checkpoint.id, Placement())
     assert [sorted_touches(world) for world in worlds] == [[], []]

@@ -108,20 +108,20 @@ def test_heights(simulation):
     points = np.array([[8.0, 1.6], [8.0, -2.0], [1.9, 6.0], [0.85, 3.65], [4.0, 6.0]])
     below = np.array([1.0, 1.0, 3.0, 1.0, 12.0])
     # The slab, the gravel, floor 2, the first tread, and the void above all vessels' tops.
-    heights = simulation.surface_heights_below(points, below)
+    heights = simulation.surface_or_ray_end_heights(points, below)
     assert heights == pytest.approx([0.0, -0.03, 2.5, 0.178571, 10.0], abs=1e-4)
 
 
 def test_heights_of_more_points_than_a_batch_holds(simulation):
     points = np.tile([[8.0, 1.6], [8.0, -2.0]], (10_000, 1))
-    heights = simulation.surface_heights_below(points, np.ones(len(points)))
+    heights = simulation.surface_or_ray_end_heights(points, np.ones(len(points)))
     assert heights[::2] == pytest.approx(np.zeros(10_000), abs=1e-4)
     assert heights[1::2] == pytest.approx(np.full(10_000, -0.03), abs=1e-4)
 
 
 def test_heights_look_through_the_robot(simulation):
     simulation.place_robot(BodyPose(8.0, 1.6, 0.0, 0.0))
-    assert simulation.surface_heights_below(
+    assert simulation.surface_or_ray_end_heights(
         np.array([[8.0, 1.6]]), np.array([1.5])
     ) == pytest.approx(0.0)
 

@@ -149,15 +149,15 @@ def test_the_evaluation_of_a_mission_that_is_deleted_ends(service: Served) -> No
 def test_an_evaluation_that_is_resumed_while_its_end_is_stored_is_running(
     service: Served, id: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    original, is_reading, may_continue = EvaluationFolder.with_stored_rows, Event(), Event()
+    original, is_reading, may_continue = EvaluationFolder.with_stored_results, Event(), Event()
 
-    def with_stored_rows(folder: EvaluationFolder, job: EvaluationJob) -> EvaluationJob:
+    def with_stored_results(folder: EvaluationFolder, job: EvaluationJob) -> EvaluationJob:
         if not is_reading.is_set():
             is_reading.set()
             assert may_continue.wait(60)
         return original(folder, job)
 
-    monkeypatch.setattr(EvaluationFolder, "with_stored_rows", with_stored_rows)
+    monkeypatch.setattr(EvaluationFolder, "with_stored_results", with_stored_results)
     job = start_evaluation(service, id, worlds=10_000)
     wait_until(service, job, lambda read: read["standing"] is not None)
     with ThreadPoolExecutor() as people:

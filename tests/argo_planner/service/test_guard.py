@@ -8,7 +8,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection
 
-from argo_planner.service.web.connections import MAX_CONNECTIONS, raise_file_limit
+from argo_planner.service.web.connections import MAX_CONNECTIONS, raise_file_limit_for_connections
 from tests.argo_planner.service.served import ALL, Served, send_raw
 from tests.argo_planner.service.test_http import data, problem
 
@@ -269,7 +269,7 @@ def receive_all(page: ClientConnection) -> None:
 
 @pytest.mark.long
 def test_ten_thousand_connections_do_not_block_other_clients(service: Served) -> None:
-    raise_file_limit()
+    raise_file_limit_for_connections()
     host, _, port = service.address.partition(":")
     connections: list[socket.socket] = []
     try:

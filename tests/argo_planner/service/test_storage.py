@@ -169,7 +169,7 @@ def test_plans_are_moved_to_the_bin_and_restored(folder):
     with folder.open(id) as file:
         assert file.document == document
     folder.delete(id)
-    folder.destroy(id)
+    folder.delete_from_bin(id)
     assert folder.list_deleted() == []
     with pytest.raises(NotFound):
         folder.restore(id)
@@ -182,7 +182,7 @@ def test_no_file_outside_the_folder_is_opened(folder, tmp_path):
     plan_path(folder, id).symlink_to(elsewhere)
     assert folder.list_plans() == []
     for wrong in (id, "../elsewhere", "..", "", "a" * 12 + "/", "A" * 12, "\0" * 12):
-        for act in (folder.open, folder.delete, folder.restore, folder.destroy):
+        for act in (folder.open, folder.delete, folder.restore, folder.delete_from_bin):
             with pytest.raises(NotFound):
                 act(wrong)
     assert elsewhere.exists()

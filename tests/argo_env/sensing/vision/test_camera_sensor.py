@@ -33,7 +33,7 @@ def set_checkpoint(simulation, navigator, umad, robot):
         simulation.place_robot(pose)
         simulation.set_arm_degrees(robot.arm_raised)
         simulation.show_value(id, value)
-        simulation.displace(id, placement)
+        simulation.set_displacement(id, placement)
         simulation.light = light
         return pose
 
@@ -42,7 +42,7 @@ def set_checkpoint(simulation, navigator, umad, robot):
     simulation.light = 1.0
     simulation.set_arm_degrees(robot.arm_stowed)
     for id in ALLOWED:
-        simulation.displace(id, AS_PLANNED)
+        simulation.set_displacement(id, AS_PLANNED)
     for screen in screens:
         simulation.remove_screen(screen)
 

@@ -34,7 +34,7 @@ _BEST, _BOUND, _DOMINATED = "#1f5f99", "#b45309", "#64707c"  # colours
 _TICKS = (-20, -10, -5, -2, 0, 2, 5, 10, 20, 50)  # %
 
 
-def plot_ranking(results: Path, folder: Path) -> list[Path]:
+def plot_ranking(results_file: Path, folder: Path) -> list[Path]:
     """Plot processor time and gap to the best known routes of each policy, with the Pareto front.
 
     Returns the paths of the pictures in `folder`, one for each test set in the file `results`.
@@ -42,11 +42,11 @@ def plot_ranking(results: Path, folder: Path) -> list[Path]:
     """
     return [
         _plot_ranking(comparison, folder / f"ranking-{comparison.test_set}.png")
-        for comparison in read_comparisons(results)
+        for comparison in read_comparisons(results_file)
     ]
 
 
-def plot_gaps(results: Path, folder: Path) -> list[Path]:
+def plot_gaps(results_file: Path, folder: Path) -> list[Path]:
     """Draw box plots of the gap of each policy to the best known route of each instance.
 
     Returns the paths of the pictures in `folder`, one for each test set in the file `results`.
@@ -56,7 +56,7 @@ def plot_gaps(results: Path, folder: Path) -> list[Path]:
         _box_plot(
             comparison.test_set, _gaps(comparison), folder / f"gaps-{comparison.test_set}.png"
         )
-        for comparison in read_comparisons(results)
+        for comparison in read_comparisons(results_file)
     ]
 
 
@@ -107,18 +107,20 @@ def _draw_best_known(axes: Axes, comparison: PolicyComparison) -> None:
         axes.axhspan(-open_, 0.0, color=_BOUND, alpha=0.12, linewidth=0, label=label)
 
 
-def read_comparisons(results: Path) -> list[PolicyComparison]:
+def read_comparisons(results_file: Path) -> list[PolicyComparison]:
     """Return the comparisons in a `results.json` of `python -m baselines.evaluate --out DIR`.
 
     Raises ArgoError if it can't be read or is no such file.
     """
     try:
-        return [_to_comparison(data) for data in json.loads(results.read_text(encoding="utf-8"))]
+        return [
+            _to_comparison(data) for data in json.loads(results_file.read_text(encoding="utf-8"))
+        ]
     except OSError as error:
-        raise Unavailable(f"{results} can't be read: {error.strerror}") from None
+        raise Unavailable(f"{results_file} can't be read: {error.strerror}") from None
     except (ValueError, KeyError, TypeError):
         raise Invalid(
-            f"{results} has no results of `python -m baselines.evaluate --out DIR`: give the "
+            f"{results_file} has no results of `python -m baselines.evaluate --out DIR`: give the "
             "results.json that it writes"
         ) from None
 

@@ -90,10 +90,12 @@ def measure_paths(name: str, count: int) -> Navigator:
     on_the_ground = poses_of_states(navigator, random.choice(floors[0], size=2 * count))
     print("Single paths, median/95th percentile/worst, first and again:")
     measure_queries(navigator, "from docks and checkpoints to checkpoints", legs)
-    measure_queries(navigator, "random poses, floors drawn evenly", make_queries(spread))
-    measure_queries(navigator, "random states (most lie on open ground)", make_queries(anywhere))
+    measure_queries(navigator, "random poses, floors drawn evenly", pair_poses_into_queries(spread))
     measure_queries(
-        navigator, "random poses, both on the ground floor", make_queries(on_the_ground)
+        navigator, "random states (most lie on open ground)", pair_poses_into_queries(anywhere)
+    )
+    measure_queries(
+        navigator, "random poses, both on the ground floor", pair_poses_into_queries(on_the_ground)
     )
     compare_travel_times(navigator, random, min(12, count))
     for _ in range(2):
@@ -106,7 +108,7 @@ def measure_paths(name: str, count: int) -> Navigator:
     return navigator
 
 
-def make_queries(poses: list[Pose]) -> list[Query]:
+def pair_poses_into_queries(poses: list[Pose]) -> list[Query]:
     """Return queries from each pose at an even index to the pose after it."""
     return list(zip(poses[::2], poses[1::2], strict=True))
 

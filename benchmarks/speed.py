@@ -114,7 +114,7 @@ def compare_command_with_numpy(name: str, repeats: int) -> float:
     """Return the median ratio of a command's time to that of `import numpy`; see `startup`."""
     with tempfile.TemporaryDirectory() as folder:
         chosen = {name: startup.commands_and_max_ratios(Path(folder))[name]}
-        return startup.measure_ratios_to_numpy(chosen, repeats)[name][0]
+        return startup.measure_ratios_to_numpy(chosen, repeats)[name].median_ratio
 
 
 def prepare_import() -> Work:

@@ -16,10 +16,24 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 from statistics import median
+from typing import NamedTuple
 
 ROOT = Path(__file__).parents[1]
 SCRIPT = ROOT / "scenarios" / "umad" / "missions" / "mission_1.txt"
 AREAS = ("--start-area", "1", "--end-area", "2")
+
+
+class StartupRatios(NamedTuple):
+    """Times of a command, and of `import numpy` beside it."""
+
+    median_ratio: float
+    """median of the ratios of its time to that of the import, one for each repeat"""
+    shortest_ratio: float
+    """ratio of the shortest times"""
+    median_seconds: float
+    """median of its wall-clock times"""
+    max_ratio: float | None
+    """largest allowed ratio; None: any is allowed"""
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -64,19 +78,13 @@ def commands_and_max_ratios(folder: Path) -> dict[str, tuple[Sequence[str], floa
 
 def measure_ratios_to_numpy(
     commands: dict[str, tuple[Sequence[str], float | None]], repeats: int
-) -> dict[str, tuple[float, float, float, float | None]]:
-    """Time commands relative to `import numpy`.
-
-    Returns:
-        For each command, by name: the median of the ratios of its time to that of the import, one
-        for each repeat; the ratio of the shortest times; the median of its times in s; and the
-        largest allowed ratio, None without one.
-    """
+) -> dict[str, StartupRatios]:
+    """Time commands relative to `import numpy`; return the results by the commands' names."""
     numpy = (sys.executable, "-c", "import numpy")
     results = {}
     for name, (command, limit) in commands.items():
         pairs = [(time_command(numpy), time_command(command)) for _ in range(repeats + 1)][1:]
-        results[name] = (
+        results[name] = StartupRatios(
             median(own / base for base, own in pairs),
             min(own for _, own in pairs) / min(base for base, _ in pairs),
             median(own for _, own in pairs),

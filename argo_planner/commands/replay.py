@@ -58,7 +58,7 @@ def replay_command(
     with defer_first_signal() as interruption:
         Conclusion(
             report, render, RunStorage(recording=recording, force=force), interruption
-        ).write_and_show_results(record, found.site, load_robot(record.robot), took)
+        ).write_report_and_show_results(record, found.site, load_robot(record.robot), took)
 
 
 def _show_unfinished(recording: Recording) -> None:

@@ -110,4 +110,4 @@ def resume_command(
                 took = f"Reading the journal took {seconds:.1f} s."
             if recorded:
                 took += f"\n{escape(recorded)}"
-            conclusion.write_and_show_results(record, site.site, site.robot, took)
+            conclusion.write_report_and_show_results(record, site.site, site.robot, took)

@@ -238,7 +238,7 @@ def run_command(
         took = _times_text(record, loaded - started, time.monotonic() - loaded)
         if recorded:
             took += f"\n{escape(recorded)}"
-        conclusion.write_and_show_results(record, opened.site, opened.robot, took)
+        conclusion.write_report_and_show_results(record, opened.site, opened.robot, took)
 
 
 def _times_text(record: RunRecord, loading: float, running: float) -> str:

@@ -36,7 +36,7 @@ class Conclusion:
     interruption: SignalWatch
     """signals of the process; the first one lets the run stop in good order"""
 
-    def write_and_show_results(
+    def write_report_and_show_results(
         self, record: RunRecord, site: Site, robot: RobotSpec, duration_text: str
     ) -> None:
         """Write report and film, if asked for, then show the results.

@@ -56,8 +56,8 @@ def check_source(
     Args:
         upload: script or mission
         catalog: names and poses of the site
-        start_area: starting area, for a script that names none
-        end_area: area to end in, for a script that names none
+        start_area: starting area, for a script that names none; an error if it names another
+        end_area: area to end in, likewise
         travel: travel times; None: times are not checked
         site: the site; None: views of checkpoints and speeds are not checked
 

@@ -188,8 +188,8 @@ def import_mission(
     Args:
         upload: script, mission, bag or isar mission
         site: site of the mission
-        start_area: starting area, for a script that names none
-        end_area: area to end in, for a script that names none
+        start_area: starting area, for a script that names none; an error if it names another
+        end_area: area to end in, likewise
 
     Raises:
         DiagnosticError: The upload can't be read as a mission, or `check` finds errors.

@@ -33,7 +33,9 @@ def conclude(record, yard_site, tmp_path, monkeypatch, capsys):
         try:
             Conclusion(
                 report and Path(report), render and Path(render), kept, interruption
-            ).write_and_show_results(record, yard_site.site, yard_site.robot, "It took no time.")
+            ).write_report_and_show_results(
+                record, yard_site.site, yard_site.robot, "It took no time."
+            )
         except typer.Exit as end:
             status = end.exit_code
         return status, *capsys.readouterr()

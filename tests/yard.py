@@ -226,8 +226,8 @@ class Watching(Observer):
     def __init__(self, observe=None, announce=None):
         self._observe, self._announce = observe, announce
 
-    def on_change(self, entry, _):
-        for news in entry.anomalies_and_reading if self._announce else ():
+    def on_entry_applied(self, entry, _):
+        for news in entry.other_anomalies_then_reading if self._announce else ():
             self._announce(news)
 
     def on_step(self, now, action):

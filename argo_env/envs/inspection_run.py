@@ -273,8 +273,8 @@ class _ActionObserver(Observer):
         """Return the contacts that have ended, then those that may continue."""
         return (*self._ended_contacts, *self._present_contacts)
 
-    def on_change(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
-        self.sensed += entry.anomalies_and_reading
+    def on_entry_applied(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
+        self.sensed += entry.other_anomalies_then_reading
         self.reading = entry.reading or self.reading
         self.mishaps += entry.mishaps
         self._ended_contacts += entry.contacts

@@ -126,7 +126,7 @@ def make_row(
             "false_alarms": false_alarms(record, spec, site),
             "contacts": len(record.contacts),
             "mishaps": len(record.mishaps),
-            "late": len(record.late),
+            "late": len(record.visits_ended_late),
             "detections": detections(record, site),
             **({} if result.success else _failure_fields(record)),
         }

@@ -46,8 +46,8 @@ class BestEffortRecorder(Observer):
     def on_step(self, now: float, action: RobotAction | None) -> None:
         self._try(lambda: self._recorder.on_step(now, action))
 
-    def on_change(self, entry: Entry, machine: Machine) -> None:
-        self._try(lambda: self._recorder.on_change(entry, machine))
+    def on_entry_applied(self, entry: Entry, machine: Machine) -> None:
+        self._try(lambda: self._recorder.on_entry_applied(entry, machine))
 
     def on_interrupted(self, record: RunRecord) -> None:
         self._try(lambda: self._recorder.on_interrupted(record))

@@ -187,7 +187,7 @@ class RunRecorder(Observer):
             self._writer.put("/path", messages.make_path(poses, now), now)
         self._writer.flush_if_due(now)
 
-    def on_change(self, entry: Entry, machine: Machine) -> None:
+    def on_entry_applied(self, entry: Entry, machine: Machine) -> None:
         """Write the contents of the entry and, if it has changed, the state of the mission."""
         if self._sampled_at == -math.inf:
             self.on_step(entry.t, None)
@@ -207,7 +207,7 @@ class RunRecorder(Observer):
             self._writer.put_json("/findings", anomaly, now)
         if anomalies:
             self._writer.put("/findings/markers", scene.finding_scene(self._anomalies, now), now)
-        for value in entry.given_values(self._setup.navigator.site):
+        for value in entry.values_from_people(self._setup.navigator.site):
             self._log(value.in_words, Log.INFO, "told", now)
         for mishap in entry.mishaps:
             self._log(f"{mishap.trouble}: {mishap.detail}", Log.WARNING, "drive", now)

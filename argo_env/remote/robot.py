@@ -200,14 +200,16 @@ class RemoteAction:
         reason = report.reason or f"the robot reported that the action has {report.outcome}"
         return ActionFailed(name, reason, report.unreadable, id)
 
-    def to_task_run(self, end: ActionEnd, now: float, distance: float, climbed: float) -> TaskRun:
+    def to_task_run(
+        self, end: ActionEnd, now: float, total_distance: float, total_climbed: float
+    ) -> TaskRun:
         """Return the action as the run's record has it.
 
         Args:
             end: event with which the action has ended.
             now: time of the run in s when it ended.
-            distance: distance in m driven from the run's start until then.
-            climbed: height in m climbed from the run's start until then.
+            total_distance: distance in m driven from the run's start until then.
+            total_climbed: height in m climbed from the run's start until then.
         """
         reason = end.reason if isinstance(end, ActionFailed) else None
         outcome = "done"
@@ -223,8 +225,8 @@ class RemoteAction:
             end=now,
             outcome=outcome,
             reason=reason,
-            distance=round(distance - self._distances[0], DIGITS),
-            climbed=round(climbed - self._distances[1], DIGITS),
+            distance=round(total_distance - self._distances[0], DIGITS),
+            climbed=round(total_climbed - self._distances[1], DIGITS),
         )
 
 
@@ -300,7 +302,7 @@ class RemoteRobot:
             self._channel.receive()
         return not self._channel.pending
 
-    def apply_initial_state(self, initial: InitialState) -> None:
+    def apply_initial_state_except_pose(self, initial: InitialState) -> None:
         """Set the driven distance and the climbed height; all else is the robot's own state."""
         self.odometry.distance, self.odometry.climbed = initial.distance, initial.climbed
 
@@ -384,7 +386,7 @@ class RemoteRobot:
             "charge": self.supply.charge,
         }
 
-    def clear_mishaps_and_contacts(self) -> None:
+    def clear_mishaps_and_ended_contacts(self) -> None:
         """No-op: a remote robot reports no contacts or mishaps."""
 
     def _await_state(self, patience: float) -> None:

@@ -150,7 +150,8 @@ class SimulatedAction:
         """Return how many of the next steps, at most `limit`, the robot only measures in.
 
         They are the steps before the one in which the measurement ends and its value is read; 0 if
-        the robot does not measure now, or the task's `reading_limit` has begun.
+        the robot does not measure now, or if the task's time for reading, its `reading_limit`,
+        has begun to run.
         """
         if self._phase != self._measure or self._give_up_at < math.inf:
             return 0
@@ -161,14 +162,17 @@ class SimulatedAction:
                 return count
         return limit
 
-    def skip_steps(self, count: int, now: float) -> None:
-        """Let `count` steps pass at once, up to `now` (s): the robot only drives or measures."""
-        self._now = now
+    def skip_steps(self, count: int, end_time: float) -> None:
+        """Let `count` steps pass at once, up to `end_time` (s).
+
+        In all of them the robot only drives or measures; the caller ensures this.
+        """
+        self._now = end_time
         if self._phase == self._measure:
             for _ in range(count):
                 self._remaining -= self._setup.drive.time_step
 
-    def taken_reading(self, now: float) -> Reading | None:
+    def make_reading_if_measured(self, now: float) -> Reading | None:
         """Return the reading that the action has taken, if any, with `now` (s) as its time."""
         if self.measurement is None:
             return None
@@ -189,14 +193,16 @@ class SimulatedAction:
             confidence=round(self.measurement.confidence, DIGITS),
         )
 
-    def to_task_run(self, end: ActionEnd, now: float, distance: float, climbed: float) -> TaskRun:
+    def to_task_run(
+        self, end: ActionEnd, now: float, total_distance: float, total_climbed: float
+    ) -> TaskRun:
         """Return the action, which ended at `now` (s), in the form of the run's record.
 
         Args:
             end: the end of the action.
             now: time of the end in s.
-            distance: m that the robot has driven since the mission's start.
-            climbed: m that it has climbed since then.
+            total_distance: m that the robot has driven since the mission's start.
+            total_climbed: m that it has climbed since then.
         """
         reason = end.reason if isinstance(end, ActionFailed) else None
         if isinstance(end, ActionSucceeded):
@@ -215,8 +221,8 @@ class SimulatedAction:
             end=now,
             outcome=outcome,
             reason=reason,
-            distance=round(distance - self._distance_before, DIGITS),
-            climbed=round(climbed - self._climbed_before, DIGITS),
+            distance=round(total_distance - self._distance_before, DIGITS),
+            climbed=round(total_climbed - self._climbed_before, DIGITS),
             measuring=(*self._measuring_times, *under_way),
             early=None
             if self._early_since is None
@@ -252,7 +258,10 @@ class SimulatedAction:
         return self._drive()
 
     def _start_retreat(self) -> ActionEnd | None:
-        """Start to drive back along the arrival path; at its end, a path is planned anew."""
+        """Start to drive back along the arrival path; at its end, a path is planned anew.
+
+        Returns None: the action has not ended.
+        """
         assert self.arrival_path is not None
         self._retreated = True
         back_path = path_back(self.arrival_path, _to_pose(self._setup.drive.pose), RETREAT)
@@ -267,9 +276,9 @@ class SimulatedAction:
         return self._after_drive(self._start_driving)
 
     def _after_drive(self, following: Callable[[], ActionEnd | None]) -> ActionEnd | None:
-        """Step the drive, and call `following` once the robot has arrived or come to rest.
+        """Step the drive; call `following` once the robot has arrived, or halted as it was told to.
 
-        Returns the end of the action; None if it has not ended.
+        Returns the end of the action, such as a failure of the drive; None if it has not ended.
         """
         match self._setup.drive.step():
             case DriveStatus.MOVING:
@@ -408,7 +417,7 @@ class SimulatedAction:
     def _unmoved_joints(self) -> tuple[str, ...]:
         """Return the names of the joints that the task states but nothing in the world moves."""
         joints = self.task.joint_states
-        moves = self._setup.watches_world and self.task.action is Action.MEASURE
+        moves = self._setup.has_simulated_world and self.task.action is Action.MEASURE
         moved = (
             _requested_joints(self.task).keys() & self._setup.navigator.robot.arm_raised
             if moves
@@ -417,7 +426,7 @@ class SimulatedAction:
         return () if joints is None else tuple(n for n in joints.names if n not in moved)
 
     def _raised_arm(self) -> dict[str, float]:
-        """Return joint angles (deg) of the raised arm: the robot's, unless the task states one."""
+        """Return the raised arm's joint angles (deg): the task's where stated, else the robot's."""
         raised = self._setup.navigator.robot.arm_raised
         return raised | {
             name: angle for name, angle in _requested_joints(self.task).items() if name in raised

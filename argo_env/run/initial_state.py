@@ -38,7 +38,7 @@ class InitialState(Model):
     """anomalies found so far, in the order of time"""
 
     @property
-    def start_time(self) -> float:
+    def mission_seconds_at_start(self) -> float:
         """Time at which the run begins, in s since the mission's start."""
         return round(self.progress.elapsed, 6)
 
@@ -48,14 +48,14 @@ class InitialState(Model):
 
 
 def make_machine(mission: Mission, beginning: InitialState | None = None) -> Executor:
-    """Return a machine for a run of the mission, at its start or restored to an initial state.
+    """Return a machine that a run of the mission can start, from the start or an initial state.
 
     Raises ArgoError if the mission has errors, or the initial state is not one of this mission.
     """
     if beginning is None:
         return Executor(lower(mission))
     progress = beginning.progress
-    return Executor.restore(lower(mission, progress), progress, beginning.start_time)
+    return Executor.restore(lower(mission, progress), progress, beginning.mission_seconds_at_start)
 
 
 def progress_now(machine: Machine, now: float, by_hand: Sequence[ByHand]) -> Progress:

@@ -75,15 +75,16 @@ class Journal(Observer, Closing):
         self._lines = 1 + len(entries)
 
     @property
-    def ended(self) -> bool:
+    def had_ended_when_opened(self) -> bool:
         """True if the run had ended when the journal was opened."""
         return bool(self.entries) and self.entries[-1].ended
 
     def on_entry(self, entry: Entry) -> None:
         """Write an entry to the file.
 
-        When this returns, the entry survives the death of the process; an essential entry survives
-        a power failure too. Raises ArgoError if it can't be written; earlier entries stay.
+        When this returns, the entry survives the death of the process, and one with
+        `must_survive_power_loss` a power failure too. Raises ArgoError if it can't be written;
+        earlier entries stay.
         """
         line = _line(self._lines, entry)
         try:
@@ -103,14 +104,14 @@ class Journal(Observer, Closing):
 
     def require_not_ended(self) -> None:
         """Raise ArgoError if the run had ended when the journal was opened: no event can follow."""
-        if self.ended:
+        if self.had_ended_when_opened:
             raise Conflict(
                 f"{self.path}: the run has ended, at {self.entries[-1].t:g} s: nothing more can "
                 "occur in it; begin a new run with all events",
                 remedies=(Remedy.RUN_ANEW,),
             )
 
-    def require_unchanged(self, site: OpenedSite) -> None:
+    def require_inputs_unchanged(self, site: OpenedSite) -> None:
         """Raise ArgoError if anything that the run depends on has changed since it began.
 
         A file of the mission that has been removed is no change: the journal has the mission.
@@ -238,9 +239,9 @@ def open_journal(path: Path) -> Journal:
 
 
 def _parse(path: Path, content: bytes) -> tuple[Header, list[Entry], int]:
-    """Return a journal's header, its entries, and how many bytes of the content they take.
+    """Return a journal's header and entries, and how many bytes of `content` these take together.
 
-    The rest of the content is an incomplete last line. Raises ArgoError for anything else.
+    The rest is an incomplete or damaged last line. Raises ArgoError for anything else.
     """
     lines = content.split(b"\n")
     # After the last line end there is nothing, or an incomplete line.

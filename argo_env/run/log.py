@@ -182,8 +182,8 @@ class Entry(Model):
         return bool(has_news) or self.resumed or self.ended
 
     @property
-    def anomalies_and_reading(self) -> tuple[Reading | Anomaly, ...]:
-        """Anomalies that the robot noticed, without abnormal readings; then its reading, if any."""
+    def other_anomalies_then_reading(self) -> tuple[Reading | Anomaly, ...]:
+        """Anomalies that the robot noticed, but no abnormal readings; last, any reading it took."""
         # An abnormal reading is an anomaly as well, and is returned only as the reading.
         noticed = tuple(anomaly for anomaly in self.found if not anomaly.is_reading)
         return (*noticed, *((self.reading,) if self.reading else ()))
@@ -210,7 +210,7 @@ class Entry(Model):
         """True if there is a reading by hand; its event is `events[len(found)]`."""
         return self.reading is not None and self.task is not None and self.task.by_hand
 
-    def given_values(self, site: Site) -> tuple[GivenValue, ...]:
+    def values_from_people(self, site: Site) -> tuple[GivenValue, ...]:
         """Return the values of checkpoints that people reported, not those that the robot read."""
         given = []
         own_reading = len(self.found) if self._has_reading_by_hand else None
@@ -265,7 +265,7 @@ class RunLog:
             self.tasks.append(entry.task)
         if entry.reading:
             self.readings.append(entry.reading)
-        self.given_values += entry.given_values(self.site)
+        self.given_values += entry.values_from_people(self.site)
         self.found += [(anomaly, entry.pose) for anomaly in entry.found]
         self.anomalies += (*entry.found, *entry.anomalies_reported_from_outside(self.site))
         self.mishaps += entry.mishaps

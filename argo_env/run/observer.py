@@ -27,11 +27,11 @@ class Observer:
         An exception raised here keeps the entry from being applied, and the simulation ends.
         """
 
-    def on_change(self, entry: Entry, machine: Machine) -> None:
+    def on_entry_applied(self, entry: Entry, machine: Machine) -> None:
         """Receive an entry after the machine has handled its events."""
 
     def on_step(self, now: float, action: RobotAction | None) -> None:
-        """Follow a step of simulated time that has ended at `now` (s) with the running action."""
+        """Follow a step that has ended at `now` (s); `action` runs after it, None if none does."""
 
     def on_interrupted(self, record: RunRecord) -> None:
         """Receive the record so far of a run that was interrupted before its end."""

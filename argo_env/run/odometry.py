@@ -88,7 +88,7 @@ class Odometry:
         self._contacts.restore(entry.touching)
 
     def close_contacts(self) -> None:
-        """End all open contacts, as the run ends."""
+        """Move all open contacts to `ended_contacts`, as the run ends."""
         self.ended_contacts += self._contacts.open
         self._contacts.restore(())
 

@@ -57,9 +57,9 @@ class PowerSupply:
     def restore(self, entry: Entry) -> None:
         """Restore the battery's charge from an entry of the log."""
         if entry.charge is not None:
-            self.reset(entry.charge, entry.body_pose)
+            self.set_charge(entry.charge, entry.body_pose)
 
-    def reset(self, charge: float, pose: BodyPose) -> None:
+    def set_charge(self, charge: float, pose: BodyPose) -> None:
         """Set the charge (0 to 1) of the battery, if any; it is charging if `pose` is in a dock."""
         if self._battery:
             self._battery.charge = charge
@@ -83,7 +83,7 @@ class PowerSupply:
             watts = -self._power.charging if self.charging else 0.0
         self._battery.use(watts, seconds)
 
-    def predict(
+    def predict_until_empty(
         self, loads: NDArray[np.float64], places: PoseArray, step_seconds: float
     ) -> PredictedSupply:
         """Predict the supply after each of n steps, but no further than the battery lasts.

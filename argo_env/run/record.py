@@ -490,7 +490,9 @@ class RunRecord(Model):
             only_tasks_failed=self.result.only_tasks_failed,
             noticed={
                 "finding": [finding.in_words for finding in self.findings],
-                "late task": [f"{run.task} ended after its time window" for run in self.late],
+                "late task": [
+                    f"{run.task} ended after its time window" for run in self.visits_ended_late
+                ],
                 "contact": [
                     f"{c.link} touched {c.element} at {clock(c.start)}" for c in self.contacts
                 ],
@@ -499,7 +501,7 @@ class RunRecord(Model):
         )
 
     @property
-    def late(self) -> tuple[WindowVisit, ...]:
+    def visits_ended_late(self) -> tuple[WindowVisit, ...]:
         """Visits of tasks that ended after the task's soft time window."""
         return tuple(run for run in self.windows if run.kept is WindowOutcome.LATE)
 
@@ -534,7 +536,7 @@ class RunRecord(Model):
         return anomaly.kind.replace("_", " ")
 
     def _answer(self, anomaly: Anomaly) -> tuple[bool, str]:
-        """Return whether a reaction answered the anomaly, and the answer in words."""
+        """Return whether a reaction answered the anomaly, and how, or why not, in words."""
         reaction = next((r for r in self.mission.reactions if r.event is anomaly.kind), None)
         if reaction is None:
             return False, "no reaction answers it"
@@ -553,8 +555,8 @@ def anomaly_from_reading(reading: Reading, place: Vector | None = None) -> Anoma
 
     Args:
         reading: the reading.
-        place: position of the checkpoint in m; None for a reading that the log does not have as an
-            anomaly, such as one taken by hand.
+        place: position of the checkpoint in m. None: the anomaly has no position, as for a reading
+            that the log does not have as an anomaly, such as one taken by hand.
     """
     return Anomaly(
         t=reading.t,

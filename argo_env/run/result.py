@@ -45,10 +45,10 @@ _ENDINGS = {
 }
 
 
-def tasks_failed_for_good(
+def tasks_with_unretried_failure(
     runs: Sequence[TaskRun], trace: Sequence[TraceEntry], visits: Sequence[VisitRun]
 ) -> tuple[str, ...]:
-    """Return the names of tasks with a failure that no retry followed, by their first failure.
+    """Return the names of tasks with a failure that no retry followed, by the first such failure.
 
     Each is named once. A later visit that succeeds does not clear the failure. Failures of actions
     that a person ordered don't count.
@@ -99,7 +99,10 @@ def judge(
     optional = {task.name for task in mission.tasks if task.optional}
     failed = tuple(
         dict.fromkeys(
-            (*_failed_earlier(earlier, mission), *tasks_failed_for_good(log.tasks, trace, visits))
+            (
+                *_failed_earlier(earlier, mission),
+                *tasks_with_unretried_failure(log.tasks, trace, visits),
+            )
         )
     )
     needed = [name for name in failed if name not in optional]
@@ -181,8 +184,8 @@ def _success_verdict(
 def _failed_earlier(earlier: Progress, mission: Mission) -> Iterator[str]:
     """Yield the names of the tasks that failed before this run, which continues another one.
 
-    A failed task that the mission no longer has counts only if any task that was not optional had
-    failed: it may be that one.
+    A failed task that the mission no longer has is named only if `earlier.failed` says that a task
+    that was not optional had failed: it may be that one.
     """
     for tally in earlier.tallies:
         if tally.failed and (mission.task(tally.task) is not None or earlier.failed):
@@ -245,7 +248,7 @@ def make_record(
         mishaps=tuple(log.mishaps),
         anomalies=tuple(log.anomalies),
         faults=setup.schedule.faults if setup.schedule else (),
-        began=spec.beginning.start_time if spec.beginning else 0.0,
+        began=spec.beginning.mission_seconds_at_start if spec.beginning else 0.0,
         before=progress.tallies,
         resumed=tuple(log.resumed),
         reordering=spec.reordering,

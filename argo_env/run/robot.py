@@ -43,15 +43,21 @@ class RobotAction(Protocol):
         """Path to the pose of the task, if known."""
 
     def cancel(self, reason: str, is_interruption: bool) -> None:
-        """Cancel the action: it cleans up, and a following step reports its end."""
+        """Cancel the action: it cleans up, and a following step reports its end.
+
+        With `is_interruption`, as for a pause or a reaction, its outcome is `interrupted`, else
+        `cancelled`.
+        """
 
     def detour_if_blocked(self, setup: RunSetup) -> None:
         """Continue with `setup`, whose navigator knows of a new blockage, and avoid that."""
 
-    def to_task_run(self, end: ActionEnd, now: float, distance: float, climbed: float) -> TaskRun:
+    def to_task_run(
+        self, end: ActionEnd, now: float, total_distance: float, total_climbed: float
+    ) -> TaskRun:
         """Return the action, which ended at `now` (s), in the form of the run's record.
 
-        `distance` and `climbed` (m) are those of the robot since the mission's start.
+        `total_distance` and `total_climbed` (m) are those of the robot since the mission's start.
         """
 
 
@@ -96,7 +102,7 @@ class AnyRobot(Protocol):
         A simulated robot is set to that pose; a real robot stays where it is.
         """
 
-    def apply_initial_state(self, initial: InitialState) -> None:
+    def apply_initial_state_except_pose(self, initial: InitialState) -> None:
         """Set the robot's state at the start of a run that continues another run."""
 
     def restore(self, last: Entry) -> None:
@@ -133,5 +139,5 @@ class AnyRobot(Protocol):
         contacts that no entry has yet.
         """
 
-    def clear_mishaps_and_contacts(self) -> None:
+    def clear_mishaps_and_ended_contacts(self) -> None:
         """Forget the mishaps and ended contacts so far, as an entry now has them."""

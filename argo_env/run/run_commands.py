@@ -202,9 +202,10 @@ def require_no_action(machine: Machine) -> None:
 
 
 def require_give_back_can_occur(machine: Machine, now: float) -> None:
-    """Raise Conflict if a give-back that is due at `now` (s), as the caller knows, can't occur.
+    """Raise Conflict if a give-back that waits at time `now` (s) can never occur.
 
-    That is so if a task of the mission runs, and nobody has taken the robot over or paused it.
+    The caller knows that it is due; `now` is for the message only. It can't occur if a task of the
+    mission runs, the mission is not paused or taken over, and no reaction is under way.
     """
     if machine.running and not machine.paused and machine.reaction is None:
         raise Conflict(
@@ -272,7 +273,7 @@ def resolve_new_fault(fault: AnyFault, setup: RunSetup, seed: int, now: float) -
         raise Conflict(
             f"{kind} can only begin with the run: give it in the faults of the run's spec"
         )
-    if fault.needs_world and not setup.watches_world:
+    if fault.needs_world and not setup.has_simulated_world:
         raise Conflict(
             f"the drive `{setup.drive.name}` has no world in which {kind} could be found; "
             "choose another drive"

@@ -51,7 +51,7 @@ class Instruments:
         self._profiles = {site.checkpoint(id).id: profile for id, profile in profiles.items()}
         self._first = {id: targets.fault_free_values[id] for id in self._profiles}
 
-    def update(self, checkpoint_id: int, now: float) -> None:
+    def update_displayed_value(self, checkpoint_id: int, now: float) -> None:
         """Set the value that the checkpoint displays at time `now` (s), before it is read."""
         self._targets.sensor.time = now
         profile = self._profiles.get(checkpoint_id)
@@ -112,11 +112,11 @@ class RunSetup:
         Raises MeasurementError if the sensor can't read it.
         """
         if self.instruments is not None:
-            self.instruments.update(checkpoint_id, now)
+            self.instruments.update_displayed_value(checkpoint_id, now)
         return self.sensor.measure(checkpoint_id, self.drive.pose)
 
     @property
-    def watches_world(self) -> bool:
+    def has_simulated_world(self) -> bool:
         """True if there is a simulated world of bodies and signals for the watches."""
         return isinstance(self.world, World)
 

@@ -24,7 +24,7 @@ from argo_env.run.result import make_record
 from argo_env.run.robot import ActionEnd, AnyRobot, RobotAction
 from argo_env.run.run_commands import Supervision, mark_abnormal
 from argo_env.run.spec import RunSpec
-from argo_env.run.vehicle import find_recent_path
+from argo_env.run.vehicle import find_last_path_part
 from argo_env.run.visits_and_rounds import InterruptionTracker, RoundTracker
 
 
@@ -102,7 +102,7 @@ class SimulationState:
         self.steps = 0
         """time steps of the drive since the run began"""
         self._beginning = spec.beginning
-        self._start_time = spec.beginning.start_time if spec.beginning else 0.0
+        self._start_time = spec.beginning.mission_seconds_at_start if spec.beginning else 0.0
         self.now = self._start_time
         """s of simulated time"""
         self._mission = spec.mission
@@ -210,13 +210,13 @@ class SimulationState:
         """Complete the state after a journal's entries were replayed.
 
         The path by which the robot reached its pose is restored from the log, and an action by hand
-        that was running ends.
+        that was running ends as interrupted, so its task does not count as done.
         """
         if self.supervision.acting and self.action:
             self.action.cancel("the process that carried it out died", is_interruption=True)
             self.lost_task_run = self.task_run(ActionStopped(self.action.task.name))
             self.action, self.supervision.acting = None, False
-        if arrival_path := find_recent_path(self.log):
+        if arrival_path := find_last_path_part(self.log):
             self._arrival_path = arrival_path
             if self.action:
                 self.action.arrival_path = arrival_path

@@ -109,7 +109,7 @@ def resume(
         journal.require_not_ended()
     spec = journal.header.spec
     site = site or open_site(spec.site, load_robot(spec.robot))
-    journal.require_unchanged(site)
+    journal.require_inputs_unchanged(site)
     return resume_unchecked(
         journal,
         site,

@@ -115,7 +115,7 @@ class Simulation(Closing):
         self._observes_samples = any(
             observer.wants_samples and overrides(observer, name)
             for observer in observers
-            for name in ("on_entry", "on_change")
+            for name in ("on_entry", "on_entry_applied")
         )
         self._added_events = tuple(events)
         self._begun = False
@@ -395,7 +395,7 @@ class Simulation(Closing):
         vehicle, beginning = self._vehicle, self._spec.beginning
         start = self._start_pose()
         if beginning:
-            vehicle.apply_initial_state(beginning)
+            vehicle.apply_initial_state_except_pose(beginning)
         state.start()
         require_initial_state(state.machine, self._spec)
         for entry in past:
@@ -481,7 +481,7 @@ class Simulation(Closing):
             until,
         )
         if termination.is_emergency_stopped(self.setup):
-            final = termination.final_standstill_time(self.setup, state.log)
+            final = termination.time_standstill_becomes_final(self.setup, state.log)
             next_time = min(next_time, final if final > state.now else math.inf)
         steps = int((next_time - state.now) / self.setup.drive.time_step) - 1
         return min(steps, _MAX_BATCH)
@@ -546,10 +546,10 @@ class Simulation(Closing):
         with self._lock_out_commands():
             for observer in self._observers:
                 observer.on_entry(entry)
-            self._vehicle.clear_mishaps_and_contacts()
+            self._vehicle.clear_mishaps_and_ended_contacts()
             self._state.apply(entry)
             for observer in self._observers:
-                observer.on_change(entry, self.machine)
+                observer.on_entry_applied(entry, self.machine)
 
     @contextmanager
     def _lock_out_commands(self) -> Iterator[None]:

@@ -53,16 +53,17 @@ def is_emergency_stopped(setup: RunSetup) -> bool:
     return isinstance(setup.drive, Powertrain) and setup.drive.stop_pressed
 
 
-def final_standstill_time(setup: RunSetup, log: RunLog) -> float:
-    """Return the time (s) from which a robot that stands still now does so for good.
+def time_standstill_becomes_final(setup: RunSetup, log: RunLog) -> float:
+    """Return the time (s) from which on a robot that still stands does so for good.
 
-    It is infinite while a fault is still to begin or end.
+    It is that of the last event, or `SETTLING` after the last change of a fault if that is later;
+    infinite while a fault is still to begin or end.
     """
     return _standstill_times(setup, log)[1]
 
 
 def _standstill_times(setup: RunSetup, log: RunLog) -> tuple[float, float]:
-    """Return the times (s) from which a robot that stands still does so, and does so for good."""
+    """Return the last time (s) of an event or fault change, and `time_standstill_becomes_final`."""
     since, schedule = log.last_event, setup.schedule
     if schedule is None or not schedule.faults:
         return since, since

@@ -74,8 +74,8 @@ def require_initial_state(machine: Machine, spec: RunSpec) -> None:
 def require_site(site: OpenedSite, spec: RunSpec) -> None:
     """Raise Conflict for a site that is not that of the spec, or not that of its mission.
 
-    Raises ArgoError if the spec names the site in other words, and the site it names can't be
-    opened for a comparison.
+    If the spec refers to the site by another name or path, the sites' descriptions are compared;
+    raises ArgoError if that of the spec can't be opened for this.
     """
     planned = spec.mission.site
     if planned and planned != site.name:

@@ -77,7 +77,7 @@ class StepBatch:
         measuring = action is not None and action.is_measuring
         power, time_step = setup.navigator.robot.power, setup.drive.time_step
         loads = power_draw_per_step(power, distances, self._poses, time_step, measuring)
-        self._power = supply.predict(loads, self._poses[1:], time_step)
+        self._power = supply.predict_until_empty(loads, self._poses[1:], time_step)
         self.steps = len(self._power)
 
     def poses_until(self, count: int) -> PoseArray:
@@ -146,11 +146,11 @@ class Vehicle:
         self.setup.drive.place_robot(pose)
         self.update_faults(now)
 
-    def apply_initial_state(self, initial: InitialState) -> None:
-        """Set the robot's state at the start of a run that continues another run."""
+    def apply_initial_state_except_pose(self, initial: InitialState) -> None:
+        """Set odometry, charge and known blockages for a run that continues another run."""
         self.odometry.distance, self.odometry.climbed = initial.distance, initial.climbed
         if initial.charge is not None:
-            self.supply.reset(initial.charge, initial.body_pose)
+            self.supply.set_charge(initial.charge, initial.body_pose)
         anomalies = [known.anomaly for known in initial.known]
         if closed := [b for anomaly in anomalies if (b := blockage_from_anomaly(anomaly))]:
             self.add_blockages(closed)
@@ -203,7 +203,7 @@ class Vehicle:
             odometry.add_new_incidents(drive.incidents, now)
         self.supply.consume(before, after, drive.time_step, measuring)
         found = self._perception.update(step, now, after)
-        reading = own.taken_reading(now) if own and end else None
+        reading = own.make_reading_if_measured(now) if own and end else None
         if reading and not reading.normal:
             found = (*found, anomaly_at_checkpoint(reading, setup.navigator.site))
         return Sensed(end, reading, found) if end or found else _NOTHING_SENSED
@@ -252,13 +252,13 @@ class Vehicle:
             "touching": odometry.touching,
         }
 
-    def clear_mishaps_and_contacts(self) -> None:
+    def clear_mishaps_and_ended_contacts(self) -> None:
         """Forget the mishaps and ended contacts so far, as an entry now has them."""
         self.odometry.ended_contacts.clear()
         self.odometry.mishaps.clear()
 
 
-def find_recent_path(log: RunLog) -> Path | None:
+def find_last_path_part(log: RunLog) -> Path | None:
     """Return the last part of the path by which the robot reached its pose, from the log.
 
     It is long enough to retreat along it. None if the log has no path.

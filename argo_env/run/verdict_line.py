@@ -75,7 +75,7 @@ def run_headline(
 
 
 def _summarize(things: Sequence[str]) -> str:
-    """Return the first few different texts, with their counts, and the number of the others."""
+    """Return the first few different texts with their counts, and how many items are left out."""
     times = list(Counter(things).items())
     named = [thing if n == 1 else f"{thing}, {n} times" for thing, n in times[:_NAMED]]
     more = sum(n for _, n in times[_NAMED:])

@@ -70,7 +70,7 @@ class SensorWithFaults:
         value = measurement.value + self.noise * (scale.high - scale.low) * rng.standard_normal()
         return replace(measurement, value=round(min(max(value, scale.low), scale.high), 2))
 
-    def read_test_pattern(self) -> tuple[float, ...] | None:
+    def measure_test_pattern_errors(self) -> tuple[float, ...] | None:
         """Return one reading for each of several pictures of the pattern in the camera's housing.
 
         The pattern shows 0 on a scale of 0 to 1, so each reading is an error. Returns None if the
@@ -282,7 +282,7 @@ class CameraWatch:
         self._reported = bool(reported)  # if the camera works again, the first picture shows it
 
     def update(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
-        pattern = self._sensor.read_test_pattern()
+        pattern = self._sensor.measure_test_pattern_errors()
         spread = 0.0 if pattern is None else math.hypot(*pattern) / math.sqrt(len(pattern))
         was_reported, self._reported = self._reported, pattern is None or spread > NOISY
         if not self._reported or was_reported:

@@ -28,21 +28,21 @@ DOCK_DISTANCE = 0.62  # m from the centre of a docked robot to the face of its s
 MOUNT_LENGTH = 0.2  # m from the face of a checkpoint back to what carries it
 
 
-def build_vessel(vessel: VesselSpec, z: float) -> Element:
-    """Build a vessel whose description gives heights above `z` (m); a lying one has two saddles."""
+def build_vessel(vessel: VesselSpec, base_z: float) -> Element:
+    """Build a vessel whose heights are above `base_z` (m); a lying one stands on two saddles."""
     x, y, height = vessel.center
     turn: Vector = {
         "x": (0.0, math.pi / 2, 0.0),
         "y": (math.pi / 2, 0.0, 0.0),
         "z": (0.0, 0.0, 0.0),
     }[vessel.axis]
-    shell = Cylinder((x, y, z + height), vessel.radius, vessel.length, turn)
+    shell = Cylinder((x, y, base_z + height), vessel.radius, vessel.length, turn)
     if vessel.axis == "z":
         return Element(vessel.name, Role.VESSEL, (shell,), "vessel")
     along = (1.0, 0.0) if vessel.axis == "x" else (0.0, 1.0)
     saddles = tuple(
         Box(
-            (x + s * along[0], y + s * along[1], z + height / 2 - vessel.radius / 4),
+            (x + s * along[0], y + s * along[1], base_z + height / 2 - vessel.radius / 4),
             (
                 0.2 if along[0] else 1.4 * vessel.radius,
                 0.2 if along[1] else 1.4 * vessel.radius,

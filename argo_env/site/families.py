@@ -222,7 +222,7 @@ def _choose_slots(
 def _checkpoints(
     family: Family, attempt: int, layout: Layout, chosen: list[tuple[int, list[int]]]
 ) -> tuple[list[tuple[CheckpointSpec, ...]], tuple[PipeSpec, ...]]:
-    """Return each floor's checkpoints, numbered from the bottom, and the risers that carry them."""
+    """Return each floor's checkpoints, numbered from floor to floor upwards, and their risers."""
     offsets = generator(family.seed, "offsets", attempt).uniform(0.15, 0.4, len(layout.slots))
     beside = offsets.round(2).tolist()
     number = 0

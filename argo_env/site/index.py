@@ -126,7 +126,7 @@ class SolidRays:
         origin: NDArray[np.float64],
         directions: NDArray[np.float64],
         reach: float,
-        count_surrounding: bool = False,
+        include_solids_around_origin: bool = False,
     ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         """Return the distance (m) to the first solid on each ray, and the number of that solid.
 
@@ -134,9 +134,9 @@ class SolidRays:
             origin: Start of all rays, shape (3,), or of each ray, shape (n, 3).
             directions: Unit vectors, shape (n, 3).
             reach: Length of the rays in m.
-            count_surrounding: True to count solids that a ray starts inside of. They come first,
-                with a negative distance: that from the origin back to their surface. Otherwise
-                they are left out.
+            include_solids_around_origin: True to count solids that a ray starts inside of. They
+                come first, with a negative distance: that from the origin back to their surface.
+                Otherwise they are left out.
 
         Returns:
             Distances and numbers, both of shape (n,); inf and -1 where a ray meets no solid.
@@ -154,7 +154,7 @@ class SolidRays:
         entry, leave = self._crossings(
             origin[rays] if origin.ndim == 2 else origin, directions[rays], solids
         )
-        met = (entry <= leave) & ((leave if count_surrounding else entry) >= 0.0)
+        met = (entry <= leave) & ((leave if include_solids_around_origin else entry) >= 0.0)
         distance = np.where(met, entry, np.inf)
         # The nearest solid comes first; among equally near ones, the first in the order.
         order = np.lexsort((solids, distance, rays))

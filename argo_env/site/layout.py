@@ -85,11 +85,13 @@ def draw_layout(family: Family, random: np.random.Generator) -> Layout:
     return Layout(storey, tuple(towers), ring, crossings, fields, slots)
 
 
-def draw_steps(storey: float, even: bool, random: np.random.Generator) -> tuple[int, float, float]:
+def draw_steps(
+    storey: float, even_count: bool, random: np.random.Generator
+) -> tuple[int, float, float]:
     """Draw the steps of stairs that rise one storey (m), within the limits of ISO 14122-3.
 
-    Returns the number of risers, which is even if `even` is True, and the rise and going (m) of a
-    step.
+    Returns the number of risers, which is even if `even_count` is True, and the rise and going (m)
+    of a step.
     """
     choices = []
     for risers in range(int(storey / _RISE[1]), int(storey / _RISE[0]) + 2):
@@ -97,7 +99,7 @@ def draw_steps(storey: float, even: bool, random: np.random.Generator) -> tuple[
         low = max(_GOING[0], _STRIDE[0] - 2 * rise)
         high = min(_GOING[1], _STRIDE[1] - 2 * rise)
         goings = np.arange(np.ceil(low * 100 - 1e-6), np.floor(high * 100 + 1e-6) + 1) / 100
-        if _RISE[0] <= rise <= _RISE[1] and not (even and risers % 2):
+        if _RISE[0] <= rise <= _RISE[1] and not (even_count and risers % 2):
             choices += [(risers, rise, float(going)) for going in goings]
     return choices[int(random.integers(len(choices)))]
 
@@ -156,7 +158,10 @@ def _dog_leg_tower(
 def _bays(
     width: float, depth: float, aisle: float, random: np.random.Generator
 ) -> tuple[tuple[dict[str, Rect], ...], tuple[Rect, ...]]:
-    """Draw the cross aisles from south to north, with their ends, and the fields beside them."""
+    """Draw the cross aisles, each with its two ends, and the fields between them, west to east.
+
+    A cross aisle runs from south to north.
+    """
     least, most = math.ceil(width / _BAY[1]), int(width // _BAY[0])
     bays = int(random.integers(least, most + 1))
     crossings, edges = [], [aisle]

@@ -36,7 +36,7 @@ class Box:
     rpy: Vector = (0.0, 0.0, 0.0)
 
     def rotation(self) -> NDArray[np.float64]:
-        """Return a (3, 3) matrix whose columns are the box's axes in the site's frame."""
+        """Return the box's axes x, y, z in the site's frame as columns of a (3, 3) matrix."""
         return _rotation(self.rpy)
 
 
@@ -50,7 +50,7 @@ class Cylinder:
     rpy: Vector = (0.0, 0.0, 0.0)
 
     def rotation(self) -> NDArray[np.float64]:
-        """Return a (3, 3) matrix whose columns are the cylinder's axes in the site's frame."""
+        """Return the cylinder's axes x, y, z in the site's frame as columns of a (3, 3) matrix."""
         return _rotation(self.rpy)
 
 
@@ -116,7 +116,10 @@ def crossing(
 def _slab_crossing(
     start: NDArray[np.float64], slope: NDArray[np.float64], half: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the lowest and the highest t for which start + t * slope is from -half to half."""
+    """Return the lowest and the highest t for which start + t * slope is from -half to half.
+
+    They are (inf, -inf) if there is none, and (-inf, inf) if all t are.
+    """
     parallel = np.abs(slope) < 1e-12
     divisor = np.where(parallel, 1.0, slope)
     first, second = (-half - start) / divisor, (half - start) / divisor
@@ -131,7 +134,8 @@ def _disc_crossing(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the t where lines enter and leave an infinite cylinder about z.
 
-    They are the roots of |p + t d|^2 = r^2 in the plane of x and y.
+    They are the roots of |p + t d|^2 = r^2 in the plane of x and y; (inf, -inf) for lines that miss
+    the cylinder, (-inf, inf) for lines along z within it. `slope` (d) has the shape of `start` (p).
     """
     a = slope[..., 0] ** 2 + slope[..., 1] ** 2
     b = start[..., 0] * slope[..., 0] + start[..., 1] * slope[..., 1]

@@ -142,36 +142,39 @@ def site_names() -> tuple[str, ...]:
     return tuple(sorted(p.parent.name for p in resources.scenarios_folder().glob("*/site.yaml")))
 
 
-def load_site(name: str) -> Site:
+def load_site(name_or_path: str) -> Site:
     """Return the shipped site with this name, or the one that a file with this path describes.
 
-    Raises ArgoError if there is no such site or its description is wrong; the message then states
-    the place in the file.
+    Raises ArgoError if there is no such site, if `name_or_path` is the name of a generated site
+    (`generated:…`, see `open_site`), or if the description is wrong; the message then states the
+    place in the file.
     """
     from argo_env.site.site_file import read_site_spec
 
-    return make_site(read_site_spec(site_file(name)))
+    return make_site(read_site_spec(site_file(name_or_path)))
 
 
-def site_file(name: str) -> Path:
+def site_file(name_or_path: str) -> Path:
     """Return the path of the file that describes a site.
 
-    `name` is the name of a shipped site, or a path that ends in `.yaml` or `.yml`, which is
-    returned even if there is no such file. Raises NotFound if no site has this name, and Invalid if
-    it is that of a generated site.
+    `name_or_path` is the name of a shipped site, or a path that ends in `.yaml` or `.yml`, which
+    is returned even if there is no such file. Raises NotFound if no site has this name, and Invalid
+    if it is that of a generated site.
     """
-    if is_generated_name(name):
-        raise Invalid(f"site `{name}` is generated and has no file: open it with `open_site`")
-    path = Path(name)
+    if is_generated_name(name_or_path):
+        raise Invalid(
+            f"site `{name_or_path}` is generated and has no file: open it with `open_site`"
+        )
+    path = Path(name_or_path)
     if path.suffix in {".yaml", ".yml"}:
         return path
-    if name not in site_names():
+    if name_or_path not in site_names():
         known = ", ".join(site_names())
         raise NotFound(
-            f"no site `{name}`; there are: {known}, or a path to a site's .yaml, or"
+            f"no site `{name_or_path}`; there are: {known}, or a path to a site's .yaml, or"
             f" {PREFIX}floors=3,seed=7"
         )
-    return resources.scenarios_folder() / name / "site.yaml"
+    return resources.scenarios_folder() / name_or_path / "site.yaml"
 
 
 def make_site(spec: SiteSpec) -> Site:

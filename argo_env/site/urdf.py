@@ -25,12 +25,12 @@ COLOURS: dict[str, tuple[float, float, float]] = {
 
 
 @lru_cache(maxsize=32)  # worlds of a site, and its storeys, are made many times
-def to_urdf(name: str, elements: tuple[Element, ...], drawn: bool = True) -> str:
+def to_urdf(name: str, elements: tuple[Element, ...], with_visual_shapes: bool = True) -> str:
     """Return the text of one URDF document with the elements, whose robot is named `name`.
 
     Each material has one link, named after it, with the solids of all its elements; solids are
-    named after their elements. With `drawn` False, solids have no visual shape: pictures show none
-    of them, and PyBullet loads the document in half the time.
+    named after their elements. If `with_visual_shapes` is False, pictures show none of the solids,
+    and PyBullet loads the document in half the time.
 
     Every tag has a line of its own, as PyBullet cuts lines longer than 1,024 characters.
     """
@@ -49,7 +49,9 @@ def to_urdf(name: str, elements: tuple[Element, ...], drawn: bool = True) -> str
         for element in elements:
             if element.material == material:
                 for number, solid in enumerate(element.solids):
-                    lines += _solid(f"{element.name} #{number}", solid, material, drawn)
+                    lines += _solid(
+                        f"{element.name} #{number}", solid, material, with_visual_shapes
+                    )
         lines += [
             "</link>",
             f'<joint name="site_to_{material}" type="fixed">',
@@ -69,7 +71,7 @@ _INERTIAL = (
 )
 
 
-def _solid(name: str, solid: Solid, material: str, drawn: bool) -> list[str]:
+def _solid(name: str, solid: Solid, material: str, with_visual_shapes: bool) -> list[str]:
     quoted = quoteattr(name)
     if isinstance(solid, Box):
         shape = f'<box size="{_numbers_text(solid.size)}" />'
@@ -82,7 +84,12 @@ def _solid(name: str, solid: Solid, material: str, drawn: bool) -> list[str]:
         "</geometry>",
     ]
     shown = [f"<visual name={quoted}>", *geometry, f'<material name="{material}" />', "</visual>"]
-    return [*(shown if drawn else ()), f"<collision name={quoted}>", *geometry, "</collision>"]
+    return [
+        *(shown if with_visual_shapes else ()),
+        f"<collision name={quoted}>",
+        *geometry,
+        "</collision>",
+    ]
 
 
 def _numbers_text(vector: Vector) -> str:

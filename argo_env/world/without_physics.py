@@ -90,6 +90,6 @@ class WorldWithoutPhysics:
         direction = line / length if length else np.array([0.0, 0.0, 1.0])
         rays = self.site.rays
         _, (solid,) = rays.first_hits(
-            np.array(origin), direction[None, :], length, count_surrounding=True
+            np.array(origin), direction[None, :], length, include_solids_around_origin=True
         )
         return None if solid < 0 else rays.elements[solid].name

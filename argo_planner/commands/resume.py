@@ -82,11 +82,11 @@ def resume_command(
         if events:
             book.require_not_ended()
         site = open_site(book.header.spec.site)
-        book.require_unchanged(site)
+        book.require_inputs_unchanged(site)
         if report:
             make_folder(report)  # only now, so that a refused command leaves no folder
         at = book.entries[-1].t if book.entries else 0.0
-        if book.ended:
+        if book.had_ended_when_opened:
             console.print(f"The run had ended already, at {at:g} s; these are its results.")
         else:
             site.prepare()
@@ -106,7 +106,7 @@ def resume_command(
             seconds = time.monotonic() - begun
             speed = (record.result.duration - at) / max(1e-9, seconds)
             took = f"The rest took {seconds:.1f} s: {speed:.0f} times real time."
-            if book.ended:
+            if book.had_ended_when_opened:
                 took = f"Reading the journal took {seconds:.1f} s."
             if recorded:
                 took += f"\n{escape(recorded)}"

@@ -39,12 +39,12 @@ class RunDisplay(Observer, Closing):
         task = action.task.name if action else "waiting"
         self._progress.update(self._bar, completed=now, description=task)
 
-    def on_change(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
+    def on_entry_applied(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
         """Print anomalies and values that people reported, and those that the robot sensed."""
         reported = entry.anomalies_reported_from_outside(self._site) if self._site else ()
-        for value in entry.given_values(self._site) if self._site else ():
+        for value in entry.values_from_people(self._site) if self._site else ():
             self._print(f"{value.t!r} s: {value.in_words}")
-        for item in (*reported, *entry.anomalies_and_reading):
+        for item in (*reported, *entry.other_anomalies_then_reading):
             self.print_reading_or_anomaly(item)
 
     def print_reading_or_anomaly(self, item: Reading | Anomaly) -> None:

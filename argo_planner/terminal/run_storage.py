@@ -83,7 +83,7 @@ def require_no_unfinished_run(report: Path | None, journal: Path | None = None) 
 def _is_unfinished(path: Path) -> bool:
     try:
         with open_journal(path) as book:
-            return not book.ended
+            return not book.had_ended_when_opened
     except Invalid:  # no journal, or a damaged one
         return False
 
@@ -109,5 +109,5 @@ def is_report_of(book: Journal, folder: Path) -> bool:
         record.tasks == tasks[: len(record.tasks)]
         and record.readings == readings[: len(record.readings)]
         and record.result.duration <= reached
-        and (book.ended or not record.result.ended)
+        and (book.had_ended_when_opened or not record.result.ended)
     )

@@ -66,7 +66,7 @@ def test_a_run_that_is_refused_leaves_no_folder(folder):
 def test_a_run_that_goes_on(folder):
     site, spec = open_site("yard.yaml"), RunSpec(mission=PLAN, site="yard.yaml", drive="route")
     create_journal(folder / "run.journal", Header.from_run(site, spec)).close()
-    once = (*CHECKS, Journal.require_not_ended, Journal.require_unchanged)
+    once = (*CHECKS, Journal.require_not_ended, Journal.require_inputs_unchanged)
     run = ("resume", "run.journal", "--event", "1=pause", "--event", "2=resume")
     assert set(counted(lambda: argo(*run, status=0), *once).values()) == {1}
 
@@ -75,7 +75,7 @@ def test_a_run_that_goes_on(folder):
             resume(journal, site)
 
     assert counted(again) == ONCE
-    assert counted(again, Journal.require_unchanged) == {"require_unchanged": 1}
+    assert counted(again, Journal.require_inputs_unchanged) == {"require_inputs_unchanged": 1}
 
 
 @pytest.mark.usefixtures("folder")

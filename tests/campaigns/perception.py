@@ -31,7 +31,7 @@ from argo_env.sensing.sensor import MeasurementError
 from argo_env.sensing.vision.align import FacePose
 from argo_env.sensing.vision.instrument import Instrument
 from argo_env.sensing.vision.sensor import INSTRUMENTS, CameraSensor
-from argo_env.sensing.vision.views import plan_views, solids_near
+from argo_env.sensing.vision.views import plan_views_cheapest_first, solids_near
 from argo_env.site.shapes import Box, Cylinder, Solid
 from argo_env.world.placement import AS_PLANNED, draw_checkpoint_placement
 from argo_env.world.world import World
@@ -144,7 +144,7 @@ class Scene:
         front = np.array([0.012, 0.0, 0.0])
         hand = face.to_site(moved * np.array([0.0, 1.0, 1.0]) + front)
         plate = face.to_site(face_points(instrument) + front)
-        for view in plan_views(self.world, pose, face, solids, size, (), 1.0):
+        for view in plan_views_cheapest_first(self.world, pose, face, solids, size, (), 1.0):
             if view.obliqueness > _OBLIQUE:
                 continue
             eye = view.camera.position

@@ -153,7 +153,7 @@ def test_killed_runs_lose_nothing(argo, folder, navigator, record_property) -> N
             silent += not read_announced(output)
         assert ended
         with open_journal(journal) as book:
-            assert book.ended
+            assert book.had_ended_when_opened
             record = resume(book, opened(navigator))
         require_complete(record, reference, printed)
         done += 1

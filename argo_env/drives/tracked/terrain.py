@@ -52,7 +52,9 @@ class Terrain:
     def write_urdf(self, folder: str) -> Path:
         """Write the terrain's URDF to the folder, and return the file's path."""
         path = Path(folder) / "terrain.urdf"
-        path.write_text(to_urdf(self.name, self._elements, drawn=False), encoding="utf-8")
+        path.write_text(
+            to_urdf(self.name, self._elements, with_visual_shapes=False), encoding="utf-8"
+        )
         return path
 
 

@@ -43,7 +43,7 @@ class GasSensor:
         self._zero = self.DRIFT * float(rng.standard_normal())
         self._last: float | None = None
 
-    def measure_concentration(self, now: float, pose: BodyPose) -> float:
+    def measure_methane_ppm(self, now: float, pose: BodyPose) -> float:
         """Return the concentration of methane that the sensor shows at time `now` (s), in ppm.
 
         The sensor lags behind the air at the robot's nose: each call continues from the last one.
@@ -177,7 +177,9 @@ class GasWatch:
         self._valid_from = 0.0  # s, from when on silence means that there is no leak
 
     def restore(self, reported: Sequence[ReportedDetection], now: float) -> None:
-        """Restore the leaks that were reported and not cleared, each strongest where reported.
+        """Restore the leaks that were reported and not cleared.
+
+        The robot's pose at the report counts as the one at which the leak's signal was strongest.
 
         Before `now` + `WARMING_UP` (s), the absence of gas and hiss does not mean that a leak has
         been left behind.
@@ -195,7 +197,7 @@ class GasWatch:
 
     def update(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:
         ppm, level = (
-            self._gas_sensor.measure_concentration(now, pose),
+            self._gas_sensor.measure_methane_ppm(now, pose),
             self._microphone.measure_level(pose),
         )
         has_gas, has_hiss = self._gas.update(ppm), self._hiss.update(level)

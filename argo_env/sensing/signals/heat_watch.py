@@ -226,8 +226,8 @@ class HeatWatch:
 def find_spots(image: ThermalImage, site_map: SiteMap, air: float) -> tuple[Spot, ...]:
     """Return the hot spots in an image: warmer than its surfaces can be without a fault.
 
-    A spot has at least PIXELS pixels, and the median of up to PROBES warm ones is more than MARGIN
-    (K) above the highest temperature that the surfaces at its position can have.
+    A spot has at least PIXELS warm pixels; the median of up to PROBES of the warmest is more than
+    MARGIN (K) above the highest temperature that the surfaces at its position can have.
 
     Args:
         image: image of the thermal camera.

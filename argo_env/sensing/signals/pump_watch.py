@@ -59,7 +59,7 @@ RINGS, RECORDINGS_PER_RING = (0.8, 1.6, 3.2), 3
 
 @dataclass(frozen=True)
 class Baseline:
-    """Power in the noise band when all pumps run well, as `noise_band_power` returns it."""
+    """Power in the noise band (as `noise_band_power_unless_bang`) when all pumps run well."""
 
     site: float
     """power of the site itself"""
@@ -81,7 +81,7 @@ class AbnormalRecording:
     """share, 0 to 1, of the sound that varies at each rate, one value each 1 / RECORDING Hz"""
 
 
-def noise_band_power(samples: NDArray[np.float32]) -> float | None:
+def noise_band_power_unless_bang(samples: NDArray[np.float32]) -> float | None:
     """Return the mean power in `BAND`, which has no spectral lines of normal pumps.
 
     `samples` are a recording (Pa, RATE samples a second). The power is half the mean square of
@@ -124,7 +124,7 @@ def learn_baseline(positions: tuple[tuple[str, Vector], ...]) -> Baseline:
         for distance in RINGS:
             for angle in rng.uniform(0.0, 2 * math.pi, RECORDINGS_PER_RING).tolist():
                 listener = (x + distance * math.cos(angle), y + distance * math.sin(angle), z)
-                band_power = noise_band_power(
+                band_power = noise_band_power_unless_bang(
                     sound_at(listener, positions, {}, round(RECORDING * RATE), rng)
                 )
                 if band_power is not None:
@@ -162,7 +162,7 @@ class PumpWatch:
             self._recordings.clear()
             return ()
         samples = self._microphone.record_sound(now, pose, RECORDING)
-        band_power = noise_band_power(samples)
+        band_power = noise_band_power_unless_bang(samples)
         if band_power is None:
             return ()
         baseline = learn_baseline(tuple(self._positions.items()))
@@ -256,10 +256,11 @@ def faulty_pumps(
 def _fit_faults(
     per_pump: NDArray[np.float64], measured: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], float]:
-    """Fit the powers that the pumps' faults add, 0 to WORST times a pump's own, by least squares.
+    """Fit the excess powers `measured` by the pumps' faults, each 0 to WORST times the pump's own.
 
     Returns these multiples, and the sum of squares that remains. `per_pump` has a column for each
-    pump and a row for each recording, as `measured`.
+    pump and a row for each recording, as `measured`; both are divided by the deviations of the
+    recordings.
     """
     if not per_pump.shape[1]:
         return np.empty(0), float(measured @ measured)

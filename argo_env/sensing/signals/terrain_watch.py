@@ -179,9 +179,10 @@ class TerrainScanner:
         pattern: Pattern,
         rays: NDArray[np.int64],
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return the least and the greatest expected depth below the plane of the lane, in m.
+        """Return the least and greatest expected depth (m) of `rays` below the plane of the lane.
 
-        They are over all positions at which the robot may be, given the error of its localization.
+        There is one of each for each ray; they are over all positions at which the robot may be,
+        given the error of its localization.
         """
         origins = origin + np.repeat(POSITION_OFFSETS, len(rays), axis=0)
         reach, planar, fall = pattern.reach[rays], pattern.planar[rays], pattern.fall[rays]

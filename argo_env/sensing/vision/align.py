@@ -61,7 +61,8 @@ class Fit:
 def sample_image(image: NDArray[np.float32], pixels: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the image's values at `pixels`, column and row, shape (..., 2).
 
-    Values are interpolated between pixels; they are NaN outside of the image.
+    Column and row are 0 at the middle of the first pixel. Values are interpolated between pixels;
+    they are NaN outside of the image.
     """
     import cv2
 
@@ -213,7 +214,7 @@ def _fit_levels(
     start: tuple[float, float],
     rounds: int,
 ) -> tuple[float, float, float]:
-    """Return the weight of the points that fit, and the gain and the offset that fit them.
+    """Return the total weight of the points that fit, and the gain and offset that fit them.
 
     `v` and `t` are the brightness of points in the picture and as drawn, `w` their weights. The fit
     begins at `start`, and has `rounds` steps at most.

@@ -152,7 +152,7 @@ def face_file(kind: CheckpointKind) -> Path:
     return resources.urdf_folder() / "checkpoints" / f"{kind.value.replace(' ', '_')}_face.png"
 
 
-def face_mesh(kind: CheckpointKind) -> str:
+def face_mesh_text(kind: CheckpointKind) -> str:
     """Return the flat mesh that shows an instrument's drawn face, as text in Wavefront OBJ.
 
     The mesh lies in the plane x = 0 about the face's middle, in m; its normal is along +x.
@@ -179,7 +179,7 @@ def write_faces() -> None:
     for kind in CheckpointKind:
         path = face_file(kind)
         draw_face(kind).quantize(32).save(path, optimize=True)
-        path.with_suffix(".obj").write_text(face_mesh(kind), encoding="utf-8")
+        path.with_suffix(".obj").write_text(face_mesh_text(kind), encoding="utf-8")
         material = f"newmtl face\nKa 1 1 1\nKd 1 1 1\nmap_Kd {path.name}\n"
         path.with_suffix(".mtl").write_text(material, encoding="utf-8")
 

@@ -107,7 +107,7 @@ def reading_probability(fit: Fit, indicator: IndicatorPosition, cosine: float) -
 
 
 def find_most_probable_reading(readings: Sequence[PictureReading]) -> PictureReading | None:
-    """Return the most probable reading and its probability, or None if there are no readings.
+    """Return the most probable reading, with its probability given all; None without readings.
 
     Bayes' rule is applied to the hypotheses "this group of readings that agree is right, and the
     others are wrong" and "all are wrong", with a probability that wrong readings agree.

@@ -114,12 +114,15 @@ def make_template(instrument: Instrument, spacing: float, blur: float) -> Templa
 
 
 def grid(x: float, y: NDArray[np.float64], z: NDArray[np.float64]) -> Points:
-    """Return points of all combinations of `y` with `z` (m) at `x`, shape (len(z) * len(y), 3)."""
+    """Return points of all combinations of `y` with `z` (m) at `x`, shape (len(z) * len(y), 3).
+
+    The points with the first z come first, in the order of `y`.
+    """
     ys, zs = np.meshgrid(y, z)
     return np.column_stack([np.full(ys.size, x), ys.ravel(), zs.ravel()])
 
 
-def turn_points(points: Points, angles: Points) -> Points:
+def turn_points_by_each_angle(points: Points, angles: Points) -> Points:
     """Return n points turned about the instrument's x axis by each of m angles, shape (m, n, 3).
 
     `points` (m) have the shape (n, 3); angles (rad) are clockwise as seen from the front.
@@ -146,7 +149,7 @@ DIAL = Instrument(
         beside=grid(0.0, np.array([-0.010, -0.008, 0.008, 0.010]), _NEEDLE),
         low=math.radians(-135),
         high=math.radians(135),
-        move=turn_points,
+        move=turn_points_by_each_angle,
     ),
 )
 """a red needle over a round scale of 270 degrees"""
@@ -154,7 +157,7 @@ DIAL = Instrument(
 _FLOAT = np.linspace(-0.012, 0.012, 7)  # m from the middle, points of the float that are searched
 
 
-def move_points_up(
+def lift_points_by_each_height(
     points: NDArray[np.float64], heights: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Return n points (m), shape (n, 3), moved up by each of m heights (m), shape (m, n, 3)."""
@@ -174,7 +177,7 @@ LEVEL = Instrument(
         beside=grid(0.0, _FLOAT, np.array([-0.015, -0.013, 0.013, 0.015])),
         low=-0.12,
         high=0.12,
-        move=move_points_up,
+        move=lift_points_by_each_height,
     ),
 )
 """a red float in a glass beside a scale of 240 mm"""
@@ -195,7 +198,7 @@ VALVE = Instrument(
         beside=grid(_MIDDLE, np.array([-0.026, -0.022, 0.022, 0.026]), _LEVER),
         low=0.0,
         high=math.radians(90),
-        move=turn_points,
+        move=turn_points_by_each_angle,
     ),
 )
 """a red lever over a plate with a mark for shut and one for open"""

@@ -28,7 +28,7 @@ _UPRIGHT = 0.9  # cosine to the vertical, at least, of an upright face
 _FILLED = 0.8  # ratio of the areas of a patch's hull and of its ellipse or rectangle, at least
 
 
-def find_poses_by_outline(
+def find_unsorted_poses_by_outline(
     photo: Photo, instrument: Instrument, planned: FacePose
 ) -> list[tuple[float, FacePose]]:
     """Return the poses, without roll, of all bright patches of the picture that could be the face.
@@ -55,7 +55,7 @@ def _poses_from_patch(
 ) -> list[tuple[float, FacePose]]:
     """Return the possible poses of a face with this outline, shape (n, 1, 2) in px.
 
-    Each comes after a number, as in `find_poses_by_outline`.
+    Each comes after a number, as in `find_unsorted_poses_by_outline`.
     """
     import cv2
 
@@ -248,7 +248,7 @@ def find_face(photo: Photo, instrument: Instrument, planned: FacePose) -> Fit | 
     rough, fine = photo.blurred(_ROUGH / pixel_size), photo.blurred(_SOFT / pixel_size)
     outlines = [
         (filled, pose)
-        for filled, pose in find_poses_by_outline(photo, instrument, planned)
+        for filled, pose in find_unsorted_poses_by_outline(photo, instrument, planned)
         if _is_allowed(pose, planned, 0.03)
     ]
     starts: list[tuple[float, FacePose]] = []

@@ -26,7 +26,10 @@ class Lens:
     """px"""
 
     def project(self, points: NDArray[np.float64], pose: CameraPose) -> NDArray[np.float64]:
-        """Return column and row (px) of points (m, in the site's frame): (..., 3) to (..., 2)."""
+        """Return column and row (px) of points (m, in the site's frame): (..., 3) to (..., 2).
+
+        They are 0 at the middle of the first pixel, and meaningless for points behind the camera.
+        """
         seen = (points - pose.position) @ pose.rotation
         middle = (self.size - 1) / 2
         return np.asarray(middle + self.focal * seen[..., :2] / seen[..., 2:])

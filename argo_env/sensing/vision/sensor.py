@@ -23,7 +23,7 @@ from argo_env.sensing.vision.indicator import (
 from argo_env.sensing.vision.instrument import DIAL, LEVEL, VALVE, Instrument
 from argo_env.sensing.vision.locate import find_face, find_face_near
 from argo_env.sensing.vision.photo import Lens, Photo, make_photo, take_picture
-from argo_env.sensing.vision.views import ArmView, plan_views, solids_near
+from argo_env.sensing.vision.views import ArmView, plan_views_cheapest_first, solids_near
 from argo_env.site import SiteCheckpoint
 from argo_env.site.shapes import Solid
 from argo_env.world.placement import MAX_OFFSET
@@ -217,10 +217,12 @@ class _CameraMeasurement:
 
     def _views(self, face: FacePose) -> Iterator[ArmView]:
         size = 0.8 * self._instrument.shape.half_width
-        return plan_views(self._world, self._pose, face, self._solids, size, self._used, _SPREAD)
+        return plan_views_cheapest_first(
+            self._world, self._pose, face, self._solids, size, self._used, _SPREAD
+        )
 
     def _take_photo(self, view: ArmView, radius: float, pixels: int) -> Photo:
-        """Take a picture of everything within a radius (m) about the middle of the view."""
+        """Take a square picture, `pixels` wide, of all within `radius` (m) of the view's middle."""
         half = math.tan(math.asin(min(0.8, radius / view.distance)))
         lens = Lens(pixels, pixels / 2 / half)
         self._world.set_joints(dict(zip(JOINTS, view.joints.tolist(), strict=True)))

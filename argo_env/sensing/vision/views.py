@@ -52,7 +52,7 @@ def solids_near(site: Site, point: NDArray[np.float64], reach: float) -> tuple[S
     )
 
 
-def plan_views(
+def plan_views_cheapest_first(
     world: World,
     pose: BodyPose,
     face: FacePose,

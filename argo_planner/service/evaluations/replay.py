@@ -42,7 +42,7 @@ class _EntryCollector(Observer):
     def __init__(self) -> None:
         self.entries: list[Entry] = []
 
-    def on_change(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
+    def on_entry_applied(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
         self.entries.append(entry)
 
 

@@ -64,7 +64,7 @@ class EntryReporter(Observer):
         for entry in past:
             self._add(entry)
 
-    def on_change(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
+    def on_entry_applied(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
         """Count a new entry, and send it to the service with its number."""
         self._add(entry)
         self._send(EntryTold.model_construct(run=self._run, number=self.count, entry=entry))

@@ -202,7 +202,7 @@ class RunFolder:
         if last is None:
             return False
         with open_journal(last) as journal:
-            return journal.ended
+            return journal.had_ended_when_opened
 
 
 class DiskThread:

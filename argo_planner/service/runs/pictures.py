@@ -41,7 +41,7 @@ class PictureWriter(Observer):
 
         setup.world.on_shot = receive_shot
 
-    def on_change(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
+    def on_entry_applied(self, entry: Entry, machine: Machine) -> None:  # noqa: ARG002
         """Write the picture of the entry's reading; a file that can't be written is only logged."""
         if entry.reading is None or self._last is None:
             return

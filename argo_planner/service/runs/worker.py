@@ -164,7 +164,7 @@ class _RunWorker:
         if paths := journal_paths(self._folder):
             journal = stack.enter_context(open_journal(paths[-1]))
             if not self._only_stops:
-                journal.require_unchanged(self._site)
+                journal.require_inputs_unchanged(self._site)
             return journal
         order = self._order
         spec = RunSpec(

@@ -215,7 +215,7 @@ def test_interrupted_after_any_step(yard, complete, path):
             so_far = getattr(record, name)
             assert so_far == getattr(reference, name)[: len(so_far)]
         with open_journal(path) as journal:
-            assert not journal.ended
+            assert not journal.had_ended_when_opened
             reached = journal.entries[-1].t if journal.entries else None
         continued, announced = resumed(yard, path)
         assert (*record.readings, *announced) == continued.readings
@@ -521,13 +521,13 @@ class TestRefusals:
         source.write_text("first")
         create_journal(path, header(yard, source=str(source))).close()
         with open_journal(path) as journal:
-            journal.require_unchanged(opened(yard))
+            journal.require_inputs_unchanged(opened(yard))
             source.write_text("second")
             with pytest.raises(ArgoError, match="mission file"):
                 resume(journal, opened(yard))
             # The journal holds the mission itself.
             source.unlink()
-            journal.require_unchanged(opened(yard))
+            journal.require_inputs_unchanged(opened(yard))
 
     def test_entries_of_another_mission(self, yard, complete, path):
         content = complete.content

@@ -465,7 +465,7 @@ class TestJournalOfASteeredRun:
     def test_it_ends_as_it_has_ended(self, site, steered):
         record, path = steered
         with open_journal(path) as journal:
-            assert journal.ended
+            assert journal.had_ended_when_opened
             assert resume(journal, site) == record
         assert record.readings[-1].value == 8.0
 
@@ -576,7 +576,7 @@ def observer_that_acts(method, action):
 
 
 class TestObservers:
-    @pytest.mark.parametrize("method", ["on_entry", "on_change", "on_step"])
+    @pytest.mark.parametrize("method", ["on_entry", "on_entry_applied", "on_step"])
     @pytest.mark.parametrize(
         "action", [lambda s: s.handle(Pause()), lambda s: s.step(), lambda s: s.run()]
     )
@@ -588,7 +588,7 @@ class TestObservers:
         ):
             steps(simulation, 20)
 
-    @pytest.mark.parametrize("method", ["on_entry", "on_change", "on_step"])
+    @pytest.mark.parametrize("method", ["on_entry", "on_entry_applied", "on_step"])
     def test_what_they_raise_breaks_the_run_off(self, site, method):
         def fail():
             if simulation.now == 2.0:

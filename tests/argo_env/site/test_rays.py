@@ -67,7 +67,9 @@ def test_a_ray_from_inside_begins_behind_itself():
     )
     ahead = np.array([[1.0, 0.0, 0.0]])
     assert [v[0] for v in rays.first_hits(np.zeros(3), ahead, 9.0)] == [2.5, 1]
-    assert [v[0] for v in rays.first_hits(np.zeros(3), ahead, 9.0, count_surrounding=True)] == [
+    assert [
+        v[0] for v in rays.first_hits(np.zeros(3), ahead, 9.0, include_solids_around_origin=True)
+    ] == [
         -1.0,
         0,
     ]

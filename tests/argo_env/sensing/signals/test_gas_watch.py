@@ -125,7 +125,7 @@ def test_the_sensor_shows_nine_tenths_after_its_time(site):
     surroundings.add(GasLeak((7.0, 2.0, Z + 0.5), 0.05), -1e6)
     sensor = GasSensor(surroundings, Still())
     pose = BodyPose(9.0, 2.0, Z, 0.0)
-    shown = [sensor.measure_concentration(t, pose) for t in (0.0, GasSensor.T90, 1000.0)]
+    shown = [sensor.measure_methane_ppm(t, pose) for t in (0.0, GasSensor.T90, 1000.0)]
     assert shown[0] == GasSensor.BACKGROUND
     rise = (shown[1] - shown[0]) / (shown[2] - shown[0])
     assert abs(rise - 0.9) < 1e-9

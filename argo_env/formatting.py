@@ -3,8 +3,8 @@
 from argo_env.site.shapes import Vector
 
 
-def clock(seconds: float) -> str:
-    """Return a time in s as text in minutes and seconds, such as `04:59`."""
+def min_sec_text(seconds: float) -> str:
+    """Return a time in s as text in minutes and seconds, such as `04:59` or `74:51` (no hours)."""
     whole = round(seconds)
     return f"{whole // 60:02d}:{whole % 60:02d}"
 
@@ -18,10 +18,10 @@ def time_text(seconds: float) -> str:
     return f"{hours}:{minutes:02d}:{rest:02d} h" if hours else f"{minutes}:{rest:02d} min"
 
 
-def where(floor: int | None, place: Vector) -> str:
+def floor_and_position_text(floor: int | None, place: Vector) -> str:
     """Return a position in m on a floor as text, such as `floor 2 at (1.00, 2.00, 2.50)`.
 
-    The floor must be known: it is None only for anomalies without a position.
+    The caller must give a floor: only anomalies without a position have None.
     """
     x, y, z = place
     return f"floor {floor} at ({x:.2f}, {y:.2f}, {z:.2f})"

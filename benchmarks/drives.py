@@ -128,7 +128,9 @@ def time_motions_and_count_failed_paths(
     failed = 0
     with World(navigator.site, navigator.robot) as world:
         drive = make(world, navigator.robot)
-        start = navigator.snap_position(start_pose_or_lowest_dock(mission, navigator.site.docks))
+        start = navigator.snap_keeping_heading(
+            start_pose_or_lowest_dock(mission, navigator.site.docks)
+        )
         drive.place_robot(BodyPose(start.x, start.y, start.z, start.yaw))
         for task in mission.tasks[1:]:
             here = Pose(x=drive.pose.x, y=drive.pose.y, z=drive.pose.z, yaw=drive.pose.yaw)

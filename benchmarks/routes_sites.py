@@ -48,7 +48,7 @@ def make_site_matrix(name: str) -> SiteMatrix:
 
     navigator = open_site(name).navigator
     site = navigator.site
-    docks = [navigator.snap_position(site.docks[number]) for number in sorted(site.docks)]
+    docks = [navigator.snap_keeping_heading(site.docks[number]) for number in sorted(site.docks)]
     seconds = navigator.travel_times([*(c.id for c in site.checkpoints), *docks])
     times = np.where(np.isfinite(seconds), np.ceil(seconds / UNIT), NEVER).astype(np.int64)
     return SiteMatrix(name, times, len(site.checkpoints))

@@ -183,7 +183,7 @@ class ProcessVectorEnv(Copyable, VectorEnv[Observation, NDArray[Any], NDArray[An
     def _request(self, name: str, arguments: Sequence[tuple[Any, ...]]) -> list[Any]:
         if self.closed:
             raise gym.error.ClosedEnvironmentError(f"{self._title}: the batch is closed")
-        return self._workers.call_in_each_process(name, arguments)
+        return self._workers.call_and_join_answers(name, arguments)
 
     def _call_each(
         self, name: str, arguments: Sequence[tuple[Any, ...]], named: dict[str, Any]

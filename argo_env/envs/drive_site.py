@@ -22,7 +22,7 @@ from argo_env.world.world import World
 SITE_FAULTS = tuple(
     k
     for k, fault in KINDS.items()
-    if fault.all_elements_with_fault is not Fault.all_elements_with_fault
+    if fault.site_elements_with_fault is not Fault.site_elements_with_fault
 )
 """kinds of faults that change the site"""
 DRIVE_FAULT = "drive_dysfunction"

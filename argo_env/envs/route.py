@@ -169,7 +169,7 @@ class RouteEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
         numbers = self._episodes.instance_numbers
         self._number = numbers[episode_hash(self._key, self._episode) % len(numbers)]
         self.instance = self._known = self._episodes.instance(self._number)
-        self._place, self._route = self.instance.start, []
+        self._place, self._route = self.instance.start_row, []
         self._time_left = self.instance.budget_array
         self._missing = self.instance.missing_predecessors.copy()
         self._prizes = self.instance.prizes.astype(np.float32)
@@ -195,7 +195,7 @@ class RouteEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
         if failed:
             self._failing[node] -= 1
         else:
-            self._missing -= instance.missing_decrease[node]
+            self._missing -= instance.missing_decrease_by_visit[node]
             self._prizes[node] = 0.0
         self._place = node
         self._route.append(node)
@@ -271,7 +271,7 @@ class RouteEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
             left = np.maximum(left, np.float32(0.0))
         observation: Observation = {
             "travel": instance.travel_share_rows[place].copy(),
-            "home": instance.home_shares.copy(),
+            "home": instance.time_to_dock_shares.copy(),
             "prize": self._prizes.copy(),
             "left": left / instance.budget_array,
             "mask": mask.view(np.int8).copy(),
@@ -292,7 +292,7 @@ class RouteEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
             self._episodes.source,
             self._episodes.options.given_floors,
             self.instance,
-            (self.instance.start, *self._route),
+            (self.instance.start_row, *self._route),
             score_route(self.instance, self._route).visited,
             self._mask,
             self._time(),

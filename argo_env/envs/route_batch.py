@@ -131,7 +131,7 @@ class RouteVectorEnv(Copyable, VectorEnv[Observation, NDArray[np.int64], NDArray
         rewards = pool.prizes[self._chosen, nodes]
         size = self._missing.shape[1]
         self._time += pool.arrival[self._known * (size + 1) + self._place, nodes]
-        effect = pool.missing_decrease.take(self._chosen * size + nodes, axis=0)
+        effect = pool.missing_decrease_by_visit.take(self._chosen * size + nodes, axis=0)
         if pool.noisy:
             failed = self._apply_failures(nodes, rewards, effect)
         else:
@@ -308,7 +308,7 @@ class RouteVectorEnv(Copyable, VectorEnv[Observation, NDArray[np.int64], NDArray
             np.maximum(left, np.float32(0.0), out=left)
         observation: Observation = {
             "travel": pool.travel_shares.take(row, axis=0),
-            "home": pool.home_shares.take(self._known, axis=0),
+            "home": pool.time_to_dock_shares.take(self._known, axis=0),
             "prize": self._prizes.copy(),
             "left": left / budget,
             "mask": mask.astype(np.int8),

@@ -31,7 +31,7 @@ class LegPaths(Protocol):
     footprint: Footprint | None
     """footprint of the robot; None if it is a point"""
 
-    def robot_pose_at(self, position: Position) -> tuple[Position, float]:
+    def visiting_pose(self, position: Position) -> tuple[Position, float]:
         """Return where the robot stands when it visits a position, and its heading (rad) there."""
         ...
 
@@ -49,7 +49,9 @@ def leg_paths_for(source: RouteSource) -> LegPaths:
     """Return the object that finds paths between the positions of a source's instances."""
     if isinstance(source, SiteRoutes):
         return _SiteLegs(open_site(source.scenario).navigator)
-    return _AisleLegs(source.ends) if isinstance(source, RandomRoutes) else _StraightLegs()
+    return (
+        _AisleLegs(source.ends_with_stairs) if isinstance(source, RandomRoutes) else _StraightLegs()
+    )
 
 
 class _StraightLegs:
@@ -57,7 +59,7 @@ class _StraightLegs:
 
     footprint: Footprint | None = None
 
-    def robot_pose_at(self, position: Position) -> tuple[Position, float]:
+    def visiting_pose(self, position: Position) -> tuple[Position, float]:
         return position, 0.0
 
     def path_and_final_heading(
@@ -91,7 +93,7 @@ class _AisleLegs(_StraightLegs):
     def _stair_ends(
         self, a: Position, b: Position, levels: Sequence[int], blocked: tuple[Stair, ...]
     ) -> list[float]:
-        """Return the x (m) where the shortest path takes the stairs above each of `levels`."""
+        """Return the x (m) where the shortest path takes the stairs up from each level."""
         choices = [
             [(0.0, WIDTH)[end] for end in range(self._ends) if (end, level) not in blocked]
             for level in levels
@@ -114,7 +116,7 @@ class _SiteLegs:
         self.footprint = navigator.robot.footprint
         self._ids = {(c.position[0], c.position[1], c.floor): c.id for c in self._site.checkpoints}
 
-    def robot_pose_at(self, position: Position) -> tuple[Position, float]:
+    def visiting_pose(self, position: Position) -> tuple[Position, float]:
         pose = self._pose(position)
         return (pose.x, pose.y, position[2]), pose.yaw
 
@@ -135,7 +137,7 @@ class _SiteLegs:
     def _pose(self, position: Position) -> Pose:
         if position in self._ids:
             return self._navigator.viewing_pose(self._ids[position])
-        return self._navigator.snap_position(self._site.docks[min(self._site.docks)])
+        return self._navigator.snap_keeping_heading(self._site.docks[min(self._site.docks)])
 
 
 _LEGEND = {
@@ -162,17 +164,17 @@ def draw_route(
 
     Args:
         source: Source of the instance.
-        floors: Floors whose checkpoints count; all floors if it is empty.
+        floors: Floors asked for; checkpoints on others are marked as not asked for. Empty: all.
         instance: The instance.
         route: Rows of the instance in the order of the visits; the last one is where the robot is.
-        visited: Visited checkpoints; the route need not contain them.
+        visited: Nodes of the checkpoints to draw as visited, whether or not they are on the route.
         legal: Mask of the nodes that are legal now.
         time: Time of the route so far in s.
     """
     positions: list[Position] = [
         (x, y, round(floor)) for x, y, floor in instance.positions.tolist()
     ]
-    start = instance.start
+    start = instance.start_row
     markers = []
     for node in range(1, instance.node_count):
         x, y, floor = positions[node]
@@ -189,7 +191,7 @@ def draw_route(
     if not starts_at_dock:
         stations.append(StationMark(*positions[start], "start"))
     legs = leg_paths_for(source)
-    first, heading = legs.robot_pose_at(positions[route[0]])
+    first, heading = legs.visiting_pose(positions[route[0]])
     path = [PathPoint(0.0, *first)]
     for a, b in pairwise(route):
         t = path[-1].t
@@ -229,7 +231,7 @@ def _sheet(
         return site_sheet(source.scenario, low, high, requested or tuple(numbers))
     plans: tuple[FloorPlan, ...]
     if isinstance(source, RandomRoutes):
-        plans = aisle_plans(WIDTH, DEPTH, high, source.ends)[low - 1 :]
+        plans = aisle_plans(WIDTH, DEPTH, high, source.ends_with_stairs)[low - 1 :]
     else:
         plans = empty_floor_plans([position[:2] for position in positions if position[2]], numbers)
     return make_sheet(plans, [n for n in numbers if requested and n not in requested])

@@ -34,7 +34,7 @@ from argo_env.envs.route_sources import (
     RouteFaults,
     RouteSource,
     SiteRoutes,
-    count_existing_checkpoints,
+    existing_checkpoints_per_instance,
 )
 
 FPS = 4  # frames per second of films
@@ -75,10 +75,10 @@ class InstancePool:
     """as `arrival`"""
     travel_shares: NDArray[np.float32]
     """as `arrival`"""
-    home_shares: NDArray[np.float32]
+    time_to_dock_shares: NDArray[np.float32]
     """one row for each stage of each instance"""
     before: NDArray[np.int8]
-    missing_decrease: NDArray[np.int16]
+    missing_decrease_by_visit: NDArray[np.int16]
     """numbers that the visit of a node subtracts from `missing_predecessors`,
     shape (m * (n + 1), n + 1)"""
     missing_predecessors: NDArray[np.int16]
@@ -140,7 +140,7 @@ class Episodes:
         self.instance = lru_cache(maxsize=_CACHED_INSTANCES)(self._draw)
         self._pool: InstancePool | None = None
 
-    def scenario_name(self, options: RouteOptions) -> str:
+    def scenario_name_for_messages(self, options: RouteOptions) -> str:
         """Return the name of the scenario with these options, for messages."""
         if options.scenario is None and self._given_source is not None:
             return "of the `source`"
@@ -153,14 +153,14 @@ class Episodes:
         """
         if options.scenario is None and self._given_source is not None:
             return self._given_source
-        scenario = self.scenario_name(options)
+        scenario = self.scenario_name_for_messages(options)
         if scenario == "random":
             return RandomRoutes(self._checkpoints, budget=self._budget, noise=self._noise)
         return _site_routes(self._checkpoints, scenario, self._budget, self._noise)
 
     @property
     def instance_numbers(self) -> range | tuple[int, ...]:
-        """Numbers of the instances from which episodes draw: TRAINING, TEST or the option's."""
+        """Numbers from which episodes draw: the option's, TEST if options say so, else TRAINING."""
         if isinstance(self.options.instance, int):
             return (self.options.instance,)
         return self.options.instance or (TEST if self.options.test else TRAINING)
@@ -192,9 +192,9 @@ def route_options_from_dict(
     options = options_from_dict(RouteOptions, given, _NAME)
     if options.instance is not None:
         _check_instance(options, batch_size)
-    source, scenario = episodes.source_for(options), episodes.scenario_name(options)
+    source, scenario = episodes.source_for(options), episodes.scenario_name_for_messages(options)
     check_floors(scenario, range(1, source.floors + 1), options.given_floors)
-    available, slots = count_existing_checkpoints(source), episodes.size - 1
+    available, slots = existing_checkpoints_per_instance(source), episodes.size - 1
     if options.faults.closed > available:
         of = f"scenario {scenario}" if available < slots else "a route"
         more = "" if available < slots else ", or make the environment with more `checkpoints`"
@@ -206,7 +206,10 @@ def route_options_from_dict(
 
 
 def _check_instance(options: RouteOptions, count: int | None) -> None:
-    """Raise ArgoError if `options.instance` is wrong, or if other options choose instances too."""
+    """Raise ArgoError if `options.instance` is wrong, or if other options choose instances too.
+
+    `count` is the number of environments; None: it is a single one without a batch.
+    """
     given = options.instance
     numbers = given if isinstance(given, tuple) else (given,)
     if isinstance(given, tuple) and len(given) != count:
@@ -280,9 +283,9 @@ def _make_pool(
         arrival=np.concatenate([_arrival_at_rest(k) for k in known]),
         time_to_dock_via=np.concatenate([k.time_to_dock_via for k in known]),
         travel_shares=np.concatenate([k.travel_shares for k in known]),
-        home_shares=np.stack([k.home_shares for k in known]),
+        time_to_dock_shares=np.stack([k.time_to_dock_shares for k in known]),
         before=np.stack([m.before for m in instances]).astype(np.int8),
-        missing_decrease=np.concatenate([m.missing_decrease for m in instances]),
+        missing_decrease_by_visit=np.concatenate([m.missing_decrease_by_visit for m in instances]),
         missing_predecessors=np.stack([m.before.sum(axis=0, dtype=np.int16) for m in instances]),
         prizes=np.stack([m.prizes for m in instances]),
         budget=np.array([m.budget for m in instances], dtype=np.float32),

@@ -48,12 +48,12 @@ class RouteInstance:
         return len(self.prizes)
 
     @property
-    def start(self) -> int:
+    def start_row(self) -> int:
         """Index of the start's row in `arrival`, `positions` and the tables of the same shape."""
         return self.node_count
 
     @cached_property
-    def home_shares(self) -> NDArray[np.float32]:
+    def time_to_dock_shares(self) -> NDArray[np.float32]:
         """Time from each node to the dock as a share of the budget, at most 1, shape (n + 1,)."""
         home: NDArray[np.float32] = np.minimum(
             self.arrival[: self.node_count, DOCK] / np.float32(self.budget), np.float32(1.0)
@@ -78,11 +78,11 @@ class RouteInstance:
 
     @cached_property
     def missing_predecessors(self) -> NDArray[np.int16]:
-        """Number of checkpoints that `before` has before each node, shape (n + 1,)."""
+        """Number of checkpoints that must precede each node, before any visit, shape (n + 1,)."""
         return np.asarray(self.before.sum(axis=0, dtype=np.int16))
 
     @cached_property
-    def missing_decrease(self) -> NDArray[np.int16]:
+    def missing_decrease_by_visit(self) -> NDArray[np.int16]:
         """Numbers that the visit of a node (row) subtracts from `missing_predecessors`.
 
         The shape is (n + 1, n + 1). A number is 1 for each node that must come after the visited
@@ -273,7 +273,7 @@ def score_route(instance: RouteInstance, route: Sequence[int]) -> Score:
 
     This is written to be read, and deliberately shares no code with the environment.
     """
-    place, time, prize = instance.start, 0.0, 0.0
+    place, time, prize = instance.start_row, 0.0, 0.0
     visited: list[int] = []
     attempts = [0] * instance.node_count
     illegal = None

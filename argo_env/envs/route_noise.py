@@ -46,7 +46,7 @@ def draw_blocked_stairs(
 
     Args:
         noise: Settings.
-        budget: s.
+        budget: s of the episode, during which the stairs are found blocked.
         stairs: Stairs that may be blocked.
         times_without: Function that returns the travel times (s) without some stairs, None if these
             are indispensable.

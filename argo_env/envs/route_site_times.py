@@ -37,7 +37,7 @@ def site_times(scenario: str) -> SiteTimes:
     navigator = open_site(scenario).navigator
     site = navigator.site
     number = min(site.docks)
-    dock = navigator.snap_position(site.docks[number])
+    dock = navigator.snap_keeping_heading(site.docks[number])
     times = navigator.travel_times([dock, *(c.id for c in site.checkpoints)])
     positions = [(dock.x, dock.y, site.floor_at(dock.z))]
     positions += [(c.position[0], c.position[1], c.floor) for c in site.checkpoints]
@@ -47,7 +47,7 @@ def site_times(scenario: str) -> SiteTimes:
 
 @lru_cache(maxsize=8)
 def site_stairs(scenario: str) -> tuple[Stair, ...]:
-    """Return all stairs of a site, each as the index of its tower and the number of its floor."""
+    """Return all stairs of a site, each as its tower's index and its lower floor's number."""
     spec = open_site(scenario).site.spec
     return tuple(
         (tower, floor.number) for tower in range(len(spec.towers)) for floor in spec.floors[:-1]
@@ -62,7 +62,7 @@ def site_times_without(scenario: str, blocked: tuple[Stair, ...]) -> NDArray[np.
     """
     navigator = open_site(scenario).navigator
     site = navigator.site
-    positions = [navigator.snap_position(site.docks[min(site.docks)])]
+    positions = [navigator.snap_keeping_heading(site.docks[min(site.docks)])]
     positions += [navigator.viewing_pose(c.id) for c in site.checkpoints]
     try:
         times = navigator_without(navigator, blocked).travel_times(positions)

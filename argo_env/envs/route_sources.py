@@ -26,7 +26,7 @@ _UP, _DOWN = 33.0, 16.0  # s per floor
 def list_stairs(floors: int, ends: int) -> list[Stair]:
     """Return all stairs of a random site with so many floors, and stairs at so many of their ends.
 
-    They are at the end x = 0 (number 0) and, with two ends, at x = WIDTH (number 1).
+    Each is (end, number of the lower floor, from 1). End 0 is at x = 0, end 1 at x = WIDTH.
     """
     return [(end, floor) for end in range(ends) for floor in range(1, floors)]
 
@@ -146,7 +146,7 @@ class RandomRoutes:
     precedence: float = PRECEDENCE
 
     @property
-    def ends(self) -> int:
+    def ends_with_stairs(self) -> int:
         """Number of ends of the floors at which there are stairs."""
         return 2 if self.noise.blocked else 1
 
@@ -168,8 +168,8 @@ class RandomRoutes:
         service = np.concatenate([[0.0], rng.uniform(5.0, 15.0, self.checkpoints)])
         spec = _InstanceSpec(self.budget, self.noise, self.precedence, floors, faults)
         return _complete_instance(
-            partial(aisle_times, positions, self.floors, self.ends),
-            list_stairs(self.floors, self.ends),
+            partial(aisle_times, positions, self.floors, self.ends_with_stairs),
+            list_stairs(self.floors, self.ends_with_stairs),
             service,
             positions,
             spec,
@@ -211,7 +211,7 @@ class SiteRoutes:
     def check_usable(self) -> None:
         """Raise ArgoError if there is no such site, or if its stairs can't be blocked as requested.
 
-        They can't if the noise asks for blocked stairs and there is no detour around any.
+        They can't if the noise asks for blocked stairs and no stairs of the site have a detour.
         """
         name, _ = self.scenario, self.floors
         if self.noise.blocked and not any(
@@ -314,7 +314,7 @@ def _complete_instance(
     return with_hidden(instance, failing, blocked, service)
 
 
-def count_existing_checkpoints(source: RouteSource) -> int:
+def existing_checkpoints_per_instance(source: RouteSource) -> int:
     """Return the number of checkpoints in a source's instances that exist.
 
     It is lower than `source.checkpoints` if the site does not have as many.

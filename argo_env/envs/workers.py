@@ -57,20 +57,22 @@ class Workers(NonCopyable):
             self.close()
             raise
 
-    def call_in_each_process(self, name: str, arguments: Sequence[tuple[Any, ...]]) -> list[Any]:
+    def call_and_join_answers(
+        self, name: str, process_arguments: Sequence[tuple[Any, ...]]
+    ) -> list[Any]:
         """Call a method of `_WorkerEnvs` in each process, and return each environment's answer.
 
-        `arguments` has those of each process. The method returns a list with an answer for each of
-        its environments; these lists are joined, in the order of the environments. If
-        environments raise errors, the first one is raised after all processes have answered. If a
-        process has died, all processes are ended and Unavailable is raised.
+        `process_arguments` has the arguments for each process. The method returns a list with an
+        answer for each of its environments; these lists are joined, in the order of the
+        environments. If environments raise errors, the first one is raised after all processes have
+        answered. If a process has died, all processes are ended and Unavailable is raised.
         """
         if not self._finalizer.alive:
             raise gym.error.ClosedEnvironmentError("the processes of this batch have ended")
         self._request_count += 1
         for k, pipe in enumerate(self._pipes):
             try:
-                pipe.send((self._request_count, name, arguments[k]))
+                pipe.send((self._request_count, name, process_arguments[k]))
             except OSError:
                 raise self._dead_worker_error(k) from None
         return self._receive()

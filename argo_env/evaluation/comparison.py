@@ -16,7 +16,7 @@ from argo_env.evaluation.estimates.pairs import (
     mean_first_minus_second,
     power,
 )
-from argo_env.evaluation.estimates.rates import world_means
+from argo_env.evaluation.estimates.rates import world_means_in_order_seen
 from argo_env.evaluation.estimates.sequences import ConfidenceSequence
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunRow
@@ -105,8 +105,9 @@ class PlanComparison:
         """Return the power of McNemar's exact test for this number of pairs.
 
         That is the probability that the test shows a difference if one plan truly succeeds more
-        often by `gain` (0 to 1). In addition, each plan is assumed to succeed alone in the share of
-        pairs in which the plan with fewer such pairs did so here.
+        often by `gain` (0 to 1). The share of pairs in which only the worse plan succeeds is
+        assumed to be the smaller of the two such shares here, and that of the better plan `gain`
+        more.
         """
         pairs = self.successes
         noise = min(pairs.first_only, pairs.second_only) / pairs.pairs if pairs.pairs else 0.0
@@ -120,7 +121,7 @@ class PlanComparison:
         is_significant = excludes_zero if self.any_time else self.p_value <= 0.05
         if is_significant:
             return f"{'A' if self.success.value > 0 else 'B'} succeeds more often."
-        if self.duration.is_significant:
+        if self.duration.is_significant_by_p_value:
             faster = "A" if self.duration.value < 0 else "B"
             return f"No difference in success is shown; {faster} is faster where both succeed."
         return "No difference is shown."
@@ -169,20 +170,21 @@ def compare_plans(
     )
 
 
-def find_plan(results: EvaluationResults, name: str) -> PlanName:
+def plan_by_label_or_mission(results: EvaluationResults, label_or_mission: str) -> PlanName:
     """Return the evaluation's plan with this label or, if no plan has it, the one of this mission.
 
     Raises NotFound if there is no such plan, Conflict if there are several.
     """
     plans = results.plan.plans
-    matches = [plan for plan in plans if plan.label(plans) == name]
-    matches = matches or [plan for plan in plans if plan.mission == name]
+    matches = [plan for plan in plans if plan.label(plans) == label_or_mission]
+    matches = matches or [plan for plan in plans if plan.mission == label_or_mission]
     known = "; ".join(plan.label(plans) for plan in plans)
     if not matches:
-        raise NotFound(f"{results.plan.name} has no plan `{name}`; there are: {known}")
+        raise NotFound(f"{results.plan.name} has no plan `{label_or_mission}`; there are: {known}")
     if len(matches) > 1:
         raise Conflict(
-            f"`{name}` can be several plans of {results.plan.name}; name one of: {known}"
+            f"`{label_or_mission}` can be several plans of {results.plan.name}; "
+            f"name one of: {known}"
         )
     return matches[0]
 
@@ -199,7 +201,9 @@ def _only_plan(results: EvaluationResults) -> PlanName:
 
 def _world_means(value: Callable[[RunRow], float], pairs: _Pairs) -> NDArray[np.float64]:
     """Return, for each plan, the mean of a value of its runs in each world; shape (2, worlds)."""
-    return world_means((a.seed, (value(a), value(b))) for a, b in pairs).reshape(-1, 2).T
+    return (
+        world_means_in_order_seen((a.seed, (value(a), value(b))) for a, b in pairs).reshape(-1, 2).T
+    )
 
 
 def _successes(pairs: _Pairs) -> SuccessPairs:

@@ -23,7 +23,7 @@ from argo_env.evaluation.estimates.control import (
     ControlVariate,
     controlled_mean,
 )
-from argo_env.evaluation.estimates.rates import Estimate, weighted_world_means
+from argo_env.evaluation.estimates.rates import Estimate, weighted_means_of_complete_worlds
 from argo_env.evaluation.plan import EvaluationPlan, Stopping
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunRow
@@ -76,12 +76,12 @@ class ControlledMean:
 
 def run_with_control_variate(
     plan: EvaluationPlan,
-    drive: str,
+    cheap_drive: str,
     make: MakeRuns,
     folder: Path,
     clock: Callable[[], float] = time.monotonic,
 ) -> tuple[EvaluationResults, tuple[ControlledMean, ...]]:
-    """Run the evaluation, and run more worlds with the cheap `drive` if that pays.
+    """Run the evaluation, and run more worlds with `cheap_drive` if that pays.
 
     Both drives run in the worlds of a pilot first, which measures their correlation and costs (wall
     times of runs); the measured cost is stored in the folder. Returns the results with the plan's
@@ -89,7 +89,7 @@ def run_with_control_variate(
     could be run with both drives. Raises ArgoError for several plans at once, strata, too few
     worlds, or a cheap drive that can't have the same faults.
     """
-    cheap = make_cheap_plan(plan, drive)
+    cheap = make_cheap_plan(plan, cheap_drive)
     pilot_seeds = plan.seeds[:PILOT]
     expensive_start = clock()
     expensive_pilot = make(_with_seeds(plan, pilot_seeds))
@@ -115,7 +115,7 @@ def run_with_control_variate(
     )
 
 
-def make_cheap_plan(plan: EvaluationPlan, drive: str) -> EvaluationPlan:
+def make_cheap_plan(plan: EvaluationPlan, cheap_drive: str) -> EvaluationPlan:
     """Return the evaluation plan with this cheap drive in all cases, and without its rule to stop.
 
     Raises ArgoError if cheap runs can't help this evaluation, or the drive can't have its faults.
@@ -127,12 +127,12 @@ def make_cheap_plan(plan: EvaluationPlan, drive: str) -> EvaluationPlan:
             f"the correlation of two drives takes at least {FEWEST_PAIRS} worlds to measure: "
             "give more seeds"
         )
-    if plan.plans[0].drive == drive:
-        raise Conflict(f"the drive `{drive}` can't help itself: name a cheaper one")
+    if plan.plans[0].drive == cheap_drive:
+        raise Conflict(f"the drive `{cheap_drive}` can't help itself: name a cheaper one")
     cases = []
     for case in plan.cases:
-        sensor = IDEAL if drive == ROUTE else case.spec.sensor
-        spec = case.spec.model_copy(update={"drive": drive, "sensor": sensor})
+        sensor = IDEAL if cheap_drive == ROUTE else case.spec.sensor
+        spec = case.spec.model_copy(update={"drive": cheap_drive, "sensor": sensor})
         check_spec(spec, open_site(spec.site, load_robot(spec.robot)).site)
         cases.append(case.model_copy(update={"spec": spec}))
     return plan.with_changes(cases=tuple(cases), stopping=Stopping())
@@ -198,7 +198,7 @@ def _by_world(results: EvaluationResults, quantity: str) -> dict[int, float]:
     weights = {case.faults: case.weight for case in results.plan.cases}
     ran = (row for row in results.rows if row.is_completed)
     values = ((row.seed, row.faults, _QUANTITIES[quantity](row)) for row in ran)
-    return weighted_world_means(values, weights)
+    return weighted_means_of_complete_worlds(values, weights)
 
 
 def _estimate(values: NDArray[np.float64]) -> Estimate:

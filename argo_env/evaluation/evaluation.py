@@ -113,7 +113,7 @@ class Evaluation:
             store: RowStore | None = None
             if folder is not None:
                 digest = digest_contents(self.plan.model_dump_json().encode())
-                rows = open_rows(Path(folder), self.plan, digest, replace=replace)
+                rows = open_rows(Path(folder), self.plan, digest, replace_and_keep_fitting=replace)
                 store = stack.enter_context(rows)
             if isinstance(backend, str):
                 backend = make_backend(backend, workers, address)

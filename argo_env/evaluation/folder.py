@@ -42,22 +42,23 @@ def open_rows(
     plan: EvaluationPlan,
     digest: str,
     *,
-    replace: bool = False,
+    replace_and_keep_fitting: bool = False,
     cheap_plan: EvaluationPlan | None = None,
 ) -> RowStore:
     """Open the rows of an evaluation in its folder for writing, and store its plan beside them.
 
     An evaluation in the folder is continued if it has the same cases and the same seeds or a subset
-    of them; its rule to stop may be another. `replace` replaces any other evaluation and keeps only
-    its rows that belong to the new plan, or to `cheap_plan`.
+    of them; its rule to stop may be another. With `replace_and_keep_fitting`, any
+    other evaluation is replaced, and only its rows that belong to the new plan, or to `cheap_plan`,
+    are kept.
 
-    Raises Conflict for another evaluation if `replace` is False, or if another process evaluates
-    into the folder; Unavailable if the folder can't be written.
+    Raises Conflict for another evaluation if `replace_and_keep_fitting` is False, or if another
+    process evaluates into the folder; Unavailable if the folder can't be written.
     """
     store = RowStore(folder)
     try:
         if not _continues(folder, plan):
-            if not replace:
+            if not replace_and_keep_fitting:
                 raise Conflict(
                     f"{folder} has another evaluation: choose another folder; or replace its "
                     "plan, and keep those of its rows that fit",
@@ -137,13 +138,13 @@ def read_results(folder: Path) -> EvaluationResults:
     plan = find_stored_plan(folder)
     if plan is None:
         raise NotFound(f"{folder} has no evaluation")
-    rows = own_rows_by_seed(plan, read_rows(folder))
+    rows = own_rows_in_plan_order(plan, read_rows(folder))
     if plan.strata or len(rows) == len(plan.seeds) * len(plan.cases) or should_stop(plan, rows):
         return EvaluationResults(plan, rows)
     return EvaluationResults.from_worlds_before_first_gap(plan, rows)
 
 
-def own_rows_by_seed(plan: EvaluationPlan, rows: tuple[RunRow, ...]) -> tuple[RunRow, ...]:
+def own_rows_in_plan_order(plan: EvaluationPlan, rows: tuple[RunRow, ...]) -> tuple[RunRow, ...]:
     """Return those rows that belong to the plan, in the order of its seeds, then of its cases."""
     seeds = {seed: k for k, seed in enumerate(plan.seeds)}
     by_key = {row.key: row for row in rows}

@@ -121,7 +121,7 @@ class EvaluationPlan(Model):
         """
         if self.variation.faults is None:
             return ""
-        return self.variation.drawn_faults_name(seed) or NOTHING
+        return self.variation.faults_name_if_drawn(seed) or NOTHING
 
     def check(self) -> None:
         """Raise ArgoError for an invalid plan.

@@ -19,7 +19,7 @@ from argo_env.evaluation.results import (
     duration_curve,
 )
 from argo_env.evaluation.row import RunOutcome
-from argo_env.formatting import clock
+from argo_env.formatting import min_sec_text
 from argo_env.pictures.drawing.floors import floor_plans
 from argo_env.report.svg import replace_non_xml_characters, shorten
 from argo_env.seeding import generator
@@ -66,7 +66,7 @@ def prepare_axes(ax: "Axes | None", height: float = 3.0, width: float = WIDTH) -
 
 def label_rows(ax: "Axes", names: list[str]) -> None:
     """Divide the axes into rows from top to bottom, one with a label for each name."""
-    ax.set_yticks(range(len(names)), [fit_label(name) for name in names], color=INK)
+    ax.set_yticks(range(len(names)), [shorten_label(name) for name in names], color=INK)
     ax.set_ylim(max(len(names), 1) - 0.5, -0.5)
     ax.spines["left"].set_visible(False)
     ax.tick_params(axis="y", length=0, pad=7)
@@ -87,7 +87,7 @@ def show_empty(ax: "Axes", why: str) -> "Axes":
     return ax
 
 
-def plan_style(number: int) -> tuple[str, str]:
+def plan_colour_and_marker(number: int) -> tuple[str, str]:
     """Return the colour and the marker of the plan with this index in its evaluation."""
     return SERIES[number % len(SERIES)], MARKS[number % len(MARKS)]
 
@@ -100,7 +100,7 @@ def _legend(ax: "Axes", handles: list["Line2D"], words: list[str]) -> None:
     )  # fmt: skip
 
 
-def fit_label(name: str, width: float = 1.65) -> str:
+def shorten_label(name: str, max_inches: float = 1.65) -> str:
     """Return a name, shortened if needed, as one line of at most this width (inches).
 
     The name is escaped and padded, so that matplotlib takes no part of it for a formula and legends
@@ -112,7 +112,7 @@ def fit_label(name: str, width: float = 1.65) -> str:
     font = FontProperties(size=FONT)
     name = shorten(" ".join(replace_non_xml_characters(name).split()), 80)
     while len(name) > 1 and (
-        TextToPath().get_text_width_height_descent(name, font, False)[0] > 72.0 * width
+        TextToPath().get_text_width_height_descent(name, font, False)[0] > 72.0 * max_inches
     ):
         name = shorten(name, len(name) - 1)
     name = name.replace("$", r"\$")
@@ -150,7 +150,7 @@ def forest_of_rates(results: EvaluationResults, ax: "Axes | None" = None) -> "Ax
         ax, 0.75 + (_LANE * lanes + _GAP) * len(names) + 0.22 * (lanes > 1) * len(plans)
     )
     for line in lines:
-        ink, marker = plan_style(line.plan) if lanes > 1 else (SERIES[0], "o")
+        ink, marker = plan_colour_and_marker(line.plan) if lanes > 1 else (SERIES[0], "o")
         is_total, y = isinstance(line.rate, PlanRate), line.row + line.lane
         width = 2.6 if is_total else 1.5
         ax.plot([line.rate.low, line.rate.high], [y, y], color=ink, lw=width, zorder=2)
@@ -205,9 +205,9 @@ def _legend_of_plans(ax: "Axes", plans: tuple[PlanName, ...]) -> None:
 
     handles = []
     for number in range(len(plans)):
-        ink, marker = plan_style(number)
+        ink, marker = plan_colour_and_marker(number)
         handles.append(Line2D([], [], color=ink, marker=marker, lw=1.8, ms=5))
-    names = [fit_label(plan.label(plans), 2.3) for plan in plans]
+    names = [shorten_label(plan.label(plans), 2.3) for plan in plans]
     _legend(ax, handles, names)
 
 
@@ -219,12 +219,12 @@ _DARKEST = 0.5
 """opacity of a cell with all runs of its row; its number can be read in light and in dark mode"""
 
 
-def heat_map_of_outcomes(
+def heat_map_of_outcomes_by_faults(
     results: EvaluationResults, ax: "Axes | None" = None, plan: PlanName | None = None
 ) -> "Axes":
-    """Draw a heat map of the runs by set of faults (rows) and outcome; larger shares are darker.
+    """Draw a heat map of the runs by set of faults (rows) and outcome.
 
-    `plan` None stands for the runs of all plans.
+    Larger shares of a row are darker. `plan` None stands for the runs of all plans.
     """
     from matplotlib.patches import Rectangle
 
@@ -282,10 +282,11 @@ def durations(results: EvaluationResults, ax: "Axes | None" = None) -> "Axes":
     low, high = _view(times, [limit for curve in curves for limit in curve.limits])
     same_limits = len({curve.limits for curve in curves}) == 1
     for number, curve in enumerate(curves):
-        ink, _ = plan_style(number)
+        ink, _ = plan_colour_and_marker(number)
         if curve.times:
             ax.step(
-                [low, *curve.times, high], [0.0, *curve.shares, curve.final_share], where="post",
+                [low, *curve.times, high], [0.0, *curve.shares, curve.final_success_share],
+                where="post",
                 color=ink, lw=1.8, ls=_STYLES[number % len(_STYLES)],
             )  # fmt: skip
         for limit in curve.limits:
@@ -294,7 +295,7 @@ def durations(results: EvaluationResults, ax: "Axes | None" = None) -> "Axes":
     ax.set_xlim(low, high)
     ax.set_ylim(0.0, 1.0)
     ax.yaxis.set_major_formatter(lambda share, _: f"{share:.0%}")
-    ax.xaxis.set_major_formatter(lambda s, _: clock(s))
+    ax.xaxis.set_major_formatter(lambda s, _: min_sec_text(s))
     ax.set_xticks(_round_times(low, high))
     ax.grid(color=LINE)
     ax.set_axisbelow(True)
@@ -305,7 +306,7 @@ def durations(results: EvaluationResults, ax: "Axes | None" = None) -> "Axes":
 
 
 def _view(times: list[float], limits: list[float]) -> tuple[float, float]:
-    """Return the shown range of times in s: from the first to the last end of a run or limit.
+    """Return the shown range of times in s: from the earliest to the latest end of a run or limit.
 
     Limits far beyond the longest run are not shown.
     """
@@ -332,13 +333,16 @@ def _legend_of_curves(ax: "Axes", curves: list[DurationCurve], high: float) -> N
     handles, labels = [], []
     plans = [curve.plan for curve in curves]
     for number, curve in enumerate(curves):
-        ink, _ = plan_style(number)
+        ink, _ = plan_colour_and_marker(number)
         handles.append(Line2D([], [], color=ink, lw=1.8, ls=_STYLES[number % len(_STYLES)]))
-        name = fit_label(curve.plan.label(plans), 1.4) + ": " if len(curves) > 1 else ""
+        name = shorten_label(curve.plan.label(plans), 1.4) + ": " if len(curves) > 1 else ""
         limits = ", ".join(
-            f"limit {clock(limit)}" + (" →" if limit > high else "") for limit in curve.limits
+            f"limit {min_sec_text(limit)}" + (" →" if limit > high else "")
+            for limit in curve.limits
         )
-        labels.append(f"{name}{100 * curve.final_share:.1f} % succeed, {limits or 'no limit'}")
+        labels.append(
+            f"{name}{100 * curve.final_success_share:.1f} % succeed, {limits or 'no limit'}"
+        )
     _legend(ax, handles, labels)
 
 
@@ -415,7 +419,7 @@ def failure_places(
             )  # fmt: skip
     clusters = [
         cluster
-        for cluster in cluster_failures_by_location(results.failing)
+        for cluster in cluster_failures_by_location(results.unsuccessful_rows)
         if cluster.floor == floor
     ]
     most = max((cluster.runs for cluster in clusters), default=1)
@@ -462,7 +466,9 @@ def pairs_that_differ(compared: PlanComparison, ax: "Axes | None" = None) -> "Ax
     widest = max((max(pairs.first_only, pairs.second_only) for pairs in rows.values()), default=0)
     for y, pairs in enumerate(rows.values()):
         for number, (count, side) in enumerate(((pairs.first_only, 1), (pairs.second_only, -1))):
-            ax.barh([y], [side * count], height=0.62, color=plan_style(number)[0], alpha=0.7)
+            ax.barh(
+                [y], [side * count], height=0.62, color=plan_colour_and_marker(number)[0], alpha=0.7
+            )
             if count:
                 ax.annotate(
                     str(count), (side * count, y), (3 * side, 0), textcoords="offset points",

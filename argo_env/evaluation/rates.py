@@ -12,7 +12,7 @@ from argo_env.evaluation.estimates.rates import (
     Stratum,
     clopper_pearson,
     stratified_rate,
-    weighted_world_means,
+    weighted_means_of_complete_worlds,
     wilson,
 )
 from argo_env.evaluation.estimates.sequences import ConfidenceSequence
@@ -96,7 +96,7 @@ def estimate_plan_rate(
         return PlanRate(
             estimate.value, estimate.low, estimate.high, runs, lost, IntervalMethod.STRATA
         )
-    means = world_shares(ran, weights, quantity)
+    means = shares_of_complete_worlds(ran, weights, quantity)
     sequence = ConfidenceSequence()
     sequence.add(means.values())
     low, high = sequence.interval
@@ -129,7 +129,7 @@ def estimate_run_rate(
     return Rate(count, runs, *sequence.interval), IntervalMethod.SEQUENCE
 
 
-def world_shares(
+def shares_of_complete_worlds(
     rows: Sequence[RunRow], weights: dict[str, float], quantity: Callable[[RunRow], bool | None]
 ) -> dict[int, float]:
     """Return, by seed, the share of a plan's runs that have a property, weighted by case.
@@ -137,7 +137,9 @@ def world_shares(
     `rows` are those of one plan; `weights` are those of its cases by their faults; `quantity` is
     the property, None for a run that does not count.
     """
-    return weighted_world_means(((row.seed, row.faults, quantity(row)) for row in rows), weights)
+    return weighted_means_of_complete_worlds(
+        ((row.seed, row.faults, quantity(row)) for row in rows), weights
+    )
 
 
 def approximate_success_rate(outcomes: Counter[RunOutcome]) -> PlanRate:
@@ -194,7 +196,11 @@ def _decisions(
         weights = {case.faults: case.weight for case in evaluation.cases if case.plan == plan}
         for requirement in required:
             sequence = ConfidenceSequence(level=1.0 - 0.05 / len(required))
-            sequence.add(world_shares(plan_rows, weights, requirement.evaluate_quantity).values())
+            sequence.add(
+                shares_of_complete_worlds(
+                    plan_rows, weights, requirement.evaluate_quantity
+                ).values()
+            )
             above = sequence.runs > 0 and sequence.is_above(requirement.share)
             below = sequence.runs > 0 and sequence.is_below(requirement.share)
             verdict = Decision.OPEN

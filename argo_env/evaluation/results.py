@@ -85,7 +85,7 @@ class EvaluationResults:
         return self.outcomes[RunOutcome.ERROR] + self.outcomes[RunOutcome.DIED]
 
     @cached_property
-    def failing(self) -> tuple[RunRow, ...]:
+    def unsuccessful_rows(self) -> tuple[RunRow, ...]:
         """Rows of all runs without success: failed, or not carried out."""
         return tuple(row for row in self.rows if not row.success)
 
@@ -94,7 +94,7 @@ class EvaluationResults:
         return tuple(row for row in self.rows if row.plan == plan)
 
     def rate(self, plan: PlanName, quantity: str = "success") -> PlanRate:
-        """Compute the rate of a quantity, by name, in a plan's runs with any faults."""
+        """Compute the rate of a quantity, by name, over a plan's runs, whatever their faults."""
         return estimate_plan_rate(self.plan, plan, self.rows, QUANTITIES[quantity], self.cut_short)
 
     @cached_property
@@ -112,7 +112,7 @@ class EvaluationResults:
         )
 
     def faults_for(self, row: RunRow) -> str:
-        """Return the name of a run's faults: of the drawn ones, or its case's if none are drawn."""
+        """Return the name of a run's faults; see `EvaluationPlan.faults_for`."""
         return self.plan.faults_for(row.faults, row.seed)
 
     @cached_property
@@ -127,14 +127,14 @@ class EvaluationResults:
                 delays.setdefault(detection.fault, []).append(detection.delay)
         return dict(sorted(delays.items()))
 
-    def by_seeds(self, plan: PlanName, blocks: int = 10) -> tuple[GroupRate, ...]:
+    def by_seeds(self, plan: PlanName, max_blocks: int = 10) -> tuple[GroupRate, ...]:
         """Compute a plan's success rates in blocks of seeds; they should differ by chance only.
 
-        There are at most `blocks` blocks, and each but the last has at least 10 seeds.
+        There are at most `max_blocks` blocks, and each but the last has at least 10 seeds.
         """
         plan_rows = self.rows_for(plan)
         seeds = sorted({row.seed for row in plan_rows})
-        size = max(_MIN_BLOCK, -(-len(seeds) // blocks))
+        size = max(_MIN_BLOCK, -(-len(seeds) // max_blocks))
         groups = []
         for first in range(0, len(seeds), size):
             block = seeds[first : first + size]
@@ -203,11 +203,11 @@ class DurationCurve:
     """longest durations in s that the mission allows: one, or none"""
 
     @property
-    def final_share(self) -> float:
+    def final_success_share(self) -> float:
         """Share of the runs that succeeded at any time, 0 to 1."""
         return self.shares[-1] if self.shares else 0.0
 
-    def time_at(self, share: float) -> float | None:
+    def time_of_success_share(self, share: float) -> float | None:
         """Return the time in s by which this share (0 to 1) of the runs has succeeded.
 
         It is None if fewer runs succeed.

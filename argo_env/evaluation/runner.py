@@ -102,7 +102,7 @@ class EvaluationProgress:
 
     @property
     def longest_remaining_seconds(self) -> float | None:
-        """Longest remaining time in s at the present pace; None before a run has been executed."""
+        """Remaining time in s at the present pace if no rule stops the runs; None at first."""
         executed = self.completed_runs - self.stored_runs
         return (self.max_runs - self.completed_runs) * self.seconds / executed if executed else None
 
@@ -130,8 +130,9 @@ class EvaluationRunner:
     ) -> None:
         """Prepare the execution of the evaluation plan.
 
-        `limit` is the longest wall time of a run in s, `call` the function that executes a run in a
-        worker. The caller closes back end and store. Raises ArgoError for an invalid plan.
+        `limit` is the longest wall time of a run in s (None: no limit); a longer run is ended and
+        counts as not carried out. `call` is the function that executes a run in a worker. The
+        caller closes back end and store. Raises ArgoError for an invalid plan.
         """
         plan.check()
         self._plan = plan
@@ -163,8 +164,9 @@ class EvaluationRunner:
         return EvaluationResults(self._plan, tuple(rows))
 
     def rows_as_completed(self) -> Iterator[RunRow]:
-        """Execute all runs and yield their rows as they end; in each batch, stored rows come first.
+        """Execute the runs until the rule to stop ends them; yield their rows as they end.
 
+        Stored runs are not repeated; in each batch, their rows come first.
         Moves the rows of the store to a Parquet file at the end.
         """
         for batch in all_runs_in_batches(self._plan, self._rows):

@@ -15,7 +15,7 @@ from pydantic import Field, model_validator
 from argo_compiler.base.model import Model
 from argo_compiler.files.loading import decode_text, read_bytes
 from argo_env.evaluation.estimates.pairs import mean_first_minus_second
-from argo_env.evaluation.estimates.rates import Estimate, world_means
+from argo_env.evaluation.estimates.rates import Estimate, world_means_in_order_seen
 from argo_env.evaluation.row import RunRow
 from argo_env.files import resources
 from argo_env.files.yaml_file import parse_yaml
@@ -120,7 +120,9 @@ def mean_score(rows: Sequence[RunRow], rules: ScoringRules) -> Estimate:
     The interval is that of the bootstrap over worlds, as the runs of one world depend on each
     other. All values are NaN if no run was carried out.
     """
-    means = world_means((row.seed, score_run(row, rules).total) for row in rows if row.is_completed)
+    means = world_means_in_order_seen(
+        (row.seed, score_run(row, rules).total) for row in rows if row.is_completed
+    )
     if not len(means):
         return Estimate(math.nan, math.nan, math.nan)
     mean = mean_first_minus_second(means, np.zeros(len(means)))

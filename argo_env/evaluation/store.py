@@ -33,7 +33,7 @@ from argo_env.files.checked_lines import (
     truncate_if_possible,
     write_all,
 )
-from argo_env.files.folders import check_folder, make_folder
+from argo_env.files.folders import make_folder, require_folder_or_creatable
 
 LOG = "rows.log"
 _LOCK = ".lock"
@@ -52,7 +52,7 @@ class RowStore(Closing):
         Raises Conflict if another process has it open, Unavailable if it can't be written.
         """
         make_folder(folder)
-        check_folder(folder / PARTS)
+        require_folder_or_creatable(folder / PARTS)
         self.folder = folder
         self._clock = clock
         self._lock = _acquire_lock(folder)

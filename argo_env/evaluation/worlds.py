@@ -134,8 +134,8 @@ class Variation(_Ranges):
             update["faults"] = (*spec.faults, *drawn.faults)
         return spec.model_copy(update=update)
 
-    def drawn_faults_name(self, seed: int) -> str | None:
-        """Return the name of the faults drawn for the world of a seed; None if none are drawn."""
+    def faults_name_if_drawn(self, seed: int) -> str | None:
+        """Return the name of the faults drawn for the world of a seed; None if it has none."""
         drawn = self.faults.draw(seed) if self.faults is not None else None
         return None if drawn is None else drawn.name
 

@@ -64,8 +64,8 @@ class Fault(Model):
         """
         return self
 
-    def all_elements_with_fault(self, site: Site) -> tuple[Element, ...]:
-        """Return all elements of the site, changed by this fault, which must be resolved."""
+    def site_elements_with_fault(self, site: Site) -> tuple[Element, ...]:
+        """Return all elements of the site, as this fault changes them; it must be resolved."""
         return site.elements
 
     def can_explain(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002

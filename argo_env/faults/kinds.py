@@ -94,7 +94,7 @@ def _resolve_in_list(fault: AnyFault, number: int, site: Site, seed: int) -> Any
 
 
 def site_with_faults(site: Site, faults: Sequence[AnyFault]) -> Site:
-    """Return the site with its elements changed by resolved faults, such as bricks added."""
+    """Return the site with the changes of resolved faults, such as added bricks, made in a copy."""
     for fault in faults:
-        site = site.replacing_elements(fault.all_elements_with_fault(site))
+        site = site.replacing_elements(fault.site_elements_with_fault(site))
     return site

@@ -163,7 +163,7 @@ def _check_place(site: Site, place: Vector | None) -> None:
 
 
 def _near_equipment(site: Site, rng: np.random.Generator, up: float) -> Vector:
-    """Return a random position on the equipment behind a checkpoint, `up` m above it."""
+    """Return a random position on the equipment behind a checkpoint, `up` m above the latter."""
     if not site.checkpoints:
         raise NotFound(f"site {site.name} has no checkpoint: give the `place`")
     checkpoint = site.checkpoints[int(rng.integers(len(site.checkpoints)))]

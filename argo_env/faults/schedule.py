@@ -34,7 +34,7 @@ class FaultSchedule:
         return self._changes[self._next][0] if self.has_changes_left else math.inf
 
     @property
-    def latest_past_change_time(self) -> float:
+    def latest_change_time_or_zero(self) -> float:
         """Time in s of the most recent start or end of a fault; 0 before the first one."""
         return self._changes[self._next - 1][0] if self._next else 0.0
 

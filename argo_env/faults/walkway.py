@@ -67,7 +67,7 @@ class Brick(Fault):
         )
 
     def _covered_dock(self, site: Site, floor: FloorSpec) -> int | None:
-        """Return the starting area whose dock the brick blocks, or None."""
+        """Return the number of the starting area whose dock the brick blocks, or None."""
         assert self.place is not None
         assert self.yaw is not None
         if abs(floor.z - site.spec.ground_z) > _SAME_LEVEL:
@@ -88,7 +88,7 @@ class Brick(Fault):
                     return area
         return None
 
-    def all_elements_with_fault(self, site: Site) -> tuple[Element, ...]:
+    def site_elements_with_fault(self, site: Site) -> tuple[Element, ...]:
         assert self.floor is not None
         assert self.place is not None
         assert self.yaw is not None
@@ -125,11 +125,11 @@ class MissingPlate(Fault):
         half = PLATE / 2
         drawn = tuple(round(v, 3) for v in (x - half, y - half, x + half, y + half))
         resolved = self._copy_with(floor=floor.number, rect=self.rect or drawn)
-        if resolved.all_elements_with_fault(site) == site.elements:
+        if resolved.site_elements_with_fault(site) == site.elements:
             raise Invalid(f"there is no deck at ({x:g}, {y:g}) of floor {floor.number}")
         return resolved
 
-    def all_elements_with_fault(self, site: Site) -> tuple[Element, ...]:
+    def site_elements_with_fault(self, site: Site) -> tuple[Element, ...]:
         assert self.floor is not None
         assert self.rect is not None
         z, rect = site.floor(self.floor).z, self.rect
@@ -174,7 +174,7 @@ class BlockedStairs(Fault):
             raise NotFound(f"site {site.name} has no stairs up from floor {self.floor}")
         return self._fill_unset(tower=tower, floor=floor)
 
-    def all_elements_with_fault(self, site: Site) -> tuple[Element, ...]:
+    def site_elements_with_fault(self, site: Site) -> tuple[Element, ...]:
         assert self.floor is not None
         tower = next(t for t in site.spec.towers if t.name == self.tower)
         barriers = _barriers(tower, site.floor(self.floor).z)
@@ -186,13 +186,13 @@ class BlockedStairs(Fault):
 
 
 def _is_beside_added_solids(fault: Fault, place: Vector | None, site: Site) -> bool:
-    """Return True if `place`, which must be known, is in or near a solid that the fault adds."""
+    """Return True if `place` is in or near a solid that the fault adds; False if it is None."""
     if place is None:
         return False
     centre, planned = np.array(place), {element.name for element in site.elements}
     return any(
         bool(np.all(np.abs(centre - solid.center) <= half_extents(solid) + _BESIDE))
-        for element in fault.all_elements_with_fault(site)
+        for element in fault.site_elements_with_fault(site)
         if element.name not in planned
         for solid in element.solids
     )

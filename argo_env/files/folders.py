@@ -9,12 +9,15 @@ from pathlib import Path
 from argo_compiler.base.errors import Conflict, Unavailable
 
 
-def check_folder(path: Path) -> None:
-    """Check that the path is a folder or that one can be made there, before long work begins.
+def require_folder_or_creatable(path: Path) -> None:
+    """Raise ArgoError if the path is no folder and none can be made there.
+
+    To be called before long work.
 
     Raises:
         Conflict: the path, or the nearest existing path above it, is a file.
-        Unavailable: the folder does not exist, and the one above it can't be written to.
+        Unavailable: the folder does not exist, and the one above it can't be written to. Whether an
+            existing folder can be written to is not checked.
     """
     above = path.absolute()
     while not os.path.lexists(above):

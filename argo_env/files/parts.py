@@ -112,7 +112,7 @@ NO_CACHE = Parts(None, "")
 
 
 def _npz(arrays: "Mapping[str, NDArray[Any]]") -> memoryview:
-    """Return the content of an `.npz` file that announces a comment, without the comment itself."""
+    """Return the content of an `.npz` file to which a comment, its checksum, must be appended."""
     import numpy as np
 
     plain = {label: np.ascontiguousarray(array) for label, array in arrays.items()}

@@ -58,8 +58,8 @@ def parse_yaml(
             the field's name; such a hint replaces the usual one if the field is unknown there.
 
     Raises:
-        DiagnosticError: the text describes no such model; it holds all duplicate keys, and the
-            first 20 wrong fields.
+        DiagnosticError: the text describes no such model; the error has all duplicate keys
+            and the first 20 wrong fields.
     """
     try:
         tree, repeated, data = _compose(text)

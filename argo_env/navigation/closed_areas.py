@@ -60,7 +60,7 @@ def _within(positions: NDArray[np.float64], blockage: Blockage, reach: float) ->
     )
 
 
-def close_states(lattice: Lattice, blockages: Sequence[Blockage]) -> Lattice:
+def with_states_closed(lattice: Lattice, blockages: Sequence[Blockage]) -> Lattice:
     """Return a lattice without the states and turns in which the robot touches a blockage.
 
     MARGIN is added around the robot, as everywhere; of a turn the whole swept area counts. All

@@ -52,7 +52,7 @@ def make_graph_of_moves(
 
 
 def subgraph(graph: Graph, members: NDArray[np.int64] | NDArray[np.bool_]) -> Graph:
-    """Return the graph of the moves between `members`, renumbered as they follow there."""
+    """Return the graph of the moves between `members`; state k of it is the k-th member."""
     from scipy.sparse import csr_array
 
     return csr_array(graph[members][:, members])
@@ -76,7 +76,7 @@ def label_strong_components(graph: Graph) -> NDArray[np.int32]:
 def shortest_path_trees(graph: Graph, sources: NDArray[np.int64], limit: float = np.inf) -> Trees:
     """Return the cheapest paths from each of `sources`, the root of a tree, to all states.
 
-    Paths that cost more than `limit` (s) are left out.
+    Where the path costs more than `limit` (s), the cost is inf, as without a path.
     """
     from scipy.sparse.csgraph import dijkstra
 

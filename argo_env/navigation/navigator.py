@@ -14,9 +14,9 @@ from argo_compiler.base.model import Pose
 from argo_env.files.parts import NO_CACHE, Parts
 from argo_env.navigation.closed_areas import (
     Blockage,
-    close_states,
     closed_cells,
     turn_touches_blockage,
+    with_states_closed,
 )
 from argo_env.navigation.graphs import reverse_graph, shortest_path_trees
 from argo_env.navigation.lattice import (
@@ -119,8 +119,8 @@ class Navigator:
 
         If there are no new blockages and no `site`, it is this navigator itself. If `site` is
         given, it has additional solids, for which the blockages stand, and checkpoints are not seen
-        through them. The surface is shared. Paths to docks and checkpoints that have become
-        unreachable raise Unreachable. A robot that stands where it may no longer stand starts from
+        through them. The surface is shared. To plan a path to a dock or checkpoint that has become
+        unreachable raises Unreachable. A robot that stands where it may no longer stand starts from
         the nearest pose where it may.
         """
         if not blockages and site is None:
@@ -128,7 +128,7 @@ class Navigator:
         other = Navigator(site or self.site, self.robot)
         other.blockages = (*self.blockages, *blockages)
         other.surface = self.surface
-        other.lattice = close_states(self.lattice, blockages)
+        other.lattice = with_states_closed(self.lattice, blockages)
         changed = np.diff(other.lattice.costs.indptr) != np.diff(self.lattice.costs.indptr)
         partition = repartition(self._path_search.partition, other.lattice, changed)
         other._path_search = PathSearch(other.lattice, partition)
@@ -190,7 +190,7 @@ class Navigator:
                 )
         return lattice
 
-    def snap_position(self, pose: Pose) -> Pose:
+    def snap_keeping_heading(self, pose: Pose) -> Pose:
         """Return `pose` moved to the nearest position at which the robot can stand.
 
         Its heading stays, though the robot may not be able to stand there with it.
@@ -205,8 +205,8 @@ class Navigator:
         """Return the path of the lowest cost from pose to pose.
 
         A move's cost is its time, and a little more in tight spots (`Lattice`). The end is on the
-        lattice, within SNAP_DISTANCE of the goal (5 cm where there is room). It has the heading of
-        the goal where there is room to turn.
+        lattice, within SNAP_DISTANCE of the goal, and within 5 cm where there is room. It has the
+        heading of the goal where there is room to turn.
 
         Raises:
             Unreachable: The robot can't stand at the start or the goal, or there is no path.
@@ -222,21 +222,21 @@ class Navigator:
         path = self._smoothed(states, start)
         return self._with_final_turn(path, goal.yaw)
 
-    def plan_to_view(self, start: Pose, checkpoint_id: int, face_turn: float = 0.0) -> Path:
+    def plan_to_view(self, start: Pose, checkpoint_id: int, checkpoint_turn: float = 0.0) -> Path:
         """Return the path to the pose from which to read a checkpoint.
 
         It is the pose with the lowest sum of the cost of the path and of the view: oblique and far
         views cost more (`find_view_states_and_costs`). The checkpoint's face is assumed to be
-        turned by `face_turn` (rad, counter-clockwise from above) from its planned heading.
+        turned by `checkpoint_turn` (rad, counter-clockwise from above) from its planned heading.
 
         Raises:
             Unreachable: There is no such pose, or no path to one.
             NotFound: There is no such checkpoint.
         """
-        return self._path_to_view(start, checkpoint_id, face_turn)
+        return self._path_to_view(start, checkpoint_id, checkpoint_turn)
 
-    def _find_path_to_view(self, start: Pose, checkpoint_id: int, face_turn: float) -> Path:
-        return self._smoothed(self._states_to_view(start, checkpoint_id, face_turn), start)
+    def _find_path_to_view(self, start: Pose, checkpoint_id: int, checkpoint_turn: float) -> Path:
+        return self._smoothed(self._states_to_view(start, checkpoint_id, checkpoint_turn), start)
 
     def travel_times(self, locations: Sequence[Pose | int]) -> NDArray[np.float64]:
         """Return the seconds from each location to each other, shape (n, n): row from, column to.
@@ -297,7 +297,10 @@ class Navigator:
         return _poses(self.lattice, [self._viewing_state(checkpoint_id)])[0]
 
     def can_view(self, checkpoint_id: int) -> bool:
-        """Return True if the checkpoint can be read from some state of the lattice."""
+        """Return True if the checkpoint can be read from some state of the lattice.
+
+        Raises NotFound if there is no such checkpoint.
+        """
         return len(self._views(checkpoint_id)[0]) > 0
 
     def _viewing_state(self, checkpoint_id: int) -> int:
@@ -361,8 +364,10 @@ class Navigator:
             + (f" that avoids what is closed: {reasons}" if reasons else "")
         )
 
-    def _states_to_view(self, start: Pose, checkpoint_id: int, face_turn: float = 0.0) -> list[int]:
-        goals = self._views(checkpoint_id, face_turn)
+    def _states_to_view(
+        self, start: Pose, checkpoint_id: int, checkpoint_turn: float = 0.0
+    ) -> list[int]:
+        goals = self._views(checkpoint_id, checkpoint_turn)
         if not len(goals[0]):
             checkpoint = self.site.checkpoint(checkpoint_id)
             raise Unreachable(
@@ -379,11 +384,11 @@ class Navigator:
         cuts = find_cut_heights(self.lattice, [f.z for f in self.site.spec.floors])
         return PathSearch(self.lattice, make_partition(self.lattice, cuts, self.parts), self.parts)
 
-    def _views(self, checkpoint_id: int, face_turn: float = 0.0) -> Views:
-        key = checkpoint_id, face_turn
+    def _views(self, checkpoint_id: int, checkpoint_turn: float = 0.0) -> Views:
+        key = checkpoint_id, checkpoint_turn
         if key not in self._cached_views:
             planned = self.site.checkpoint(checkpoint_id)
-            face = replace(planned, yaw=planned.yaw + face_turn)
+            face = replace(planned, yaw=planned.yaw + checkpoint_turn)
             self._cached_views[key] = find_view_states_and_costs(self.site, face, self.lattice)
         return self._cached_views[key]
 

@@ -68,7 +68,8 @@ class Motion:
         """Return the target speed (m/s) of a motion that is a drive.
 
         `velocity` (m/s) replaces the robot's own speed forwards on the flat; on stairs and
-        backwards the slower of the two applies. None: the robot's own speed.
+        backwards it applies if it is below the robot's own speed there. None: the robot's own
+        speed.
         """
         planned = robot.target_speed(self.kind)
         if velocity is None:

@@ -114,7 +114,7 @@ def portals_arrays(portals: Portals) -> Arrays:
     }
 
 
-def find_portals(lattice: Lattice, part: Partition) -> Portals:
+def make_portals_with_paths(lattice: Lattice, part: Partition) -> Portals:
     """Return the portals of a partitioned lattice, and all paths between them."""
     sources, targets, costs = part.crossings
     states = np.unique(np.concatenate([sources, targets]))
@@ -374,6 +374,7 @@ class PathSearch:
     def _portals(self) -> Portals:
         return Portals(
             **self._parts.load_or_make(
-                "portals", lambda: portals_arrays(find_portals(self._lattice, self.partition))
+                "portals",
+                lambda: portals_arrays(make_portals_with_paths(self._lattice, self.partition)),
             )
         )

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from PIL import Image, ImageDraw, ImageFont
 
-from argo_env.formatting import clock
+from argo_env.formatting import min_sec_text
 from argo_env.run.record import Reading, RunRecord
 from argo_env.run.verdict_line import Tone
 
@@ -101,7 +101,7 @@ def _caption_texts(record: RunRecord, t: float, floor: int) -> tuple[list[Text],
     """Return the texts at the left and the right of the bar."""
     under_way = [run.task for run in record.tasks if run.start <= t < run.end]
     task = under_way[-1] if under_way else ("ended" if t > 0 else "setting off")
-    left = [(clock(math.floor(t)), BRIGHT), (task, BRIGHT), (f"floor {floor}", DIM)]
+    left = [(min_sec_text(math.floor(t)), BRIGHT), (task, BRIGHT), (f"floor {floor}", DIM)]
     taken = [reading for reading in record.readings if reading.t <= t]
     return left, (_reading_texts(taken[-1]) if taken else [])
 

@@ -15,7 +15,7 @@ from argo_compiler.reorder.mission_problem import MissionProblem
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.problem import Tour
 from argo_env.files.folders import CHOOSE_ANOTHER_PLACE, reporting_write_errors
-from argo_env.formatting import clock
+from argo_env.formatting import min_sec_text
 from argo_env.navigation import Navigator
 from argo_env.pictures.drawing.floors import floor_plans
 from argo_env.pictures.drawing.label_placement import LabelPlacer, draw_plate
@@ -82,7 +82,7 @@ def write_route(
         evaluate(planned.problem, r).duration * planned.problem.unit
         for r in (planned.written, route)
     ]
-    headline = f"{clock(seconds[0])} as written, {clock(seconds[1])} as suggested"
+    headline = f"{min_sec_text(seconds[0])} as written, {min_sec_text(seconds[1])} as suggested"
     if planned.mission.designation:
         headline = f"{planned.mission.designation}: {headline}"
     old = _path_points(planned, planned.written, navigator, travel)

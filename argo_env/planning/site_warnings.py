@@ -53,7 +53,7 @@ def _find_obstruction(task: Task, pose: Pose, navigator: "Navigator") -> str | N
     world = WorldWithoutPhysics(navigator.site, navigator.robot)
     sensor = IdealSensor(world, navigator.robot, {checkpoint.id: checkpoint.nominal.low})
     try:
-        snapped = navigator.snap_position(pose)
+        snapped = navigator.snap_keeping_heading(pose)
         sensor.measure(checkpoint.id, BodyPose(snapped.x, snapped.y, snapped.z, snapped.yaw))
     except MeasurementError as error:
         return str(error)

@@ -139,7 +139,7 @@ class SiteTravel:
         path = cached_path(
             self._parts,
             ["stand", pose_data(pose)],
-            lambda: Path(self._navigator.snap_position(pose), ()),
+            lambda: Path(self._navigator.snap_keeping_heading(pose), ()),
         )
         if isinstance(path, NoPath):
             raise Unreachable(path.reason)

@@ -10,7 +10,7 @@ from argo_compiler.export import to_mermaid
 from argo_compiler.hfsm import Hfsm
 from argo_compiler.il import Action, Mission
 from argo_compiler.il.reserved import RETURN_TASK
-from argo_env.formatting import clock
+from argo_env.formatting import min_sec_text
 from argo_env.report.machine import draw_machine, is_drawable
 from argo_env.report.plan import draw_floor, draw_side_view, visited_floors
 from argo_env.report.rounds import (
@@ -82,7 +82,7 @@ def _template() -> Template:
         lstrip_blocks=True,
         finalize=lambda value: replace_non_xml_characters(value) if type(value) is str else value,
     )
-    environment.filters["clock"] = clock
+    environment.filters["clock"] = min_sec_text
     text = Path(__file__).with_name("report.html.j2").read_text(encoding="utf-8")
     return environment.from_string(text)
 

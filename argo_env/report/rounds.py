@@ -11,7 +11,7 @@ from argo_compiler.hfsm.conditions import conditions_text
 from argo_compiler.hfsm.model import task_id
 from argo_compiler.il import Condition
 from argo_compiler.il.reserved import RESERVED_NAMES
-from argo_env.formatting import clock
+from argo_env.formatting import min_sec_text
 from argo_env.run.record import GivenValue, Interruption, Reading, RoundRun, RunRecord, TaskRun
 
 MOMENT = 0.5
@@ -92,7 +92,7 @@ def _interrupted(record: RunRecord) -> list[Wait]:
             what = f"{awaited.replace('_', ' ') if awaited else 'a person'} ({cause})"
             outcome = _ended(interruption.end < record.result.duration)
             if interruption.limit_over:
-                outcome = f"the limit of the hold was over at {clock(interruption.end)}"
+                outcome = f"the limit of the hold was over at {min_sec_text(interruption.end)}"
             waits.append(Wait(what, since, interruption.end, outcome))
         previous = interruption
     return waits
@@ -225,13 +225,17 @@ def _values(record: RunRecord, until: Sequence[Condition], at: float) -> str:
         values: list[Reading | GivenValue] = [*record.readings, *record.given_values]
         earlier = [value for value in values if str(value.checkpoint) == id and value.t <= at]
         last = max(earlier, key=lambda value: value.t, default=None)
-        text = "no value" if last is None else f"{last.value:.4g} {last.unit} at {clock(last.t)}"
+        text = (
+            "no value"
+            if last is None
+            else f"{last.value:.4g} {last.unit} at {min_sec_text(last.t)}"
+        )
         failed = [
             t.end for t in record.tasks if t.object_id == id and t.outcome_in_words == "failed"
         ]
         since = max((end for end in failed if end <= at), default=-math.inf)
         if since > (-math.inf if last is None else last.t):
-            text = f"failed at {clock(since)}"
+            text = f"failed at {min_sec_text(since)}"
         texts.append(f"#{id}: {text}")
     return ", ".join(texts)
 

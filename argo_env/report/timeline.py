@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from argo_compiler.il import Action
-from argo_env.formatting import clock
+from argo_env.formatting import min_sec_text
 from argo_env.report.rounds import blocks_by_group
 from argo_env.report.svg import Node, drawing, node, polyline, shorten, simplify
 from argo_env.run.record import RunRecord, TaskRun
@@ -45,7 +45,9 @@ def draw_timeline(record: RunRecord) -> Node:
     parts += _windows(record, rows, px)
     for reading in record.readings:
         if reading.task in rows:
-            text = f"{reading.name}: {reading.value:.4g} {reading.unit} at {clock(reading.t)}"
+            text = (
+                f"{reading.name}: {reading.value:.4g} {reading.unit} at {min_sec_text(reading.t)}"
+            )
             mark = node(
                 "circle",
                 title=text,
@@ -66,12 +68,14 @@ def lacks_measuring_times(run: TaskRun) -> bool:
 
 def _bars(run: TaskRun, y: float, px: float) -> list[Node]:
     """Draw the bar of a run, and over it a darker one for each time that the robot measured."""
-    text = f"{run.task}: {clock(run.start)} to {clock(run.end)}, {run.outcome_in_words}"
+    text = (
+        f"{run.task}: {min_sec_text(run.start)} to {min_sec_text(run.end)}, {run.outcome_in_words}"
+    )
     text += f" ({run.reason})" if run.reason else ""
     untold = " untold" if lacks_measuring_times(run) else ""
     spans = [(run.start, run.end, f"run{untold} {run.outcome}", text)]
     for start, end in run.measuring or ():
-        measuring = f"{run.task}: measuring, {clock(start)} to {clock(end)}"
+        measuring = f"{run.task}: measuring, {min_sec_text(start)} to {min_sec_text(end)}"
         spans.append((start, end, f"measuring {run.outcome}", measuring))
     return [_bar(start, end, y, px, class_, title) for start, end, class_, title in spans]
 
@@ -92,7 +96,8 @@ def _bar(start: float, end: float, y: float, px: float, class_: str, title: str)
 def _waits(record: RunRecord) -> Iterator[tuple[str, float, float, str]]:
     """Yield the waits of the mission: the task of the row, start and end (s), and a text."""
     for wait in record.waits:
-        text = f"{wait.task}: waits for {wait.what}, {clock(wait.start)} to {clock(wait.end)}"
+        span = f"{min_sec_text(wait.start)} to {min_sec_text(wait.end)}"
+        text = f"{wait.task}: waits for {wait.what}, {span}"
         yield wait.task, wait.start, wait.end, text + (f": {wait.why}" if wait.why else "")
     for run in record.tasks:
         if run.early is not None:
@@ -101,14 +106,14 @@ def _waits(record: RunRecord) -> Iterator[tuple[str, float, float, str]]:
                 run.task,
                 since,
                 until,
-                f"{run.task}: at its place, too early until {clock(until)}",
+                f"{run.task}: at its place, too early until {min_sec_text(until)}",
             )
     first = {c.name: c.initial for c in record.hfsm.composites[1:]}
     names = {leaf.id: leaf.task.name for leaf in record.hfsm.leaves}
     for round_run in record.rounds:
         until = round_run.began or round_run.ended or record.result.duration
         if until > round_run.since:
-            title = f"round {round_run.number} of {round_run.group} is due at {clock(until)}"
+            title = f"round {round_run.number} of {round_run.group} is due at {min_sec_text(until)}"
             yield names[first[round_run.group]], round_run.since, until, title
 
 
@@ -123,8 +128,8 @@ def _windows(record: RunRecord, rows: dict[str, int], px: float) -> Iterator[Nod
         line = f"M{LABELS + left * px:.1f},{y + 4:g}v-4H{LABELS + right * px:.1f}"
         line += "v4" if run.latest is not None and run.latest <= end else ""
         kind = "hard" if run.hard else "soft"
-        until = "" if run.latest is None else f" to {clock(run.latest)}"
-        title = f"{kind} time window, {clock(run.earliest)}{until}"
+        until = "" if run.latest is None else f" to {min_sec_text(run.latest)}"
+        title = f"{kind} time window, {min_sec_text(run.earliest)}{until}"
         yield node("path", d=line, title=title, class_="window" if run.hard else "window soft")
 
 
@@ -138,7 +143,7 @@ def draw_time_axis(end: float, px: float, top: float, bottom: float) -> list[Nod
     for t in range(0, math.floor(end) + 1, step):
         x = LABELS + t * px
         marks.append(node("path", d=f"M{x:.1f},{top:g}V{bottom:g}", class_="grid"))
-        marks.append(node("text", x=x, y=bottom + 16, text=clock(t), class_="axis middle"))
+        marks.append(node("text", x=x, y=bottom + 16, text=min_sec_text(t), class_="axis middle"))
     return marks
 
 
@@ -150,7 +155,7 @@ def _interruptions(record: RunRecord, px: float, bottom: float) -> list[Node]:
     marks = []
     for interruption in record.interruptions:
         width = max((interruption.end - interruption.start) * px, 1.5)
-        span = f"{clock(interruption.start)} to {clock(interruption.end)}"
+        span = f"{min_sec_text(interruption.start)} to {min_sec_text(interruption.end)}"
         band = node(
             "rect",
             title=f"{interruption.cause}, {span}",
@@ -162,7 +167,7 @@ def _interruptions(record: RunRecord, px: float, bottom: float) -> list[Node]:
         )
         marks.append(band)
     for t in record.resumed:
-        line, when = f"M{LABELS + t * px:.1f},{HEAD - 8:g}V{bottom:g}", f"at {clock(t)}"
+        line, when = f"M{LABELS + t * px:.1f},{HEAD - 8:g}V{bottom:g}", f"at {min_sec_text(t)}"
         marks.append(
             node("path", d=line, title=f"resumed from the journal {when}", class_="resumed")
         )
@@ -176,7 +181,7 @@ def _anomalies(record: RunRecord, px: float, bottom: float) -> list[Node]:
     for number, anomaly in enumerate(record.anomalies, start=1):
         x = LABELS + anomaly.t * px
         line, what = f"M{x:.1f},{HEAD - 8:g}V{bottom:g}", anomaly.kind.replace("_", " ")
-        title = f"{number} {what}: {anomaly.detail}, {clock(anomaly.t)}"
+        title = f"{number} {what}: {anomaly.detail}, {min_sec_text(anomaly.t)}"
         marks.append(node("path", d=line, title=title, class_="found-line"))
         if x > free_from:
             marks.append(draw_finding(x, HEAD - 8, number, "found"))

@@ -445,7 +445,7 @@ def _requested_joints(task: Task) -> dict[str, float]:
 def _can_start_at(navigator: Navigator, pose: BodyPose) -> bool:
     """Return True if a path can start so near to `pose` that the robot need not shift first."""
     try:
-        start = navigator.snap_position(_to_pose(pose))
+        start = navigator.snap_keeping_heading(_to_pose(pose))
     except Unreachable:
         return False
     return math.dist((start.x, start.y, start.z), (pose.x, pose.y, pose.z)) <= _NEAR

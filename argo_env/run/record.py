@@ -17,7 +17,7 @@ from argo_compiler.hfsm.progress import TaskTally
 from argo_compiler.il import Action, EventKind, Mission, Response
 from argo_env.drives.drive import Trouble
 from argo_env.faults.kinds import AnyFault
-from argo_env.formatting import clock, where
+from argo_env.formatting import floor_and_position_text, min_sec_text
 from argo_env.run.verdict_line import Headline, run_headline
 from argo_env.site.shapes import Vector
 from argo_env.site.spec import Rect
@@ -202,13 +202,13 @@ class Anomaly(Model):
     def whereabouts(self) -> str:
         """Position in words: of the anomaly, or else of the robot then; empty if none is known."""
         if self.place is not None:
-            return f"on {where(self.floor, self.place)}"
+            return f"on {floor_and_position_text(self.floor, self.place)}"
         if self.noticed_from is None:
             return ""
         prefix = (
             "reported while the robot was on" if self.is_reported_from_outside else "noticed from"
         )
-        return f"{prefix} {where(self.floor, self.noticed_from)}"
+        return f"{prefix} {floor_and_position_text(self.floor, self.noticed_from)}"
 
     def is_end_of(self, other: "Anomaly") -> bool:
         """Return True if this reports the end of the earlier anomaly `other`.
@@ -241,8 +241,8 @@ class Finding(Anomaly):
         """
         if self.is_reading:
             return self.what + (f" ({self.answer})" if self.answered else "")
-        end = "" if self.over_at is None else f", over at {clock(self.over_at)}"
-        return f"{self.what} at {clock(self.t)} ({self.answer}){end}"
+        end = "" if self.over_at is None else f", over at {min_sec_text(self.over_at)}"
+        return f"{self.what} at {min_sec_text(self.t)} ({self.answer}){end}"
 
 
 class Interruption(Model):
@@ -494,9 +494,10 @@ class RunRecord(Model):
                     f"{run.task} ended after its time window" for run in self.visits_ended_late
                 ],
                 "contact": [
-                    f"{c.link} touched {c.element} at {clock(c.start)}" for c in self.contacts
+                    f"{c.link} touched {c.element} at {min_sec_text(c.start)}"
+                    for c in self.contacts
                 ],
-                "mishap": [f"{m.trouble} at {clock(m.t)}" for m in self.mishaps],
+                "mishap": [f"{m.trouble} at {min_sec_text(m.t)}" for m in self.mishaps],
             },
         )
 

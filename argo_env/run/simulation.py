@@ -424,9 +424,9 @@ class Simulation(Closing):
                 )
         if beginning := self._spec.beginning:
             start = beginning.body_pose
-            navigator.snap_position(Pose(x=start.x, y=start.y, z=start.z, yaw=start.yaw))
+            navigator.snap_keeping_heading(Pose(x=start.x, y=start.y, z=start.z, yaw=start.yaw))
             return start
-        pose = navigator.snap_position(
+        pose = navigator.snap_keeping_heading(
             self._spec.conditions.actual_start_pose(start_pose_or_lowest_dock(mission, docks))
         )
         return BodyPose(pose.x, pose.y, pose.z, pose.yaw)

@@ -3,7 +3,7 @@
 import math
 
 from argo_env.drives.powertrain import Powertrain
-from argo_env.formatting import clock, time_text
+from argo_env.formatting import min_sec_text, time_text
 from argo_env.run.log import RunLog
 from argo_env.run.machine import Machine
 from argo_env.run.robot import RobotPower
@@ -42,7 +42,7 @@ def standstill_reason(
         return None
     why = "held by its emergency stop" if is_stopped else "waiting for an event"
     why = "paused" if machine.paused else why
-    reason = f"the robot stands still since {clock(since)}, {why}, and nothing more occurs"
+    reason = f"the robot stands still since {min_sec_text(since)}, {why}, and nothing more occurs"
     if machine.paused and machine.hfsm.supervised and not log.tasks:
         reason += ": a supervisory mission begins when a person resumes it (the event `resume`)"
     return reason
@@ -68,5 +68,5 @@ def _standstill_times(setup: RunSetup, log: RunLog) -> tuple[float, float]:
     if schedule is None or not schedule.faults:
         return since, since
     # The robot may still find a fault that has begun, or notice that one has ended.
-    since = max(since, schedule.latest_past_change_time)
+    since = max(since, schedule.latest_change_time_or_zero)
     return since, math.inf if schedule.has_changes_left else since + SETTLING

@@ -35,7 +35,7 @@ from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.runner import EvaluationRunner
 from argo_env.evaluation.score import read_scoring
 from argo_env.evaluation.store import RowStore
-from argo_env.files.folders import check_folder
+from argo_env.files.folders import require_folder_or_creatable
 from argo_env.run.drives_and_sensors import DRIVES, IDEAL, SENSORS
 from argo_planner.terminal.completion import offer_names
 from argo_planner.terminal.evaluation_display import EvaluationDisplay
@@ -189,11 +189,13 @@ def evaluate_command(
     check_outputs(
         sources or [], folders=[(target, [REPORT] if report else [])], force=continues or force
     )
-    check_folder(target / FAILING)
+    require_folder_or_creatable(target / FAILING)
     digest = digest_contents(*contents_for_digest(file, folder), content)
     plan = find_stored_plan(target, digest) or plan_evaluation(file, folder, read_upload)
     cheap_plan = None if file.control is None else make_cheap_plan(plan, file.control)
-    with open_rows(target, plan, digest, replace=force, cheap_plan=cheap_plan) as store:
+    with open_rows(
+        target, plan, digest, replace_and_keep_fitting=force, cheap_plan=cheap_plan
+    ) as store:
         results, means = _run_evaluation(
             plan, file.control, store, make_workers(plan, backend, workers, address), limit
         )
@@ -250,7 +252,7 @@ def _compare(
     force: bool,
     console: Console,
 ) -> None:
-    from argo_env.evaluation.comparison import compare_plans, find_plan
+    from argo_env.evaluation.comparison import compare_plans, plan_by_label_or_mission
 
     target = out or first
     if len(plans) > 2:
@@ -260,7 +262,7 @@ def _compare(
     a, b = read_results(first), read_results(second)
     names = [None, None] if not plans else [plans[0], plans[-1]]
     chosen = [
-        None if name is None else find_plan(results, name)
+        None if name is None else plan_by_label_or_mission(results, name)
         for results, name in zip((a, b), names, strict=True)
     ]
     compared = compare_plans(a, b, *chosen)

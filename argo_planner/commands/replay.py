@@ -10,7 +10,7 @@ from rich.markup import escape
 
 from argo_compiler.base.stages import stage
 from argo_env.files.folders import make_folder
-from argo_env.formatting import clock
+from argo_env.formatting import min_sec_text
 from argo_env.pictures import check_film
 from argo_env.recording.reader import Recording, read_recording
 from argo_env.robot.spec import load_robot
@@ -66,7 +66,7 @@ def _show_unfinished(recording: Recording) -> None:
     console = Console()
     for reading in recording.readings:
         console.print(
-            f"{clock(reading.t)} {escape(reading.name)} (#{reading.checkpoint}) shows "
+            f"{min_sec_text(reading.t)} {escape(reading.name)} (#{reading.checkpoint}) shows "
             f"{reading.value:.2f} {reading.unit}",
             soft_wrap=True,
         )

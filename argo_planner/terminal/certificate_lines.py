@@ -7,7 +7,7 @@ from rich.markup import escape
 
 from argo_compiler.route.certificate import Certificate, CheckedClaim, Claim, Judgement
 from argo_compiler.route.evaluation import evaluate
-from argo_env.formatting import clock
+from argo_env.formatting import min_sec_text
 from argo_planner.use_cases.routing import SuggestedOrder
 
 _BEGINNINGS = {
@@ -49,12 +49,13 @@ def _claim_text(found: SuggestedOrder, claim: Claim) -> str:
     match claim:
         case Claim.ROUTE:
             takes = evaluate(found.planned.problem, found.route).duration
-            return f"the order meets all requirements and takes {clock(found.to_seconds(takes))}"
+            time = min_sec_text(found.to_seconds(takes))
+            return f"the order meets all requirements and takes {time}"
         case Claim.PRIZE_BOUND:
             return f"no order is worth more than {made.prize_bound}"
         case Claim.BOUND:
             worth = f" worth {made.prize_bound}" if found.planned.problem.selective else ""
-            return f"no order{worth} takes less than {clock(found.to_seconds(made.bound))}"
+            return f"no order{worth} takes less than {min_sec_text(found.to_seconds(made.bound))}"
         case Claim.BEST:
             return "no order is better"
         case Claim.NONE:
@@ -67,11 +68,12 @@ def _reason_text(found: SuggestedOrder, one: CheckedClaim) -> str:
     if one.counterexample is not None:
         worth = evaluate(found.planned.problem, one.counterexample)
         names = (found.planned.visits.names[visit] for visit in one.counterexample.order)
-        takes = clock(found.to_seconds(worth.duration))
+        takes = min_sec_text(found.to_seconds(worth.duration))
         return f"counterexample: {', '.join(names)}; it is worth {worth.prize} and takes {takes}"
     if one.shown is None:
         return one.why
     most, least = one.shown
     if most > found.suggestion.prize:
         return f"{one.why}: it only shows that none is worth more than {most}"
-    return f"{one.why}: it only shows that none takes less than {clock(found.to_seconds(least))}"
+    time = min_sec_text(found.to_seconds(least))
+    return f"{one.why}: it only shows that none takes less than {time}"

@@ -12,7 +12,7 @@ from argo_env.closing import Closing
 from argo_env.evaluation.rates import approximate_success_rate
 from argo_env.evaluation.row import RunOutcome
 from argo_env.evaluation.runner import EvaluationProgress
-from argo_env.formatting import clock
+from argo_env.formatting import min_sec_text
 from argo_planner.terminal.verbosity import is_quiet
 
 EVERY = 10.0
@@ -76,5 +76,5 @@ def progress_text(progress: EvaluationProgress) -> str:
         if outcomes[outcome]:
             parts.append(f"{outcomes[outcome]} {name}")
     if progress.longest_remaining_seconds is not None:
-        parts.append(f"at most {clock(progress.longest_remaining_seconds)} left")
+        parts.append(f"at most {min_sec_text(progress.longest_remaining_seconds)} left")
     return ", ".join(parts)

@@ -19,7 +19,7 @@ from argo_env.evaluation.report.texts import explain_sequence, in_percent
 from argo_env.evaluation.results import EvaluationResults, GroupRate
 from argo_env.evaluation.row import RunOutcome
 from argo_env.evaluation.score import ScoringRules, mean_score
-from argo_env.formatting import clock
+from argo_env.formatting import min_sec_text
 
 _STYLES = {Decision.MET: "bold green", Decision.MISSED: "bold red", Decision.OPEN: "bold yellow"}
 _MAX_LISTED = 10  # failed runs that are listed
@@ -60,7 +60,7 @@ def show_results(
         if len(groups) > 1:
             console.print(_groups(_titled("by faults", plan, results), "faults", groups))
         blocks = results.by_seeds(plan)
-        if len(blocks) > 1 and results.failing:
+        if len(blocks) > 1 and results.unsuccessful_rows:
             console.print(_groups(_titled("by seeds", plan, results), "seeds", blocks))
     for line in _failing(results, failed_spec_files):
         console.print(escape(line), soft_wrap=True)
@@ -139,7 +139,7 @@ def _plans(results: EvaluationResults) -> Table:
             str(counts[RunOutcome.FAILURE] or ""),
             str(counts[RunOutcome.ERROR] or ""),
             str(counts[RunOutcome.DIED] or ""),
-            clock(median(took)) if took else "",
+            min_sec_text(median(took)) if took else "",
         )
     methods = {results.rate(plan).method for plan in results.plan.plans}
     notes = []
@@ -176,7 +176,7 @@ def _groups(title: str, what: str, groups: tuple[GroupRate, ...]) -> Table:
 
 
 def _failing(results: EvaluationResults, files: Mapping[str, Path]) -> Iterator[str]:
-    rows = results.failing
+    rows = results.unsuccessful_rows
     if not rows:
         return
     yield f"{len(rows)} of {len(results.rows)} runs did not succeed; to repeat one alone:"

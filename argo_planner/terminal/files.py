@@ -16,7 +16,7 @@ from argo_compiler.files.loading import read_bytes
 from argo_compiler.files.mission_file import read_mission_bytes
 from argo_compiler.ros.recognition import is_bag
 from argo_compiler.script.syntax.reading import MAX_BYTES
-from argo_env.files.folders import check_folder
+from argo_env.files.folders import require_folder_or_creatable
 from argo_planner.use_cases.importing import Upload
 
 STANDARD_OUTPUT = Path("-")
@@ -60,7 +60,7 @@ def check_outputs(
     together: list[Path] = []
     for folder, names in folders:
         if folder is not None:
-            check_folder(folder)
+            require_folder_or_creatable(folder)
             together.append(folder)
             several += [folder / name for name in names]
     _keep_apart(inputs, [*single, *several, *together])

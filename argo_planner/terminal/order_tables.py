@@ -14,7 +14,7 @@ from argo_compiler.reorder.mission_problem import late_visit_texts
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.robust_spread import TravelSpread
 from argo_compiler.route.tour_pauses import TourPause, pauses
-from argo_env.formatting import clock
+from argo_env.formatting import min_sec_text
 from argo_env.planning.opening import OpenedSite
 from argo_planner.terminal.words import insert_keep_order_option
 from argo_planner.use_cases.routing import SuggestedOrder, duration_problem, estimate_completions
@@ -30,7 +30,7 @@ def show_risk(found: SuggestedOrder, spread: TravelSpread, seed: int, console: C
     for name, done in zip(("As written", "Suggested"), both, strict=True):
         text = f"{name}: in time with a probability of {done.probability:.1%}"
         if done.duration < float("inf"):
-            mean, most = (clock(x * problem.unit) for x in (done.duration, done.duration_95))
+            mean, most = (min_sec_text(x * problem.unit) for x in (done.duration, done.duration_95))
             text += f" ({done.low:.1%} to {done.high:.1%}); {mean} on average, "
             text += f"at most {most} in 95 % of the cases"
         console.print(escape(text), soft_wrap=True)
@@ -72,9 +72,9 @@ def _table(found: SuggestedOrder) -> Table:
         table.add_row(
             str(k + 1),
             escape(planned.visits.names[visit]),
-            "not reached" if visit in late else clock(found.to_seconds(worth.arrivals[k])),
+            "not reached" if visit in late else min_sec_text(found.to_seconds(worth.arrivals[k])),
             str(written[visit] + 1),
-            clock(found.to_seconds(before[written[visit]])),
+            min_sec_text(found.to_seconds(before[written[visit]])),
         )
         if along := planned.visits.other_tasks(visit):
             table.add_row("", f"[italic]then {escape(', '.join(along))}[/]", "", "", "")
@@ -86,7 +86,7 @@ def _table(found: SuggestedOrder) -> Table:
             escape(planned.visits.names[visit]),
             "left out",
             str(written[visit] + 1),
-            clock(found.to_seconds(before[written[visit]])),
+            min_sec_text(found.to_seconds(before[written[visit]])),
             style="yellow",
         )
     return table
@@ -96,10 +96,12 @@ def _lines(found: SuggestedOrder) -> Iterator[str]:
     planned, suggestion = found.planned, found.suggestion
     problem, worth = planned.problem, evaluate(planned.problem, found.route)
     new, old = found.to_seconds(worth.duration), found.to_seconds(found.written.duration)
-    yield f"As written: {clock(old)}" + _violations_text(found)
-    change = f", {clock(abs(old - new))} {'less' if new <= old else 'more'}" if new != old else ""
+    yield f"As written: {min_sec_text(old)}" + _violations_text(found)
+    change = (
+        f", {min_sec_text(abs(old - new))} {'less' if new <= old else 'more'}" if new != old else ""
+    )
     share = f" ({(old - new) / old:.0%})" if new < old and old > 0.0 else ""
-    yield f"Suggested:  {clock(new)}{change}{share}"
+    yield f"Suggested:  {min_sec_text(new)}{change}{share}"
     if suggestion.dropped:
         done, of = len(suggestion.order), problem.size
         names = ", ".join(planned.visits.names[visit] for visit in suggestion.dropped)
@@ -149,7 +151,7 @@ def _unreached(found: SuggestedOrder) -> Iterator[tuple[str, list[int]]]:
 
 
 def _pause(found: SuggestedOrder, pause: TourPause) -> str:
-    how_long = clock(found.to_seconds(pause.duration))
+    how_long = min_sec_text(found.to_seconds(pause.duration))
     if pause.charger is not None:
         return f"charge {how_long} at {found.planned.problem.chargers[pause.charger]}"
     assert pause.visit is not None
@@ -181,6 +183,6 @@ def _proof(found: SuggestedOrder) -> str:
             f"Not proven: worth {suggestion.prize}, and no order is worth more than "
             f"{suggestion.prize_bound}{method}"
         )
-    bound = clock(found.to_seconds(suggestion.bound))
+    bound = min_sec_text(found.to_seconds(suggestion.bound))
     gap = f"{suggestion.gap or 0.0:.1%} less than this one"
     return f"Not proven: no order takes less than {bound}, {gap}{method}"

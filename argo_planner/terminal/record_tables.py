@@ -6,7 +6,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from argo_env.formatting import clock, where
+from argo_env.formatting import floor_and_position_text, min_sec_text
 from argo_env.report.rounds import all_waits
 from argo_env.run.record import RunRecord, WindowOutcome
 from argo_env.run.verdict_line import Tone
@@ -22,12 +22,12 @@ def show_record(record: RunRecord, console: Console) -> None:
     measuring = console.width >= _WIDE and any(t.measuring_duration for t in record.tasks)
     console.print(_tasks(record, measuring))
     result = record.result
-    limit = f" of at most {clock(result.max_duration)}" if result.max_duration else ""
+    limit = f" of at most {min_sec_text(result.max_duration)}" if result.max_duration else ""
     touches = f"{len(record.contacts)} contact{'s' if len(record.contacts) != 1 else ''}"
     not_docked = "not docked" if result.ended else "not docked yet"
     docked = {True: "docked", False: not_docked, None: "docking not required"}[result.docked]
     console.print(
-        f"{clock(result.duration)}{limit}, {result.distance:.1f} m, "
+        f"{min_sec_text(result.duration)}{limit}, {result.distance:.1f} m, "
         f"{result.climbed:.1f} m climbed, {touches}, {docked}",
         soft_wrap=True,
     )
@@ -46,12 +46,12 @@ def _problem_lines(record: RunRecord) -> Iterator[str]:
         yield ", ".join(filter(None, (finding.in_words, finding.whereabouts))) + detail
     for contact in record.contacts:
         yield (
-            f"contact at {clock(contact.start)}: {contact.link} with {contact.element}, "
+            f"contact at {min_sec_text(contact.start)}: {contact.link} with {contact.element}, "
             f"{contact.depth * 1000:.0f} mm deep"
         )
     for mishap in record.mishaps:
-        place = where(mishap.floor, mishap.place)
-        yield f"{mishap.trouble} at {clock(mishap.t)} on {place}: {mishap.detail}"
+        place = floor_and_position_text(mishap.floor, mishap.place)
+        yield f"{mishap.trouble} at {min_sec_text(mishap.t)} on {place}: {mishap.detail}"
     for fault in record.faults_not_begun:
         yield record.explain_fault_not_begun(fault)
 
@@ -65,7 +65,7 @@ def _readings(record: RunRecord) -> Table:
             str(reading.checkpoint),
             escape(reading.name),
             str(reading.floor),
-            clock(reading.t),
+            min_sec_text(reading.t),
             f"{reading.value:.2f} {reading.unit}",
             f"{reading.nominal.low:g} to {reading.nominal.high:g}",
             "[green]normal[/]" if reading.normal else "[bold red]abnormal[/]",
@@ -105,9 +105,11 @@ def _task_rows(record: RunRecord) -> Iterator[tuple[float, tuple[str, ...]]]:
             (
                 escape(name),
                 str(len(begins)),
-                clock(min(begins)),
-                clock(sum(t.end - t.start for t in runs)),
-                clock(measured) if (measured := sum(t.measuring_duration for t in runs)) else "",
+                min_sec_text(min(begins)),
+                min_sec_text(sum(t.end - t.start for t in runs)),
+                min_sec_text(measured)
+                if (measured := sum(t.measuring_duration for t in runs))
+                else "",
                 f"{sum(t.distance for t in runs):.1f} m",
                 f"{sum(t.climbed for t in runs):.1f} m",
                 escape(", ".join(outcomes) + (f" ({'; '.join(reasons)})" if reasons else "")),
@@ -139,8 +141,8 @@ def _wait_rows(record: RunRecord) -> Iterator[tuple[float, tuple[str, ...]]]:
             (
                 escape(f"waits for {what}"),
                 str(len(same)),
-                clock(same[0].start),
-                clock(sum(wait.end - wait.start for wait in same)),
+                min_sec_text(same[0].start),
+                min_sec_text(sum(wait.end - wait.start for wait in same)),
                 "",
                 "",
                 "",

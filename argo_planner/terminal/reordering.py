@@ -6,7 +6,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from argo_compiler.base.errors import Conflict
-from argo_env.formatting import clock
+from argo_env.formatting import min_sec_text
 from argo_env.planning.opening import OpenedSite
 from argo_env.run.record import Reordering
 from argo_planner.terminal.words import error_text_with_route_commands
@@ -31,8 +31,8 @@ def optimise_and_show(
     reordering = found.reordering
     order = ", ".join(reordering.order)
     text = (
-        f"Order: {order}\nPredicted: {clock(reordering.duration)}, as written "
-        f"{clock(reordering.written_duration)}"
+        f"Order: {order}\nPredicted: {min_sec_text(reordering.duration)}, as written "
+        f"{min_sec_text(reordering.written_duration)}"
         f"{'; no order is better' if reordering.proven else ''}"
     )
     Console(highlight=False).print(escape(text), soft_wrap=True)

@@ -7,7 +7,7 @@ import numpy as np
 from argo_compiler.base.errors import Conflict, Remedy
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.problem import NEVER, RouteProblem, Tour
-from argo_env.formatting import clock
+from argo_env.formatting import min_sec_text
 from argo_planner.use_cases.routing import SuggestedOrder
 
 
@@ -51,9 +51,11 @@ def _no_route_error(found: SuggestedOrder) -> Conflict:
         )
     limit, written = problem.max_duration, found.written.duration
     if limit is not None and written > limit and not problem.selective:
-        text += f"\nIn its written order the mission takes {clock(found.to_seconds(written))}"
+        text += (
+            f"\nIn its written order the mission takes {min_sec_text(found.to_seconds(written))}"
+        )
         if found.written.waiting:
-            text += f", {clock(found.to_seconds(found.written.waiting))} of it waiting"
+            text += f", {min_sec_text(found.to_seconds(found.written.waiting))} of it waiting"
         text += "; with a budget, tasks that do not fit are left out"
         remedies += (Remedy.GIVE_BUDGET,)
     return Conflict(text, remedies=remedies)
@@ -87,7 +89,7 @@ def _empty_order_error(found: SuggestedOrder) -> Conflict:
         return Conflict(f"nothing fits within the {limit}{assumed}")
     least, visit = min(takes)
     which = group[visit].name if visit in group else problem.visits[visit].name
-    nearest = f"the nearest, {which}, takes {clock(found.to_seconds(least))}"
+    nearest = f"the nearest, {which}, takes {min_sec_text(found.to_seconds(least))}"
     if problem.max_duration is not None and least > problem.max_duration:
         return Conflict(f"nothing fits within the {limit}{assumed}: {nearest}; allow more")
     return Conflict(

@@ -26,7 +26,7 @@ from argo_compiler.route.stop import SearchProgress
 from argo_compiler.route.suggested import RouteSuggestion
 from argo_compiler.route.suggestion import suggest_route
 from argo_env.files.yaml_file import parse_yaml
-from argo_env.formatting import clock
+from argo_env.formatting import min_sec_text
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.route_matrix import make_mission_problem
 from argo_env.planning.travel import SiteTravel
@@ -165,7 +165,7 @@ def _progress_text(progress: SearchProgress, unit: float) -> str:
     """
     if progress.cost is None:
         return "none found so far"
-    best, bound = (clock(units * unit) for units in (progress.cost, progress.bound))
+    best, bound = (min_sec_text(units * unit) for units in (progress.cost, progress.bound))
     return f"{best} so far, none takes less than {bound}"
 
 

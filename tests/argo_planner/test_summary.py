@@ -9,7 +9,7 @@ from argo_compiler.base.catalog import CheckpointKind, Interval
 from argo_compiler.il import Action, Afterwards, EventKind, Mission, Reaction, Response, Task
 from argo_env.faults.plant import GasLeakFault
 from argo_env.faults.robot import ConnectionLoss
-from argo_env.formatting import clock, distinct_time_texts, time_text
+from argo_env.formatting import distinct_time_texts, min_sec_text, time_text
 from argo_env.run.record import (
     Anomaly,
     Contact,
@@ -224,7 +224,7 @@ def test_names_are_not_taken_for_markup(record: RunRecord) -> None:
     ("seconds", "text"), [(0.0, "00:00"), (59.6, "01:00"), (299.4, "04:59"), (3600.0, "60:00")]
 )
 def test_clock(seconds: float, text: str) -> None:
-    assert clock(seconds) == text
+    assert min_sec_text(seconds) == text
 
 
 @pytest.mark.parametrize(

@@ -76,7 +76,7 @@ def _same_pump(fault: AnyFault, anomaly: Anomaly, _: Site) -> bool:
 
 def _obstacle_is_there(fault: AnyFault, anomaly: Anomaly, site: Site) -> bool:
     before = {element.name for element in site.elements}
-    added = [e for e in fault.all_elements_with_fault(site) if e.name not in before]
+    added = [e for e in fault.site_elements_with_fault(site) if e.name not in before]
     place = anomaly.place
     return place is not None and any(
         isinstance(solid, Box)

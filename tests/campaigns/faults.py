@@ -82,7 +82,7 @@ def run_with_bricks(navigator: Navigator, count: int, first_seed: int, drive: st
         rng = generator(seed, "brick mission")
         site, area = navigator.site, min(navigator.site.docks)
         checkpoint = int(rng.choice([c.id for c in site.checkpoints]))
-        path = navigator.plan_to_view(navigator.snap_position(site.docks[area]), checkpoint)
+        path = navigator.plan_to_view(navigator.snap_keeping_heading(site.docks[area]), checkpoint)
         floors = {f.z: f for f in site.spec.floors}
         poses = [
             (floors[motion.start.z].number, motion.pose_at(float(rng.random())))

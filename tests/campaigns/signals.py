@@ -56,7 +56,7 @@ def random_drives(
     for number in range(count):
         rng = generator(number, "drive")
         drive = KinematicDrive(world, navigator.robot, STEP)
-        dock = navigator.snap_position(next(iter(navigator.site.docks.values())))
+        dock = navigator.snap_keeping_heading(next(iter(navigator.site.docks.values())))
         drive.place_robot(BodyPose(dock.x, dock.y, dock.z, dock.yaw))
         track: Track = [(0.0, drive.pose)]
 
@@ -169,7 +169,7 @@ def place_obstacle(kind: str, site: Site, tracks: Sequence[Track], number: int) 
     backwards = (
         math.cos(pose.yaw) * (pose.x - before.x) + math.sin(pose.yaw) * (pose.y - before.y) < 0
     )
-    with World(site, load_robot(), elements=fault.all_elements_with_fault(site)) as world:
+    with World(site, load_robot(), elements=fault.site_elements_with_fault(site)) as world:
         for _, at, detection in detections(
             world, Surroundings(site), approach, number, ("terrain",)
         ):
@@ -199,10 +199,10 @@ def place_barriers(site: Site, tracks: Sequence[Track], number: int) -> Placemen
     pose = track[moment][1]
     tower = "west tower" if pose.x < 5 else "east tower"
     fault = BlockedStairs(tower=tower, floor=site.floor_at(pose.z))
-    with World(site, load_robot(), elements=fault.all_elements_with_fault(site)) as world:
+    with World(site, load_robot(), elements=fault.site_elements_with_fault(site)) as world:
         barriers = [
             s
-            for e in fault.all_elements_with_fault(site)
+            for e in fault.site_elements_with_fault(site)
             if e.name.startswith("barrier")
             for s in e.solids
         ]

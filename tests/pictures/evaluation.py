@@ -15,7 +15,7 @@ from argo_env.evaluation.evaluation import Evaluation
 from argo_env.evaluation.plots import (
     durations,
     forest_of_rates,
-    heat_map_of_outcomes,
+    heat_map_of_outcomes_by_faults,
     histogram_of_duration_differences,
 )
 from argo_env.evaluation.results import EvaluationResults
@@ -66,7 +66,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     durations(results, right)
     why = Figure(figsize=(11, 3.2), layout="constrained")
     left, right = why.subplots(1, 2)
-    heat_map_of_outcomes(results, left, first)
+    heat_map_of_outcomes_by_faults(results, left, first)
     histogram_of_duration_differences(compare_plans(results, results, first, second), right)
     for figure, name in ((rates, "evaluation-rates"), (why, "evaluation-why")):
         path = given.folder / f"{name}.png"

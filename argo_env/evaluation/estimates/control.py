@@ -49,9 +49,9 @@ class ControlVariate:
 
     @property
     def cheap_runs_per_expensive_run(self) -> float:
-        """Number of cheap runs for each expensive run at which `gain` is largest; 1 or more.
+        """Number of cheap runs, 1 or more, for each expensive run that reduces the cost most.
 
-        It is infinite for a perfect correlation.
+        That is the maximum of `cost_reduction_factor`. It is infinite for a perfect correlation.
         """
         unexplained = 1.0 - self.correlation**2
         if unexplained <= 0:
@@ -59,7 +59,7 @@ class ControlVariate:
         return max(1.0, math.sqrt(self.correlation**2 / (unexplained * self.cost)))
 
     @property
-    def gain(self) -> float:
+    def cost_reduction_factor(self) -> float:
         """Factor by which cheap runs reduce the cost of an estimate of the same accuracy.
 
         That is the cost of expensive runs alone over the cost with cheap runs. Below 1, cheap runs
@@ -72,8 +72,8 @@ class ControlVariate:
 
     @property
     def pays(self) -> bool:
-        """True if the gain is above 1.1, so that cheap runs are worth their trouble."""
-        return self.gain > 1.1
+        """True if `cost_reduction_factor` is above 1.1: cheap runs are worth their trouble."""
+        return self.cost_reduction_factor > 1.1
 
 
 def controlled_mean(

@@ -122,7 +122,7 @@ class FirstMinusSecond:
     p_value: float
 
     @property
-    def is_significant(self) -> bool:
+    def is_significant_by_p_value(self) -> bool:
         """True if the difference is significant: its p-value is at most 5 %."""
         return self.p_value <= 1.0 - LEVEL
 

@@ -144,11 +144,13 @@ def allocate_runs(strata: Sequence[Stratum], runs: int) -> tuple[int, ...]:
     return tuple(minimum + count for count in counts)
 
 
-def world_means(values: Iterable[tuple[int, float | tuple[float, ...]]]) -> NDArray[np.float64]:
+def world_means_in_order_seen(
+    values: Iterable[tuple[int, float | tuple[float, ...]]],
+) -> NDArray[np.float64]:
     """Return the mean of the values in each world, shape (worlds,), or (worlds, k) for tuples.
 
     `values` are pairs: the seed of a world, and a value of a run there or a tuple of values of a
-    pair of runs. The worlds are in the order of their first values.
+    pair of runs. The worlds are in the order in which they first appear in `values`.
     """
     worlds: dict[int, list[float | tuple[float, ...]]] = defaultdict(list)
     for seed, value in values:
@@ -156,7 +158,7 @@ def world_means(values: Iterable[tuple[int, float | tuple[float, ...]]]) -> NDAr
     return np.array([np.mean(results, axis=0) for results in worlds.values()])
 
 
-def weighted_world_means(
+def weighted_means_of_complete_worlds(
     values: Iterable[tuple[int, str, float | None]], weights: Mapping[str, float]
 ) -> dict[int, float]:
     """Return, by seed, the weighted mean over the cases that count in a world.

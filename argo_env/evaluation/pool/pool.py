@@ -124,7 +124,7 @@ class Pool(Closing):
 
     @property
     def pending(self) -> int:
-        """Number of calls that have not completed."""
+        """Number of submitted calls that `as_completed` has not collected yet."""
         running = sum(map(len, self._running.values()))
         return len(self._waiting) + len(self._suspects) + running
 

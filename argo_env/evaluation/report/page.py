@@ -20,18 +20,18 @@ from argo_env.evaluation.plots import (
     detection_delays,
     durations,
     forest_of_rates,
-    heat_map_of_outcomes,
+    heat_map_of_outcomes_by_faults,
     histogram_of_duration_differences,
     pairs_that_differ,
 )
 from argo_env.evaluation.report.picture import render_plot
 from argo_env.evaluation.report.sections import (
     describe_evaluation,
-    failing_rows_plans_and_specs,
-    failure_reasons_with_faults,
     floors_with_failures,
-    other_quantity_plan_rates,
+    other_rates_by_quantity_and_plan,
     plan_sections,
+    reasons_by_plan_with_faults,
+    unsuccessful_rows_plans_specs,
 )
 from argo_env.evaluation.report.texts import (
     format_p_value,
@@ -45,7 +45,7 @@ from argo_env.evaluation.results import EvaluationResults, duration_curve
 from argo_env.evaluation.row import RunOutcome
 from argo_env.evaluation.worlds import Variation
 from argo_env.files.folders import make_folder
-from argo_env.formatting import clock
+from argo_env.formatting import min_sec_text
 from argo_env.report.svg import replace_non_xml_characters
 
 _MAX_RUNS, _SHOWN_RUNS, _MAX_REASONS, _MAX_CLUSTERS = 100, 12, 15, 12
@@ -81,7 +81,7 @@ def evaluation_page(results: EvaluationResults, folder: Path) -> str:
     names = {plan: section.name for plan, section in zip(plans, sections, strict=True)}
     rates = "; ".join(f"{s.name} {in_percent(s.rate.value) or 'no run'}" for s in sections)
     delays = results.delays
-    all_reasons = failure_reasons_with_faults(results)
+    all_reasons = reasons_by_plan_with_faults(results)
     blocks = [(names[plan], results.by_seeds(plan)) for plan in plans]
     return _template("evaluation.html.j2").render(
         name=results.plan.name,
@@ -96,7 +96,7 @@ def evaluation_page(results: EvaluationResults, folder: Path) -> str:
         if results.rows
         else None,
         required=any(r.quantity == "success" for r in results.plan.stopping.require),
-        others=other_quantity_plan_rates(results),
+        others=other_rates_by_quantity_and_plan(results),
         heat_maps=[
             (names[plan], _heat_map(results, plan, names[plan])) for plan in _with_faults(results)
         ],
@@ -117,9 +117,9 @@ def evaluation_page(results: EvaluationResults, folder: Path) -> str:
         more_reasons=max(0, len(all_reasons) - _MAX_REASONS),
         floors=floors_with_failures(results),
         most_clusters=_MAX_CLUSTERS,
-        failing=failing_rows_plans_and_specs(results, folder)[:_MAX_RUNS],
+        failing=unsuccessful_rows_plans_specs(results, folder)[:_MAX_RUNS],
         shown=_SHOWN_RUNS,
-        more=max(0, len(results.failing) - _MAX_RUNS),
+        more=max(0, len(results.unsuccessful_rows) - _MAX_RUNS),
         faults_for=results.faults_for,
         added=results.plan.added,
         blocks=[(name, groups) for name, groups in blocks if len(groups) > 1],
@@ -183,7 +183,7 @@ def _with_faults(results: EvaluationResults) -> list[PlanName]:
 
 def _heat_map(results: EvaluationResults, plan: PlanName, name: str) -> Markup:
     alt = f"Outcomes of the runs of {name}, by faults"
-    return render_plot(alt, lambda: heat_map_of_outcomes(results, plan=plan))
+    return render_plot(alt, lambda: heat_map_of_outcomes_by_faults(results, plan=plan))
 
 
 def _delay_summary(delays: list[float | None]) -> tuple[int, int, float | None, float | None]:
@@ -209,7 +209,7 @@ def _template(name: str) -> Template:
         finalize=lambda value: replace_non_xml_characters(value) if type(value) is str else value,
     )
     filters: dict[str, Callable[..., Any]] = {
-        "clock": clock, "percent": in_percent, "chance": format_p_value,
+        "clock": min_sec_text, "percent": in_percent, "chance": format_p_value,
         "counted": number_with_noun, "time": time_or,
     }  # fmt: skip
     environment.filters.update(filters)

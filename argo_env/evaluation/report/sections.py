@@ -17,9 +17,13 @@ from argo_env.evaluation.case import PlanName
 from argo_env.evaluation.folder import FAILING
 from argo_env.evaluation.plots import failure_places
 from argo_env.evaluation.quantities import QUANTITIES
-from argo_env.evaluation.rates import PlanRate, success, world_shares
+from argo_env.evaluation.rates import PlanRate, shares_of_complete_worlds, success
 from argo_env.evaluation.report.picture import render_plot
-from argo_env.evaluation.report.texts import explain_rate, number_ranges, number_with_noun
+from argo_env.evaluation.report.texts import (
+    explain_success_rate,
+    number_ranges_text,
+    number_with_noun,
+)
 from argo_env.evaluation.results import (
     EvaluationResults,
     FailureCluster,
@@ -54,7 +58,7 @@ def plan_sections(results: EvaluationResults) -> list[PlanSection]:
             plan.label(plans),
             results.rate(plan),
             _count_worlds(results, plan),
-            explain_rate(results, plan),
+            explain_success_rate(results, plan),
             results.by_faults(plan),
             Counter(row.outcome for row in results.rows_for(plan)),
         )
@@ -62,7 +66,7 @@ def plan_sections(results: EvaluationResults) -> list[PlanSection]:
     ]
 
 
-def other_quantity_plan_rates(results: EvaluationResults) -> list[tuple[str, str, PlanRate]]:
+def other_rates_by_quantity_and_plan(results: EvaluationResults) -> list[tuple[str, str, PlanRate]]:
     """Return the rates of all quantities but success, as description, name of the plan, and rate.
 
     Quantities that make no sense are left out: detections without faults, and late ends without a
@@ -101,7 +105,7 @@ def _count_worlds(results: EvaluationResults, plan: PlanName) -> int:
     weights = {case.faults: case.weight for case in results.plan.cases if case.plan == plan}
     if results.plan.strata or len(weights) == 1:
         return len({row.seed for row in ran})
-    return len(world_shares(ran, weights, success))
+    return len(shares_of_complete_worlds(ran, weights, success))
 
 
 _SECONDS = re.compile(r"\b\d+(?:\.\d+)?(?= s\b)")
@@ -125,10 +129,10 @@ class FloorFailures:
         return sum(cluster.runs for cluster in self.clusters)
 
 
-def failing_rows_plans_and_specs(
+def unsuccessful_rows_plans_specs(
     results: EvaluationResults, folder: Path
 ) -> list[tuple[RunRow, str, str]]:
-    """Return each unsuccessful run: its row, the name of its plan, and the path of its spec file.
+    """Return each unsuccessful run: its row, the label of its plan, and the path of its spec file.
 
     The run can be repeated from that file, which lies in the folder. The path is quoted for a
     shell.
@@ -136,11 +140,11 @@ def failing_rows_plans_and_specs(
     plans = results.plan.plans
     return [
         (row, row.plan.label(plans), shlex.quote(str(folder / FAILING / f"{row.key}.json")))
-        for row in results.failing
+        for row in results.unsuccessful_rows
     ]
 
 
-def failure_reasons_with_faults(
+def reasons_by_plan_with_faults(
     results: EvaluationResults,
 ) -> list[tuple[tuple[str, str], int, list[str]]]:
     """Return the reasons why runs did not succeed, each with its plan, number of runs and faults.
@@ -150,7 +154,7 @@ def failure_reasons_with_faults(
     """
     plans = results.plan.plans
     groups: dict[tuple[str, str], list[tuple[str, str]]] = {}
-    for row in results.failing:
+    for row in results.unsuccessful_rows:
         reason = row.reason if row.is_completed else f"{row.outcome.value}: {row.reason}"
         key = row.plan.label(plans), _SECONDS.sub("", reason)
         groups.setdefault(key, []).append((reason, results.faults_for(row)))
@@ -180,7 +184,7 @@ def _merge(similar: list[str]) -> str:
 def floors_with_failures(results: EvaluationResults) -> list[FloorFailures]:
     """Return the floors on which runs failed, with a drawing of each, site by site."""
     floors = []
-    failing = [row for row in results.failing if row.place and row.floor is not None]
+    failing = [row for row in results.unsuccessful_rows if row.place and row.floor is not None]
     for reference, robot in dict.fromkeys((row.site, row.robot) for row in failing):
         site_results = replace(
             results,
@@ -232,7 +236,7 @@ def describe_evaluation(results: EvaluationResults) -> list[tuple[str, list[str]
     if plan.added:
         made.append(("On the site", [plan.added]))
     most_runs = len(cases) * len(plan.seeds)
-    made.append(("Seeds", [number_ranges(plan.seeds)]))
+    made.append(("Seeds", [number_ranges_text(plan.seeds)]))
     made.append(("Runs", [f"{len(results.rows)} of at most {most_runs}"]))
     if results.cut_short:
         made.append(("Ended", ["early; only worlds with all of their runs are reported"]))

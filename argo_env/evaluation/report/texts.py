@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from argo_env.evaluation.case import PlanName
 from argo_env.evaluation.rates import Decision, IntervalMethod
 from argo_env.evaluation.results import EvaluationResults
-from argo_env.formatting import clock
+from argo_env.formatting import min_sec_text
 
 
 def in_percent(share: float) -> str:
@@ -26,8 +26,11 @@ def format_p_value(p_value: float) -> str:
     return f"{p_value:.3f}" if p_value >= 0.001 else "below 0.001"
 
 
-def number_ranges(numbers: Sequence[int]) -> str:
-    """Return whole numbers as ranges, such as `0 to 9, 12`; at most 20 ranges are listed."""
+def number_ranges_text(numbers: Sequence[int]) -> str:
+    """Return whole numbers as ranges, such as `0 to 9, 12`.
+
+    At most 20 ranges are listed; the number of those left out follows.
+    """
     parts: list[list[int]] = []
     for number in sorted(numbers):
         if parts and number == parts[-1][-1] + 1:
@@ -40,7 +43,7 @@ def number_ranges(numbers: Sequence[int]) -> str:
 
 def time_or(seconds: float | None, otherwise: str) -> str:
     """Return a time (s) as minutes and seconds, or the text `otherwise` for None."""
-    return otherwise if seconds is None else clock(seconds)
+    return otherwise if seconds is None else min_sec_text(seconds)
 
 
 def number_with_noun(number: int, what: str) -> str:
@@ -63,9 +66,9 @@ def headline_and_rating(results: EvaluationResults) -> tuple[str, str]:
     rates = [results.rate(plan) for plan in results.plan.plans]
     if all(not rate.runs for rate in rates):
         return "no run could be carried out", "bad"
-    if not results.failing:
+    if not results.unsuccessful_rows:
         return "no run failed", "good"
-    return f"{len(results.failing)} of {len(results.rows)} runs are no success", "notice"
+    return f"{len(results.unsuccessful_rows)} of {len(results.rows)} runs are no success", "notice"
 
 
 def explain_sequence(results: EvaluationResults, several_runs_per_world: bool) -> list[str]:
@@ -86,7 +89,7 @@ def explain_sequence(results: EvaluationResults, several_runs_per_world: bool) -
     return [*sentences, "The interval is a confidence sequence, which allows for that."]
 
 
-def explain_rate(results: EvaluationResults, plan: PlanName) -> str:
+def explain_success_rate(results: EvaluationResults, plan: PlanName) -> str:
     """Return sentences that explain what a plan's success rate and its interval mean."""
     rate = results.rate(plan)
     if not rate.runs:

@@ -254,7 +254,7 @@ def _place_flaws(navigator: Navigator) -> list[Flaw]:
     flaws = []
     for name, pose in navigator.site.places.items():
         try:
-            navigator.snap_position(pose)
+            navigator.snap_keeping_heading(pose)
         except ArgoError as error:
             flaws.append(Flaw(f"place {name}: {error}; move it", (Mark(1, pose.x, pose.y),)))
     return flaws

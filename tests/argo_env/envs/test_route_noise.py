@@ -111,7 +111,7 @@ def test_hidden_parts_are_observed_only_when_they_appear():
         assert info["time"] - begun == env.instance.known_at(begun).arrival[place, node]
         known = env.instance.known_at(info["time"])
         assert np.array_equal(observation["matrix"], known.travel_shares)
-        assert np.array_equal(observation["home"], known.home_shares)
+        assert np.array_equal(observation["home"], known.time_to_dock_shares)
         before = info["time"]
     assert before > second.since
 

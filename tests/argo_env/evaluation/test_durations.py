@@ -30,7 +30,7 @@ def test_failed_runs_never_succeed(mission):
     assert curve.times == (10.0, 20.0, 30.0)
     assert curve.shares == pytest.approx((0.25, 0.5, 0.75))
     assert curve.limits == (25.0,)
-    times = [curve.time_at(share) for share in (0.1, 0.5, 0.75, 0.9)]
+    times = [curve.time_of_success_share(share) for share in (0.1, 0.5, 0.75, 0.9)]
     assert times == [10.0, 20.0, 30.0, None]
 
 
@@ -39,13 +39,17 @@ def test_cases_count_by_weight(mission):
     results = results_of(mission, rows, {"none": 0.9, "rare": 0.1, "not yet run": 1.0})
     curve = duration_curve(results, results.plan.plans[0])
     assert curve.shares[1] == pytest.approx(0.9)
-    assert curve.final_share == pytest.approx(1.0)
+    assert curve.final_success_share == pytest.approx(1.0)
 
 
 def test_the_curve_without_runs_is_empty(mission):
     results = results_of(mission, ())
     curve = duration_curve(results, results.plan.plans[0])
-    assert (curve.times, curve.final_share, curve.time_at(0.5)) == ((), 0.0, None)
+    assert (curve.times, curve.final_success_share, curve.time_of_success_share(0.5)) == (
+        (),
+        0.0,
+        None,
+    )
 
 
 def test_failures_within_half_a_metre_are_one_cluster():

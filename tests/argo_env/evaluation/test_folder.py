@@ -83,7 +83,7 @@ def test_a_replaced_evaluation_keeps_the_rows_that_fit(tmp_path, plan):
     later = rows_of(plan.with_changes(seeds=(100, 101)))
     fill(tmp_path, plan, *later)
     other = plan.with_changes(seeds=(3, 4, 5, 100))
-    with open_rows(tmp_path, other, DIGEST, replace=True) as store:
+    with open_rows(tmp_path, other, DIGEST, replace_and_keep_fitting=True) as store:
         assert {row.seed for row in store.rows.values()} == {3, 4, 5, 100}
         store.add_if_new(rows_of(other.with_changes(seeds=(200,)))[0])
         store.compact()
@@ -95,7 +95,9 @@ def test_cheap_runs_stay_with_the_plan_that_they_help(tmp_path, plan):
     cheap = make_cheap_plan(plan, "route")
     fill(tmp_path, plan, *rows_of(cheap, (0, 1, 5_000)))
     other = plan.with_changes(seeds=tuple(range(20, 40)))
-    with open_rows(tmp_path, other, DIGEST, replace=True, cheap_plan=cheap) as store:
+    with open_rows(
+        tmp_path, other, DIGEST, replace_and_keep_fitting=True, cheap_plan=cheap
+    ) as store:
         assert sorted((row.seed, row.drive) for row in store.rows.values()) == [
             (0, "route"), (1, "route"), (5_000, "route"),
         ]  # fmt: skip
@@ -106,6 +108,6 @@ def test_a_plan_of_another_version_is_another_evaluation(tmp_path, plan):
     (tmp_path / "evaluation.json").write_text('{"version": 0}')
     with pytest.raises(Conflict, match="has another evaluation"):
         open_rows(tmp_path, plan, DIGEST)
-    open_rows(tmp_path, plan, DIGEST, replace=True).close()
+    open_rows(tmp_path, plan, DIGEST, replace_and_keep_fitting=True).close()
     assert find_stored_plan(tmp_path) == plan
     assert len(keys(tmp_path)) == 12

@@ -20,7 +20,7 @@ from argo_env.evaluation.report.page import (
     write_evaluation_report,
 )
 from argo_env.evaluation.report.picture import PALETTE
-from argo_env.evaluation.report.sections import failure_reasons_with_faults
+from argo_env.evaluation.report.sections import reasons_by_plan_with_faults
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunOutcome
@@ -74,7 +74,7 @@ def test_the_page_has_the_numbers(results, tmp_path):
     assert "2 of 40 runs are no success" in page
     assert "95.0 %" in page  # over both cases; 90 % with a brick
     assert "90.0 %" in page
-    assert f"argo run {tmp_path}/failing/{results.failing[0].key}.json" in page
+    assert f"argo run {tmp_path}/failing/{results.unsuccessful_rows[0].key}.json" in page
     assert re.search(r"<td>brick</td><td class=\"n\">20</td><td class=\"n\">19</td>", page)
     assert "floor 1: 2 runs" in page
 
@@ -133,7 +133,7 @@ def test_pictures_are_drawn_on_the_axes_that_are_given(results, mission):
     for draw in (
         lambda ax: plots.forest_of_rates(results, ax),
         lambda ax: plots.durations(results, ax),
-        lambda ax: plots.heat_map_of_outcomes(results, ax),
+        lambda ax: plots.heat_map_of_outcomes_by_faults(results, ax),
         lambda ax: plots.detection_delays(results, ax),
         lambda ax: plots.failure_places(results, open_site("umad").site, 1, ax),
         lambda ax: plots.histogram_of_duration_differences(compared, ax),
@@ -229,7 +229,7 @@ def test_reasons_that_differ_in_time_only_are_one(mission):
         row if row.success else row.model_copy(update={"reason": next(texts)})
         for row in results.rows
     )
-    assert failure_reasons_with_faults(EvaluationResults(results.plan, rows)) == [
+    assert reasons_by_plan_with_faults(EvaluationResults(results.plan, rows)) == [
         (("mission", "it took 349.5 to 1001 s of 300 s"), 2, ["brick"]),
         (("mission", "failed: MEASURE 4"), 1, ["brick"]),
     ]
@@ -249,7 +249,7 @@ def test_a_site_that_was_removed_only_loses_its_pictures(mission, tmp_path):
 def test_a_folder_with_a_space_has_commands_that_work(results, tmp_path):
     page = html.unescape(evaluation_page(results, tmp_path / "two words"))
     command = re.search(r"<code>(argo run .*?)</code>", page)[1]
-    key = results.failing[0].key
+    key = results.unsuccessful_rows[0].key
     assert shlex.split(command)[2] == str(tmp_path / "two words" / "failing" / f"{key}.json")
 
 

@@ -9,7 +9,7 @@ from argo_env.evaluation.detection import FaultDetection
 from argo_env.evaluation.file import decode_evaluation
 from argo_env.evaluation.plan import Stopping
 from argo_env.evaluation.rates import Decision
-from argo_env.evaluation.report.sections import other_quantity_plan_rates
+from argo_env.evaluation.report.sections import other_rates_by_quantity_and_plan
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.faults.loading import decode_faults
 from tests.argo_env.evaluation import conftest
@@ -66,7 +66,9 @@ def test_without_faults_there_is_no_rate_of_detections(mission, strata):
     rate = results.rate(plan.plans[0], "detected")
     assert math.isnan(rate.value)
     assert rate.runs == 0
-    assert not any("faults were found" in name for name, _, _ in other_quantity_plan_rates(results))
+    assert not any(
+        "faults were found" in name for name, _, _ in other_rates_by_quantity_and_plan(results)
+    )
 
 
 def test_strata_without_faults_have_no_weight(mission):

@@ -70,9 +70,11 @@ def test_rows_are_equal_on_every_back_end(backend, faulty, expected_rows):
     results = evaluated(faulty, backend)
     assert results.rows == expected_rows
     assert results.outcomes == {RunOutcome.SUCCESS: 6, RunOutcome.FAILURE: 6}
-    assert {row.faults for row in results.failing} == {"stop"}
-    assert all(row.place is not None and row.world["speed"] < 1 for row in results.failing)
-    assert all(row.detections[0].delay is not None for row in results.failing)
+    assert {row.faults for row in results.unsuccessful_rows} == {"stop"}
+    assert all(
+        row.place is not None and row.world["speed"] < 1 for row in results.unsuccessful_rows
+    )
+    assert all(row.detections[0].delay is not None for row in results.unsuccessful_rows)
 
 
 @pytest.mark.long
@@ -91,7 +93,7 @@ def test_of_a_thousand_runs_one_that_kills_its_worker_is_a_row_with_its_reason(b
 def test_a_real_run_that_dies_does_not_end_the_others(processes, plan):
     results = evaluated(plan, processes, call=work.poisoned)
     assert results.outcomes == {RunOutcome.SUCCESS: 9, RunOutcome.DIED: 1}
-    assert results.failing[0].reason == "the worker process ended with code 7"
+    assert results.unsuccessful_rows[0].reason == "the worker process ended with code 7"
 
 
 def test_an_error_of_the_simulator_is_an_outcome(processes, plan):

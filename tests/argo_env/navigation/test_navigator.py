@@ -243,7 +243,7 @@ def test_positions_that_cannot_be_reached(navigator, umad, position):
         lambda: navigator.plan(umad.docks[1], pose),
         lambda: navigator.plan(pose, umad.docks[1]),
         lambda: navigator.plan_to_view(pose, 1),
-        lambda: navigator.snap_position(pose),
+        lambda: navigator.snap_keeping_heading(pose),
     ):
         with pytest.raises(Unreachable) as caught:
             refused()
@@ -255,10 +255,10 @@ def test_positions_that_cannot_be_reached(navigator, umad, position):
 def test_snapping_keeps_the_heading_and_is_idempotent(navigator, umad):
     for x, y in ((12.4, 3.0), (11.8, 6.0), (6.8, 1.9), (6.8, 1.45)):
         wanted = Pose(x=x, y=y, z=2.5, yaw=0.3)
-        snapped = navigator.snap_position(wanted)
+        snapped = navigator.snap_keeping_heading(wanted)
         assert snapped.yaw == wanted.yaw
         assert apart(snapped, wanted) <= SNAP_DISTANCE
-        assert navigator.snap_position(snapped) == snapped
+        assert navigator.snap_keeping_heading(snapped) == snapped
         path = navigator.plan(umad.docks[1], wanted)
         assert apart(path.end, wanted) <= SNAP_DISTANCE
 
@@ -272,7 +272,7 @@ def test_with_enough_clearance_the_path_ends_at_the_requested_pose(navigator, um
 
 
 def test_path_to_the_own_pose_has_no_motions(navigator, umad):
-    dock = navigator.snap_position(umad.docks[1])
+    dock = navigator.snap_keeping_heading(umad.docks[1])
     path = navigator.plan(dock, dock)
     assert path.motions == ()
     assert path.end == path.start

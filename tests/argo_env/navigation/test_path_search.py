@@ -142,7 +142,7 @@ def test_times_are_those_of_the_cheapest_paths(hall, hall_search):
 
 def test_travel_times_of_checkpoints_and_poses(hall, robot):
     ids = [c.id for c in hall.site.checkpoints]
-    dock = hall.snap_position(hall.site.docks[1])
+    dock = hall.snap_keeping_heading(hall.site.docks[1])
     locations = [dock, *ids]
     times = hall.travel_times(locations)
     assert times.shape == (7, 7)

@@ -360,7 +360,7 @@ def taken(yard, tmp_path_factory):
 
     file = tmp_path_factory.mktemp("shots") / "run.mcap"
     site, robot = yard.site, yard.robot
-    start = yard.snap_position(site.docks[1])
+    start = yard.snap_keeping_heading(site.docks[1])
     view = yard.plan_to_view(start, 1).end
     with World(site, robot) as world:
         drive = KinematicDrive(world, robot)

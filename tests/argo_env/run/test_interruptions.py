@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import Cancel, Occurred, Outcome, Pause, Resume
 from argo_compiler.il import Afterwards, EventKind, Group, OnFailure, Response
-from argo_env.formatting import clock
+from argo_env.formatting import min_sec_text
 from argo_env.report import write_report
 from argo_env.report.rounds import all_waits
 from argo_env.run.record import RunRecord
@@ -177,7 +177,9 @@ class TestReactions:
         record = run(yard, plan, (4.0, Occurred(EventKind.GAS_LEAK)))
         end = record.interruptions[0].end
         assert record.interruptions[0].limit_over
-        assert all_waits(record)[0].outcome == f"the limit of the hold was over at {clock(end)}"
+        assert (
+            all_waits(record)[0].outcome == f"the limit of the hold was over at {min_sec_text(end)}"
+        )
         cleared = (10.0, Occurred(EventKind.ALL_CLEAR))
         record = run(yard, plan, (4.0, Occurred(EventKind.GAS_LEAK)), cleared)
         assert [w.outcome for w in all_waits(record)] == ["over"]

@@ -466,4 +466,4 @@ def test_a_schedule_begins_and_ends_in_order():
     schedule.advance(99.0)
     assert told[3:] == [(3.0, "a", "ends"), (3.0, "b", "begins")]
     assert not schedule.has_changes_left
-    assert schedule.latest_past_change_time == 3.0
+    assert schedule.latest_change_time_or_zero == 3.0

@@ -29,7 +29,7 @@ def test_a_plan_never_differs_from_itself():
         assert SuccessPairs.from_successes(done, done).p_value == 1.0
         if k % 10 == 0:  # this check is slower
             taken = rng.normal(600, 60, 50)
-            assert not mean_first_minus_second(taken, taken, seed=k).is_significant
+            assert not mean_first_minus_second(taken, taken, seed=k).is_significant_by_p_value
 
 
 def test_a_difference_is_rarely_found_if_there_is_none():
@@ -81,7 +81,7 @@ def test_pairing_finds_a_difference_smaller_than_that_between_worlds():
     rng = np.random.default_rng(12)
     worlds = rng.normal(600, 100, 80)
     estimate = mean_first_minus_second(worlds + 5, worlds)
-    assert estimate.is_significant
+    assert estimate.is_significant_by_p_value
     assert estimate.value == pytest.approx(5)
 
 
@@ -130,4 +130,4 @@ def test_the_gain_is_the_best_for_all_numbers_of_cheap_runs():
         return (1 + control.cost * k) * (1 - control.correlation**2 * (1 - 1 / k))
 
     lowest = min(cost(k) for k in np.linspace(1, 100, 10_000))
-    assert control.gain == pytest.approx(1 / lowest, rel=1e-3)
+    assert control.cost_reduction_factor == pytest.approx(1 / lowest, rel=1e-3)

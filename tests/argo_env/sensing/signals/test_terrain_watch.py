@@ -103,7 +103,7 @@ def test_stairs_landings_railings_and_rims_are_no_obstacles(
     umad, simulation, navigator, robot, goal
 ):
     """The robot drives up the west tower, or down the east one."""
-    here = navigator.snap_position(
+    here = navigator.snap_keeping_heading(
         Pose(x=3.05, y=-2.55, z=-0.03) if goal[2] > 0 else Pose(x=12.3, y=8, z=2.5)
     )
     drive = KinematicDrive(simulation, robot)

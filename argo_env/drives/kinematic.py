@@ -120,7 +120,7 @@ class RestingPoseCache:
         around = math.hypot(robot.track_length, robot.track_gauge) / 2
         low = min(a.x, b.x) - around, min(a.y, b.y) - around, min(a.z, b.z) - _DEPTH
         high = max(a.x, b.x) + around, max(a.y, b.y) + around, max(a.z, b.z) + _PROBE_HEIGHT
-        if not world.has_only_fixed_solids(low, high):
+        if not world.has_only_fixed_solids_near(low, high):
             return resting_poses(world, motion, robot)
         # The key holds the bits of the numbers, since zeros have signs.
         key = struct.pack("9d", a.x, a.y, a.z, a.yaw, b.x, b.y, b.z, b.yaw, motion.turn)

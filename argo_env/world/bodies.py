@@ -207,7 +207,7 @@ class Bodies(Connection):
         pybullet.removeBody(number, physicsClientId=self._client)
         self._detect()
 
-    def has_only_fixed_solids(self, low: Vector, high: Vector) -> bool:
+    def has_only_fixed_solids_near(self, low: Vector, high: Vector) -> bool:
         """Return True if nothing near the box between two corners (m) can move or be removed.
 
         That is, there is no checkpoint near it, and no screen in the world.

@@ -166,16 +166,16 @@ class World(Bodies):
         )
         return contacts
 
-    def arm_obstacle(self, positions: Mapping[str, float], clearance: float) -> str | None:
-        """Return the name of any obstacle nearer than `clearance` (m) to the arm at `positions`.
+    def arm_obstacle(self, joint_radians: Mapping[str, float], clearance: float) -> str | None:
+        """Return the name of any obstacle nearer than `clearance` (m) to the arm at `joint_radians`.
 
-        These are positions of joints (rad) by name; other joints stay where they are. After the
+        These are positions of joints by name; other joints stay where they are. After the
         check, all joints are where they were before. An obstacle is an element, a checkpoint, a
         screen, or another link of the robot. Returns None if there is none.
         """
-        names = list(positions)
+        names = list(joint_radians)
         before = dict(zip(names, self.joint_positions(names), strict=True))
-        self.set_joints(positions)
+        self.set_joints(joint_radians)
         try:
             return self._obstacle_near_arm(clearance)
         finally:

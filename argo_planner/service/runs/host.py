@@ -180,7 +180,7 @@ class RunHost:
         """Store a request and pass it on to the run; return its state.
 
         Followers get the further states of the request. A request that is sent again has no further
-        effect.
+        effect: its present state is returned.
 
         Raises:
             NotFound: The run is not the current one.

@@ -81,12 +81,12 @@ response is one of its messages"""
 
 @webhooks.get("mission", operation_id="mission_told", response_model=RoomMessage)
 def mission_message() -> None:
-    """Describe a message of `/api/missions/{id}/live`, for the OpenAPI document only."""
+    """Describe what the service sends on `/api/missions/{id}/live`, only for OpenAPI."""
 
 
 @webhooks.get("robot", operation_id="robot_told", response_model=RunMessage)
 def robot_message() -> None:
-    """Describe a message of `/api/robot/live`, for the OpenAPI document only."""
+    """Describe what the service sends on `/api/robot/live`, for the OpenAPI document only."""
 
 
 def make_app(open_service: OpenService) -> FastAPI:

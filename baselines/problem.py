@@ -59,7 +59,7 @@ def hindsight_problem(instance: RouteInstance) -> OpenProblem:
     travel = np.minimum(instance.arrival.astype(np.float64) / TICK, ticks + 1)
     if instance.hidden is not None:
         travel += instance.hidden.failing * np.diagonal(travel)
-    rows = [*range(1, instance.node_count), instance.start]
+    rows = [*range(1, instance.node_count), instance.start_row]
     observation: Observation = {"prize": instance.prizes, "before": instance.before}
     whole = np.minimum(travel, ticks + 1).astype(np.int64)
     return _problem(whole[rows], whole[rows[:-1], DOCK], rows, observation, ticks, Objective.PRIZE)

@@ -86,7 +86,7 @@ def _draw_problem(source: RouteSource, size: int, rng: np.random.Generator) -> t
         if len(reachable) > size:
             break
     shuffled = rng.permutation(reachable)
-    here = instance.start if rng.random() < 0.3 else int(shuffled[size])
+    here = instance.start_row if rng.random() < 0.3 else int(shuffled[size])
     chosen = shuffled[:size]
     between = instance.arrival[np.ix_(chosen, chosen)]
     home, start = instance.arrival[chosen, DOCK], instance.arrival[here, chosen]

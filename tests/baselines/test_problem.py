@@ -38,7 +38,7 @@ def all_routes(env_instance):
                 extend([*route, node], arrived, node, won)
 
     node_count = env_instance.node_count
-    extend([], 0.0, env_instance.start, 0)
+    extend([], 0.0, env_instance.start_row, 0)
     return routes
 
 

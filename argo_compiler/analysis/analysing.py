@@ -12,7 +12,10 @@ from argo_compiler.analysis.bound_witness_search import find_least_witness
 from argo_compiler.analysis.duration_with_failures import worst_case_duration_if_computable
 from argo_compiler.analysis.endings import diagnose_endings
 from argo_compiler.analysis.flow import Flow
-from argo_compiler.analysis.limits import diagnose_limits, stale_value_diagnostics_if_computable
+from argo_compiler.analysis.limits import (
+    diagnose_limits_and_missing_paths,
+    stale_value_diagnostics_if_computable,
+)
 from argo_compiler.analysis.non_terminating_loops import find_loops_kept_by_readings
 from argo_compiler.analysis.reachability import compute_reachability, make_fields
 from argo_compiler.analysis.results import (
@@ -105,7 +108,7 @@ def _analyse(mission: Mission, catalog: Catalog | None, travel: Travel | None) -
     if study.bounds_if_computable is None:
         unjudged.append("loops and durations")
     elif travel is not None:
-        diagnostics += diagnose_limits(study, travel, longest)
+        diagnostics += diagnose_limits_and_missing_paths(study, travel, longest)
         stale = stale_value_diagnostics_if_computable(study)
         if stale is None:
             unjudged.append("ages of values")

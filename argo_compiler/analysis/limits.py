@@ -34,7 +34,7 @@ RESERVE_SHARE = 0.2
 _SHOWN = 8  # parts of a path that a message lists
 
 
-def diagnose_limits(
+def diagnose_limits_and_missing_paths(
     study: Study, travel: Travel, worst_case_duration: Bound | None = None
 ) -> Iterator[Diagnostic]:
     """Yield diagnostics on poses without a path, time limits, windows, duration and battery.

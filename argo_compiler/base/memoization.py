@@ -11,7 +11,7 @@ Value = TypeVar("Value")
 _CACHE_SIZE = 4
 
 
-def cache_last_results(function: Callable[[Key], Value]) -> Callable[[Key], Value]:
+def cache_last_results_by_identity(function: Callable[[Key], Value]) -> Callable[[Key], Value]:
     """Return the function with a cache of its last results, by the identity of its argument.
 
     It serves functions that are called several times with one mission: by an edit, by the check of

@@ -5,7 +5,7 @@ defined meaning and can't be lowered; a warning, that its meaning may surprise.
 """
 
 from argo_compiler.base.catalog import Catalog
-from argo_compiler.base.memoization import cache_last_results
+from argo_compiler.base.memoization import cache_last_results_by_identity
 from argo_compiler.checks.groups import check_groups
 from argo_compiler.checks.header import check_header
 from argo_compiler.checks.instant_loops import check_instant_loops
@@ -45,7 +45,7 @@ def check(mission: Mission, catalog: Catalog | None = None) -> tuple[Diagnostic,
     )
 
 
-@cache_last_results
+@cache_last_results_by_identity
 def _check_structure(mission: Mission) -> tuple[Diagnostic, ...]:
     """Return the diagnostics that need no catalogue, with a cache, as these checks take longest."""
     return (

@@ -6,7 +6,7 @@ from argo_compiler.base.nearest_name import nearest_name
 from argo_compiler.checks.checked_item import CheckedItem
 from argo_compiler.checks.conditions import ConditionChecks
 from argo_compiler.checks.timing import (
-    check_failure,
+    check_failure_target_fits,
     check_unused_fields,
     check_wait,
     check_window,
@@ -115,7 +115,7 @@ class TaskChecks:
         """Yield the diagnostics of a task's failure policy, wait and time window."""
         if task.action in (_WAYPOINT, _MEASURE):
             yield from check_unused_fields(item, task)
-        yield from check_failure(item, task)
+        yield from check_failure_target_fits(item, task)
         yield from check_window(item, task)
         for n, condition in enumerate(task.wait.conditions if task.wait else ()):
             field = f".wait.conditions[{n}]"

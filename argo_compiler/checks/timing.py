@@ -87,7 +87,7 @@ def check_wait(item: CheckedItem, task: Task) -> Iterator[Diagnostic]:
         )
 
 
-def check_failure(item: CheckedItem, task: Task) -> Iterator[Diagnostic]:
+def check_failure_target_fits(item: CheckedItem, task: Task) -> Iterator[Diagnostic]:
     """Yield a diagnostic if failure policy and failure target do not fit together.
 
     Whether a task of the target's name exists is checked in `tasks.py`.

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.errors import EditConflict, ambiguous, conflict, unknown
 from argo_compiler.editing.linked_list import LinkedList, ListItem
-from argo_compiler.editing.targets import default_targets, retargeted, with_default_target
+from argo_compiler.editing.targets import default_targets, with_default_target, with_renamed_targets
 from argo_compiler.il import Action, Group, Mission, Task
 from argo_compiler.il.grouping import GroupNesting, GroupRange, group_ranges, parent_name
 from argo_compiler.il.transitions import default_target
@@ -209,7 +209,9 @@ class MissionDraft:
         tasks: list[Task] = []
         following: str | None = None
         for entry in reversed(entries):
-            task = retargeted(entry.task, self.new_names) if self.new_names else entry.task
+            task = (
+                with_renamed_targets(entry.task, self.new_names) if self.new_names else entry.task
+            )
             if entry.leads_to_next and not _leads_to(task, following):
                 task = with_default_target(task, following)
             if task.action is not Action.START:

@@ -9,7 +9,7 @@ from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.consequences import Consequence, Edited, checked_edit_result
 from argo_compiler.editing.draft import DraftGroup, DraftTask, MissionDraft
 from argo_compiler.editing.errors import EditConflict, conflict
-from argo_compiler.editing.targets import default_targets, retargeted
+from argo_compiler.editing.targets import default_targets, with_renamed_targets
 from argo_compiler.il import Action, Mission, Task
 from argo_compiler.il.transitions import default_target, failure_targets_by_field, initial_task
 
@@ -102,7 +102,7 @@ class _Removal:
             if self.name in default_targets(other.task):
                 other.leads_to_next = other.leads_to_next and self.entry.leads_to_next
             if self.successor is not None:
-                other.task = retargeted(other.task, {self.name: self.successor})
+                other.task = with_renamed_targets(other.task, {self.name: self.successor})
             else:
                 self._end_mission_after(other)
         return self.successor

@@ -29,7 +29,7 @@ def with_default_target(task: Task, target: str | None) -> Task:
     return task.model_copy(update={"transitions": tuple(transitions)})
 
 
-def retargeted(task: Task, new_names: Mapping[str, str]) -> Task:
+def with_renamed_targets(task: Task, new_names: Mapping[str, str]) -> Task:
     """Return the task with new names in the targets of its transitions and after failures.
 
     `new_names` maps former names to new names.

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from argo_compiler.base.memoization import cache_last_results
+from argo_compiler.base.memoization import cache_last_results_by_identity
 from argo_compiler.il.mission import Group, Mission
 
 
@@ -21,7 +21,7 @@ class GroupRange:
         return self.first <= position <= self.last
 
 
-@cache_last_results
+@cache_last_results_by_identity
 def task_positions(mission: Mission) -> Mapping[str, int]:
     """Return the position of each task by its name; if several have one name, the first one's."""
     names = [task.name for task in mission.tasks]
@@ -85,7 +85,7 @@ class GroupNesting:
         return inside
 
 
-@cache_last_results
+@cache_last_results_by_identity
 def _nesting(mission: Mission) -> GroupNesting:
     ranges = group_ranges(mission)
     parent: list[int | None] = []

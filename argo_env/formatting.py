@@ -9,7 +9,7 @@ def min_sec_text(seconds: float) -> str:
     return f"{whole // 60:02d}:{whole % 60:02d}"
 
 
-def time_text(seconds: float) -> str:
+def rounded_time_text(seconds: float) -> str:
     """Return a time in s with its unit, such as `34 s`, `4:59 min` or `1:14:51 h`."""
     minutes, rest = divmod(round(seconds), 60)
     if minutes == 0:
@@ -44,7 +44,7 @@ def distinct_time_texts(first: float, second: float) -> tuple[str, str]:
 
     Times that have the same text in whole seconds are written in seconds with decimals.
     """
-    texts = time_text(first), time_text(second)
+    texts = rounded_time_text(first), rounded_time_text(second)
     if texts[0] != texts[1] or first == second:
         return texts
     one, other = distinct_texts(first, second)

@@ -204,7 +204,7 @@ class RouteEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
         info: dict[str, Any] = {"terms": terms, "time": self._time(), "illegal": illegal}
         reward = prize
         if instance.hidden is not None:
-            self._known = instance.known_at(info["time"])
+            self._known = instance.with_known_blockages_at(info["time"])
             late = self._over and info["time"] > instance.budget
             self._won += prize
             terms["late"] = 0.0 - self._won if late else 0.0

@@ -195,9 +195,9 @@ def draw_route(
     path = [PathPoint(0.0, *first)]
     for a, b in pairwise(route):
         t = path[-1].t
-        duration = float(instance.known_at(t).arrival[a, b])
+        duration = float(instance.with_known_blockages_at(t).arrival[a, b])
         part, heading = legs.path_and_final_heading(
-            positions[a], positions[b], instance.blocked_at(t)
+            positions[a], positions[b], instance.known_blocked_at(t)
         )
         path += [
             PathPoint(t + duration * k / max(len(part) - 1, 1), *p) for k, p in enumerate(part)

@@ -310,7 +310,7 @@ def _arrival_at_rest(instance: RouteInstance) -> NDArray[np.float32]:
 @lru_cache(maxsize=16)
 def _site_routes(checkpoints: int, scenario: str, budget: float, noise: RouteNoise) -> SiteRoutes:
     source = SiteRoutes(checkpoints, scenario, budget, noise)
-    source.check_usable()
+    source.require_site_and_blockable_stairs()
     return source
 
 

@@ -108,7 +108,7 @@ class RouteInstance:
         """Budget (s) as an array of one number."""
         return np.array([self.budget], dtype=np.float32)
 
-    def known_at(self, time: float) -> "RouteInstance":
+    def with_known_blockages_at(self, time: float) -> "RouteInstance":
         """Return the instance as the robot knows it at a time (s) after its start.
 
         If stairs were found blocked by then, it is a copy without hidden parts, whose travel times
@@ -117,7 +117,7 @@ class RouteInstance:
         changes = self._changes_by(time)
         return changes[-1].known if changes else self
 
-    def blocked_at(self, time: float) -> "tuple[Stair, ...]":
+    def known_blocked_at(self, time: float) -> "tuple[Stair, ...]":
         """Return the stairs that the robot knows to be blocked at a time (s) after its start."""
         changes = self._changes_by(time)
         return changes[-1].blocked if changes else ()

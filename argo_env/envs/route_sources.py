@@ -208,7 +208,7 @@ class SiteRoutes:
     def _site(self) -> SiteTimes:
         return self.stored_times or site_times(self.scenario)
 
-    def check_usable(self) -> None:
+    def require_site_and_blockable_stairs(self) -> None:
         """Raise ArgoError if there is no such site, or if its stairs can't be blocked as requested.
 
         They can't if the noise asks for blocked stairs and no stairs of the site have a detour.

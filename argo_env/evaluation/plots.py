@@ -267,7 +267,7 @@ _FAR = 1.35
 squeeze all runs to one side"""
 
 
-def durations(results: EvaluationResults, ax: "Axes | None" = None) -> "Axes":
+def success_share_over_time(results: EvaluationResults, ax: "Axes | None" = None) -> "Axes":
     """Draw the share of each plan's runs that have succeeded by a time (empirical distribution).
 
     Failed runs never succeed, so that a line may end below 100 %. The longest durations that the

@@ -198,7 +198,7 @@ def _decisions(
             sequence = ConfidenceSequence(level=1.0 - 0.05 / len(required))
             sequence.add(
                 shares_of_complete_worlds(
-                    plan_rows, weights, requirement.evaluate_quantity
+                    plan_rows, weights, requirement.value_or_violation_if_lost
                 ).values()
             )
             above = sequence.runs > 0 and sequence.is_above(requirement.share)

@@ -34,7 +34,7 @@ class RateRequirement(Model):
     def __str__(self) -> str:
         return f"{self.quantity} {'>=' if self.at_least else '<='} {self.share:g}"
 
-    def evaluate_quantity(self, row: "RunRow") -> bool | None:
+    def value_or_violation_if_lost(self, row: "RunRow") -> bool | None:
         """Return True if a run has the quantity, such as a contact; None if the run does not count.
 
         A run that could not be carried out gets the value that counts against the requirement.

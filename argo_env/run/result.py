@@ -10,7 +10,7 @@ from argo_compiler.hfsm import Cause, Outcome, Progress, TraceEntry
 from argo_compiler.il import Action, Mission
 from argo_compiler.il.docked import is_at_dock
 from argo_compiler.il.reserved import RESERVED_NAMES
-from argo_env.formatting import distinct_time_texts, time_text
+from argo_env.formatting import distinct_time_texts, rounded_time_text
 from argo_env.run.log import RunLog
 from argo_env.run.machine import Machine
 from argo_env.run.record import (
@@ -91,9 +91,9 @@ def judge(
     docked = None if area is None else is_at_dock(last.body_pose, docks[area])
     missing = []
     if outcome is None and not last.ended:
-        missing.append(f"the mission has not ended after {time_text(now)}")
+        missing.append(f"the mission has not ended after {rounded_time_text(now)}")
     elif outcome is None:
-        missing.append(last.stopped or f"it was stopped after {time_text(now)}")
+        missing.append(last.stopped or f"it was stopped after {rounded_time_text(now)}")
     elif outcome in _ENDINGS:
         missing.append(_ENDINGS[outcome])
     optional = {task.name for task in mission.tasks if task.optional}

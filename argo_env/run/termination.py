@@ -3,7 +3,7 @@
 import math
 
 from argo_env.drives.powertrain import Powertrain
-from argo_env.formatting import min_sec_text, time_text
+from argo_env.formatting import min_sec_text, rounded_time_text
 from argo_env.run.log import RunLog
 from argo_env.run.machine import Machine
 from argo_env.run.robot import RobotPower
@@ -19,9 +19,9 @@ def reason_run_cannot_continue(now: float, supply: RobotPower) -> str | None:
     The reason is the time limit of a run, or an empty battery.
     """
     if now >= TIME_LIMIT:
-        return f"it was stopped after {time_text(now)}, Argo's limit for a run"
+        return f"it was stopped after {rounded_time_text(now)}, Argo's limit for a run"
     if supply.empty:
-        return f"the battery was empty after {time_text(now)}"
+        return f"the battery was empty after {rounded_time_text(now)}"
     return None
 
 

@@ -9,7 +9,7 @@ from argo_compiler.base.catalog import CheckpointKind, Interval
 from argo_compiler.il import Action, Afterwards, EventKind, Mission, Reaction, Response, Task
 from argo_env.faults.plant import GasLeakFault
 from argo_env.faults.robot import ConnectionLoss
-from argo_env.formatting import distinct_time_texts, min_sec_text, time_text
+from argo_env.formatting import distinct_time_texts, min_sec_text, rounded_time_text
 from argo_env.run.record import (
     Anomaly,
     Contact,
@@ -232,7 +232,7 @@ def test_clock(seconds: float, text: str) -> None:
     [(34.4, "34 s"), (59.6, "1:00 min"), (1200.0, "20:00 min"), (4491.0, "1:14:51 h")],
 )
 def test_time_text(seconds: float, text: str) -> None:
-    assert time_text(seconds) == text
+    assert rounded_time_text(seconds) == text
 
 
 def test_distinct_time_texts() -> None:

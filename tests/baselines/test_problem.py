@@ -84,7 +84,7 @@ def test_the_problem_of_a_later_state_loses_nothing(number, checkpoints, failing
     instance, done, time, over = env.instance, [], 0.0, False
     while not over:
         open_problem = problem_from_observation(observation, instance.budget, Objective.PRIZE)
-        known, place = instance.known_at(time), int(observation["place"])
+        known, place = instance.with_known_blockages_at(time), int(observation["place"])
         assert open_problem.nodes == tuple(
             k for k in range(1, instance.node_count) if k not in done
         )

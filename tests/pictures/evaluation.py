@@ -13,10 +13,10 @@ from argo_compiler.il.mission import Order
 from argo_env.evaluation.comparison import compare_plans
 from argo_env.evaluation.evaluation import Evaluation
 from argo_env.evaluation.plots import (
-    durations,
     forest_of_rates,
     heat_map_of_outcomes_by_faults,
     histogram_of_duration_differences,
+    success_share_over_time,
 )
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.worlds import Variation
@@ -63,7 +63,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     rates = Figure(figsize=(11, 4.6), layout="constrained")
     left, right = rates.subplots(1, 2)
     forest_of_rates(results, left)
-    durations(results, right)
+    success_share_over_time(results, right)
     why = Figure(figsize=(11, 3.2), layout="constrained")
     left, right = why.subplots(1, 2)
     heat_map_of_outcomes_by_faults(results, left, first)

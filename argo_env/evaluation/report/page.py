@@ -18,11 +18,11 @@ from argo_env.evaluation.comparison import PlanComparison
 from argo_env.evaluation.folder import COMPARISON, REPORT, write_file
 from argo_env.evaluation.plots import (
     detection_delays,
-    durations,
     forest_of_rates,
     heat_map_of_outcomes_by_faults,
     histogram_of_duration_differences,
     pairs_that_differ,
+    success_share_over_time,
 )
 from argo_env.evaluation.report.picture import render_plot
 from argo_env.evaluation.report.sections import (
@@ -101,7 +101,7 @@ def evaluation_page(results: EvaluationResults, folder: Path) -> str:
             (names[plan], _heat_map(results, plan, names[plan])) for plan in _with_faults(results)
         ],
         durations=render_plot(
-            "Share of runs that have succeeded by a time", lambda: durations(results)
+            "Share of runs that have succeeded by a time", lambda: success_share_over_time(results)
         )
         if any(row.success for row in results.rows)
         else None,

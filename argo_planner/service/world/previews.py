@@ -16,7 +16,7 @@ from argo_compiler.diagnostics import DiagnosticError, has_errors
 from argo_compiler.il import Action, Mission, OnFailure, Task
 from argo_compiler.il.grouping import group_ranges
 from argo_compiler.il.transitions import default_target, failure_targets_by_field, initial_task
-from argo_env.formatting import time_text
+from argo_env.formatting import rounded_time_text
 from argo_env.navigation import Path
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.travel import SiteTravel
@@ -315,7 +315,7 @@ def _uncertainties(
             yield f"task '{name}' waits for something whose time is not known"
         window = tasks[name].window
         if window is not None and window.earliest > 0:
-            yield f"task '{name}' may not begin before {time_text(window.earliest)}"
+            yield f"task '{name}' may not begin before {rounded_time_text(window.earliest)}"
     for path in paths:
         if path.way.problem:
             yield f"there is no path to task '{path.target}'"

@@ -37,7 +37,7 @@ def choose(env, rng, far=False):
     if not len(allowed):
         return DOCK
     if far:
-        known = env.instance.known_at(env._time())
+        known = env.instance.with_known_blockages_at(env._time())
         return int(allowed[np.argmax(known.time_to_dock_via[env._place, allowed])])
     return int(rng.choice(allowed))
 

@@ -108,8 +108,10 @@ def test_hidden_parts_are_observed_only_when_they_appear():
         place, begun = env._place, max(before, 0.0)
         observation, _, over, _, info = env.step(node)
         # A drive takes the time that was observed at its start.
-        assert info["time"] - begun == env.instance.known_at(begun).arrival[place, node]
-        known = env.instance.known_at(info["time"])
+        assert (
+            info["time"] - begun == env.instance.with_known_blockages_at(begun).arrival[place, node]
+        )
+        known = env.instance.with_known_blockages_at(info["time"])
         assert np.array_equal(observation["matrix"], known.travel_shares)
         assert np.array_equal(observation["home"], known.time_to_dock_shares)
         before = info["time"]

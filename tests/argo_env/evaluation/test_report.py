@@ -132,7 +132,7 @@ def test_pictures_are_drawn_on_the_axes_that_are_given(results, mission):
     compared = compare_plans(results, results_of(mission, fail=()))
     for draw in (
         lambda ax: plots.forest_of_rates(results, ax),
-        lambda ax: plots.durations(results, ax),
+        lambda ax: plots.success_share_over_time(results, ax),
         lambda ax: plots.heat_map_of_outcomes_by_faults(results, ax),
         lambda ax: plots.detection_delays(results, ax),
         lambda ax: plots.failure_places(results, open_site("umad").site, 1, ax),

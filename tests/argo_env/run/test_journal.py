@@ -26,7 +26,7 @@ from argo_compiler.hfsm import (
     Tick,
 )
 from argo_compiler.il import EventKind, Group
-from argo_env.formatting import time_text
+from argo_env.formatting import rounded_time_text
 from argo_env.navigation import Navigator
 from argo_env.run.journal import (
     Header,
@@ -209,7 +209,9 @@ def test_interrupted_after_any_step(yard, complete, path):
             record = continue_journal(yard, journal, interrupted=lambda: next(calls) >= n)  # noqa: B023
         assert not record.result.ended
         assert not record.result.success
-        assert record.result.verdict == f"the mission has not ended after {time_text(n / 10)}"
+        assert (
+            record.result.verdict == f"the mission has not ended after {rounded_time_text(n / 10)}"
+        )
         assert record.result.duration == n / 10
         for name in ("tasks", "readings", "anomalies", "trace"):
             so_far = getattr(record, name)

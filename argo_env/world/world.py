@@ -167,11 +167,11 @@ class World(Bodies):
         return contacts
 
     def arm_obstacle(self, joint_radians: Mapping[str, float], clearance: float) -> str | None:
-        """Return the name of any obstacle nearer than `clearance` (m) to the arm at `joint_radians`.
+        """Return the name of any obstacle nearer than `clearance` (m) to the arm; None if none is.
 
-        These are positions of joints by name; other joints stay where they are. After the
-        check, all joints are where they were before. An obstacle is an element, a checkpoint, a
-        screen, or another link of the robot. Returns None if there is none.
+        The arm's joints are at `joint_radians`, by their names; other joints stay where they are.
+        After the check, all joints are where they were before. An obstacle is an element, a
+        checkpoint, a screen, or another link of the robot.
         """
         names = list(joint_radians)
         before = dict(zip(names, self.joint_positions(names), strict=True))

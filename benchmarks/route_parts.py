@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 from argo_compiler.route import RouteProblem, RouteSuggestion, suggest_route
-from argo_compiler.route.solvers import FIRST, solver_names
+from argo_compiler.route.solvers import FIRST, all_solver_names
 from benchmarks.instances import read_published_problem
 from benchmarks.options import parse_seed
 from benchmarks.routes import find_files
@@ -111,7 +111,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
             random_problems(options.problems, options.count, options.size, options.seed)
         )
     first = [solver.name for solver in FIRST]
-    parts = [name for name in solver_names() if name in (options.only or solver_names())]
+    parts = [name for name in all_solver_names() if name in (options.only or all_solver_names())]
 
     def solve(names: Sequence[str]) -> list[RouteSuggestion]:
         return [
@@ -119,13 +119,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
             for problem in problems
         ]
 
-    complete = solve(solver_names())
+    complete = solve(all_solver_names())
     print(f"{len(problems)} problems, {options.time_limit:g} s each: all parts find", end=" ")
     print(f"{sum(each.route is not None for each in complete)} routes and", end=" ")
     print(f"{sum(each.proven for each in complete)} proofs; without a part, these are lost")
     print(HEADER)
     for part in parts:
-        without = solve([name for name in solver_names() if name != part])
+        without = solve([name for name in all_solver_names() if name != part])
         print(summary_line(part, list(map(Gain, complete, without))), flush=True)
     for part in parts if options.alone else ():
         alone = solve([part, *(name for name in first if name != part)])

@@ -49,7 +49,6 @@ SHARED_NAMES = {
     "apply": "make a change take effect",
     "check": "raise or report what is wrong with the object",
     "checkpoint": "look up a checkpoint by its id",
-    "contains": "return True, or a mask, for what lies within",
     "create": "create a mission plan",
     "draw": "draw a random value",
     "execute": "carry out a command",

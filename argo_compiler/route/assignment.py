@@ -21,7 +21,7 @@ def assignment_time_bound(network: StepNetwork, pruned: Pruned) -> int | None:
     if network.selective:
         return 0
     if not len(network.prize):
-        direct = int(network.time[network.size, network.size])
+        direct = int(network.time[network.node_count, network.node_count])
         return direct if direct < NEVER else None
     times = least_arc_times_without_service(network) + np.append(network.service, 0)[None, :]
     least = least_costs_between_steps(network, pruned, times)

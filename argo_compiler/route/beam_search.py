@@ -127,7 +127,7 @@ class BeamSearch:
     def _start(self) -> _Labels:
         used = 0 if self._battery is None else self._battery.used
         zero = np.zeros(1, np.int64)
-        at = np.array([self._network.size])
+        at = np.array([self._network.node_count])
         return _Labels(zero, at, zero, np.array([used]), zero - 1, zero + _DIRECT)
 
     def _legs(self, labels: _Labels, rows: Vector, node: int) -> Iterator[tuple[Vector, ...]]:
@@ -140,7 +140,7 @@ class BeamSearch:
         last, time, second = labels.last[rows], labels.time[rows], labels.second[rows]
         drive = network.time[last, node]
         if battery is None:
-            service = int(network.service[node]) if node < network.size else 0
+            service = int(network.service[node]) if node < network.node_count else 0
             more = drive + service if self._counts_travel else 0
             yield self._leg(rows, time + drive, second + more, drive < NEVER, _DIRECT)
             return
@@ -176,7 +176,7 @@ class BeamSearch:
         network, pruned = self._network, self._pruned
         rules = self._bits.layer(size)
         parts = [labels.select(np.zeros(0, np.int64))]
-        for node in range(network.size):
+        for node in range(network.node_count):
             if search.remaining_time() <= 0.0:
                 return None
             rows = rules.rows_node_may_follow(labels.mask, node)
@@ -191,7 +191,7 @@ class BeamSearch:
                 time = begin[fits] + network.service[node]
                 extended = _Labels(
                     masks, np.full(len(origin), node), time, second[fits], origin, charger[fits]
-                ).select(self._bound.contains(size + 1, masks))
+                ).select(self._bound.can_occur_in_route(size + 1, masks))
                 if len(extended.mask):
                     parts.append(extended.select(self._is_promising(size + 1, extended, upper)))
         fields = ("mask", "last", "time", "second", "parent", "charger")
@@ -206,7 +206,7 @@ class BeamSearch:
 
         `size` is the number of steps in the paths of the labels.
         """
-        remaining = self._bound.remaining_cost(size, labels.mask, labels.last)
+        remaining = self._bound.remaining_cost_bounds(size, labels.mask, labels.last)
         end = labels.time + remaining[0]
         if len(remaining) > 1:
             assert self._battery is not None
@@ -217,7 +217,7 @@ class BeamSearch:
     def _least_costs(self, size: int, labels: _Labels) -> Vector:
         """Return, for each label, a lower bound on the cost of all paths that continue it."""
         if self._counts_travel:
-            remaining = self._bound.remaining_cost(size, labels.mask, labels.last)
+            remaining = self._bound.remaining_cost_bounds(size, labels.mask, labels.last)
             return np.asarray(labels.second + remaining[0])
         return self._least_end_times(size, labels)
 
@@ -240,7 +240,7 @@ class BeamSearch:
         masks = labels.mask
         rows = np.flatnonzero(self._bound.can_end(size, masks))
         best = None
-        for origin, time, second, charger in self._legs(labels, rows, network.size):
+        for origin, time, second, charger in self._legs(labels, rows, network.node_count):
             fits = time <= network.limit
             if not fits.any():
                 continue

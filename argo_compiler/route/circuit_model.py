@@ -14,7 +14,7 @@ from ortools.sat.python import cp_model
 
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.problem import NEVER, Objective
-from argo_compiler.route.pruning import Pruned, horizon, least_path_times
+from argo_compiler.route.pruning import Pruned, horizon, path_time_lower_bounds
 
 _TIME_PER_ARC = 6e-5
 """s to build and presolve an arc; twice as long with begin times or ranks in the model"""
@@ -47,7 +47,7 @@ class CircuitModel:
         self.model = cp_model.CpModel()
         self._network, self._pruned = network, pruned
         self._timed = end is not None
-        self._distances = least_path_times(network)
+        self._distances = path_time_lower_bounds(network)
         self._horizon = horizon(network)
         if end is not None:
             self._horizon = min(self._horizon, end)
@@ -65,7 +65,7 @@ class CircuitModel:
     def _add_circuit(self) -> list[Any]:
         """Add arcs and self-loops, and return for each step the literal that the route makes it."""
         network, pruned, model = self._network, self._pruned, self.model
-        m = network.size
+        m = network.node_count
         circuit: list[tuple[int, int, cp_model.LiteralT]] = []
         service = [*network.service.tolist(), 0]
         for i, row in enumerate(pruned.arcs.tolist()):
@@ -126,14 +126,14 @@ class CircuitModel:
         network, battery = self._network, self._network.problem.battery
         if battery is None or network.energy is None:
             return True
-        used = battery.used if i == network.size else 0
+        used = battery.used if i == network.node_count else 0
         return used + int(network.energy[i, j]) <= battery.capacity
 
     def _charge_fits(self, i: int, j: int, charger: int) -> bool:
         network, battery = self._network, self._network.problem.battery
         assert battery is not None
         station = network.chargers[charger]
-        used = battery.used if i == network.size else 0
+        used = battery.used if i == network.node_count else 0
         return (
             used + int(station.to_energy[i]) <= battery.capacity
             and int(station.out_energy[j]) <= battery.capacity
@@ -173,7 +173,7 @@ class CircuitModel:
         They are variables. `used` is the energy that is used when the robot starts.
         """
         network, model = self._network, self.model
-        count, m = len(network.prize), network.size
+        count, m = len(network.prize), network.node_count
         assert network.energy is not None
         levels: list[Any] = [model.new_int_var(0, capacity, "") for _ in range(count + 1)]
 
@@ -199,7 +199,7 @@ class CircuitModel:
     def _add_begins(self, used: Sequence[Any]) -> list[cp_model.IntVar]:
         """Add and return the variables of the steps' begin times."""
         network, pruned, model = self._network, self._pruned, self.model
-        m, begins = network.size, []
+        m, begins = network.node_count, []
         latest_of_all = self._horizon
         for s in range(len(network.prize)):
             nodes = network.nodes_of(s)
@@ -234,7 +234,7 @@ class CircuitModel:
 
         It is an expression of the model's variables.
         """
-        network, m = self._network, self._network.size
+        network, m = self._network, self._network.node_count
         departure: Any = 0
         if i < m:
             departure = begins[int(network.step[i])] + int(network.service[i])
@@ -250,7 +250,7 @@ class CircuitModel:
 
     def _add_end(self, end: cp_model.IntVar, used: Sequence[Any]) -> None:
         assert self._begins is not None
-        m = self._network.size
+        m = self._network.node_count
         for i, j, charger, literal in self._arcs:
             if j == m:
                 arrival = self._arrival(self._begins, used, i, j, charger)
@@ -286,7 +286,7 @@ class CircuitModel:
         count = len(network.prize)
         ranks = [model.new_int_var(0, count - 1, "") for _ in range(count)]
         for i, j, _, literal in self._arcs:
-            if i < network.size and j < network.size:
+            if i < network.node_count and j < network.node_count:
                 before, after = ranks[int(network.step[i])], ranks[int(network.step[j])]
                 model.add(after >= before + 1).only_enforce_if(literal)
         return ranks
@@ -336,7 +336,7 @@ class CircuitModel:
 
         `charges`: number of the charger by the position in the path before which the robot charges.
         """
-        m = self._network.size
+        m = self._network.node_count
         arcs = enumerate(pairwise((m, *path, m)))
         legs = {(i, j, charges.get(position)) for position, (i, j) in arcs}
         for i, j, charger, literal in self._arcs:
@@ -349,7 +349,7 @@ class CircuitModel:
 
         `is_true` returns the value of a literal in the solution.
         """
-        m = self._network.size
+        m = self._network.node_count
         onward = {i: (j, charger) for i, j, charger, literal in self._arcs if is_true(literal)}
         path: list[int] = []
         charges: dict[int, int] = {}

@@ -94,7 +94,7 @@ def completion_costs(
         One array per layer, shape (kinds, sets, m + 1), the last column from the start; INF where
         no route is possible.
     """
-    m, kinds = network.size, len(costs)
+    m, kinds = network.node_count, len(costs)
     reversed_layers: list[NDArray[np.int32]] = []
     for size in reversed(range(len(sets.layers))):
         masks = sets.layers[size]

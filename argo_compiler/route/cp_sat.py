@@ -81,13 +81,13 @@ class _Attempt:
             model.hint(best.path, best.charges)
         solver = solver_for(search)
         solver.best_bound_callback = self._report_bound
-        begun = search.now()
+        begun = search.elapsed_time()
 
         def must_stop() -> bool:
             now = search.best
             is_beaten = now is not best and now is not None and now.method != self._name
             return search.remaining_time() <= 0.0 or (
-                is_beaten and search.now() - begun >= self._patience
+                is_beaten and search.elapsed_time() - begun >= self._patience
             )
 
         status = run_solver(solver, model.model, _SolutionCallback(model, search), must_stop)
@@ -107,7 +107,7 @@ class _Attempt:
         elif self._search.network.objective is not Objective.PRIZE:
             bound = ceil(value - 1e-6)
             bound = bound if self._best is None else min(bound, self._best.cost)
-            self._search.report_bounds(bound=bound, prize=self._least_prize)
+            self._search.report_bounds(bound=bound, least_prize=self._least_prize)
 
     def _report_optimality(self, best: Solution | None) -> None:
         """Report that no route is better than the best one, or that there is none if it is None."""
@@ -116,7 +116,7 @@ class _Attempt:
         elif self._maximises_prize:
             self._search.report_bounds(prize_bound=best.prize)
         else:
-            self._search.report_bounds(bound=best.cost, prize=self._least_prize)
+            self._search.report_bounds(bound=best.cost, least_prize=self._least_prize)
 
 
 class _SolutionCallback(cp_model.CpSolverSolutionCallback):

@@ -175,7 +175,10 @@ class _Simulation:
         return _State(arrival.time + battery.overhead + arrival.used, 0, arrival.locations)
 
     def _drive(self, state: _State, location: int) -> _State:
-        """Return the state on arrival at a location; its energy includes the service there."""
+        """Return the state on arrival at a location, before waiting and service.
+
+        Its energy alone already includes that of the service there.
+        """
         problem = self._problem
         time = max(int(problem.travel[origin, location]) for origin in state.locations)
         if time == NEVER:

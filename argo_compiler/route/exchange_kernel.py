@@ -63,7 +63,7 @@ class KernelNetwork(NamedTuple):
     """cost of a unit of missed prize, in the acceptance of worse lines"""
 
 
-def compiled(function: _Function) -> _Function:
+def numba_compiled(function: _Function) -> _Function:
     """Return the function compiled to machine code, which is cached on disk if possible."""
     try:
         return cast(_Function, numba.njit(nogil=True, cache=True, error_model="numpy")(function))
@@ -71,7 +71,7 @@ def compiled(function: _Function) -> _Function:
         return cast(_Function, numba.njit(nogil=True, error_model="numpy")(function))
 
 
-@compiled
+@numba_compiled
 def _random_below(state: State, most: int) -> int:
     """Return a random number from 0 to most - 1, by G. Marsaglia's xorshift."""
     x = np.uint64(state[NUMBERS, RANDOM])
@@ -82,13 +82,13 @@ def _random_below(state: State, most: int) -> int:
     return int((x >> np.uint64(12)) % np.uint64(most))
 
 
-@compiled
+@numba_compiled
 def _precedes(network: KernelNetwork, one: int, other: int) -> bool:
     """Return True if node `one` can't come after node `other`."""
     return bool((network.before[other, one >> 6] >> (one & 63)) & 1)
 
 
-@compiled
+@numba_compiled
 def _keeps_order(network: KernelNetwork, state: State, first: int, second: int, third: int) -> bool:
     """Return True if the precedences allow to exchange the stretches of the line between cuts.
 
@@ -107,7 +107,7 @@ def _keeps_order(network: KernelNetwork, state: State, first: int, second: int, 
     return True
 
 
-@compiled
+@numba_compiled
 def _is_in_time(
     network: KernelNetwork, state: State, first: int, second: int, third: int, most: int
 ) -> bool:
@@ -129,7 +129,7 @@ def _is_in_time(
     return now <= state[LATEST_BEGIN, third + 1] and (not network.waits or end <= most)
 
 
-@compiled
+@numba_compiled
 def _update(network: KernelNetwork, state: State) -> None:
     """Recompute the times, the cost and the missed prize of the state's line."""
     line, last, length, missed = state[LINE], state[NUMBERS, COUNT] + 1, 0, 0
@@ -157,7 +157,7 @@ def _update(network: KernelNetwork, state: State) -> None:
     state[NUMBERS, LENGTH], state[NUMBERS, MISSED] = length, missed
 
 
-@compiled
+@numba_compiled
 def _push(state: State, node: int) -> None:
     if not state[QUEUED, node]:
         state[QUEUED, node] = True
@@ -165,7 +165,7 @@ def _push(state: State, node: int) -> None:
         state[QUEUE, state[QUEUE, 0]] = node
 
 
-@compiled
+@numba_compiled
 def _exchange(network: KernelNetwork, state: State, first: int, second: int, third: int) -> None:
     line, gap, size = state[LINE], second - first, third - second
     state[SPARE, :gap] = line[first + 1 : second + 1]
@@ -180,9 +180,9 @@ def _exchange(network: KernelNetwork, state: State, first: int, second: int, thi
         _update(network, state)
 
 
-@compiled
+@numba_compiled
 def _best_exchange(network: KernelNetwork, state: State, a: int) -> tuple[int, int, int, int]:
-    """Return the exchange that saves most among those that shorten the arc from node `a`.
+    """Return the exchange that shortens the line most, among those with a shorter arc from `a`.
 
     An exchange swaps the two stretches of the line between three cuts. The first number is the
     change of the sum of arcs, which is negative, or 0 if there is no such exchange; the others are
@@ -219,7 +219,7 @@ def _best_exchange(network: KernelNetwork, state: State, a: int) -> tuple[int, i
     return best
 
 
-@compiled
+@numba_compiled
 def _improve(network: KernelNetwork, state: State) -> None:
     """Apply exchanges that save cost, until there is none for any node of the queue.
 
@@ -235,7 +235,7 @@ def _improve(network: KernelNetwork, state: State) -> None:
             _push(state, a)
 
 
-@compiled
+@numba_compiled
 def _shuffle(network: KernelNetwork, state: State) -> None:
     """Exchange some random pairs of neighbouring stretches of the line, near each other."""
     count = state[NUMBERS, COUNT]
@@ -252,7 +252,7 @@ def _shuffle(network: KernelNetwork, state: State) -> None:
                 break
 
 
-@compiled
+@numba_compiled
 def _needs_met(network: KernelNetwork, state: State, s: int) -> bool:
     """Return True if the line has all optional steps that a step needs."""
     missing = 0
@@ -261,7 +261,7 @@ def _needs_met(network: KernelNetwork, state: State, s: int) -> bool:
     return missing == 0
 
 
-@compiled
+@numba_compiled
 def _ruin(network: KernelNetwork, state: State) -> None:
     """Remove some nodes near each other from the line, and those that need a removed step."""
     line, at, made, count = state[LINE], state[POSITION], state[NODE_OF_STEP], state[NUMBERS, COUNT]
@@ -297,7 +297,7 @@ def _ruin(network: KernelNetwork, state: State) -> None:
     _update(network, state)
 
 
-@compiled
+@numba_compiled
 def _best_insertion(network: KernelNetwork, state: State, s: int) -> tuple[int, int, int]:
     """Return the cheapest insertion of a step: extra cost, node, index of the node before it.
 
@@ -331,12 +331,12 @@ def _best_insertion(network: KernelNetwork, state: State, s: int) -> tuple[int, 
     return best
 
 
-@compiled
+@numba_compiled
 def _recreate(network: KernelNetwork, state: State) -> None:
     """Insert missing steps where they cost least.
 
-    Mandatory steps come first, in random order. Then the optional step with the lowest ratio of
-    cost to prize is inserted, one after the other.
+    Mandatory steps come first, in random order. Then, again and again, the optional step with
+    the lowest ratio of cost to prize is inserted, until none fits in.
     """
     line, spare, missing = state[LINE], state[SPARE], 0
     for optional in (False, True):
@@ -375,15 +375,17 @@ def _recreate(network: KernelNetwork, state: State) -> None:
         _update(network, state)
 
 
-@compiled
-def anneal(network: KernelNetwork, state: State, work: int, temperature: float) -> None:
-    """Search by simulated annealing, and change `state`, until its count of work is `work` higher.
+@numba_compiled
+def anneal(
+    network: KernelNetwork, state: State, work_units: int, constant_temperature: float
+) -> None:
+    """Search by simulated annealing, and change `state`, for `work_units` of its count of work.
 
-    `temperature` (constant): the mean of the random limits on the increase in cost of a line that
-    is accepted.
+    `constant_temperature`: the mean of the random limits on the increase in cost, over the
+    current line, of a line that is accepted.
     """
     numbers, values = state[NUMBERS], state[VALUES]
-    end = numbers[WORK] + work
+    end = numbers[WORK] + work_units
     while numbers[WORK] < end:
         count = numbers[COUNT]
         if count < 4 or _random_below(state, 1000) < 1000 * network.ruins:
@@ -398,7 +400,7 @@ def anneal(network: KernelNetwork, state: State, work: int, temperature: float) 
         numbers[WORK] += 200 + 4 * network.time.shape[0]
         numbers[ITERATIONS] += 1
         worse = length - values[1] + network.weight * (missed - values[2])
-        if worse <= -temperature * np.log((1 + _random_below(state, 1 << 30)) / (1 << 30)):
+        if worse <= -constant_temperature * np.log((1 + _random_below(state, 1 << 30)) / (1 << 30)):
             state[CURRENT] = state[LINE]
             values[0], values[1], values[2] = count, length, missed
             if missed < values[5] or (missed == values[5] and length < values[4]):
@@ -408,15 +410,18 @@ def anneal(network: KernelNetwork, state: State, work: int, temperature: float) 
             set_line(network, state, state[CURRENT], values[0])
 
 
-@compiled
-def set_line(network: KernelNetwork, state: State, line: Vector, count: int) -> None:
-    """Replace the line of the state by one with `count` nodes, start and end not counted."""
+@numba_compiled
+def set_line(network: KernelNetwork, state: State, line: Vector, count_without_ends: int) -> None:
+    """Replace the state's line by the first `count_without_ends` + 2 entries of `line`.
+
+    They are the start, the nodes and the end.
+    """
     state[LINE] = line
     state[POSITION] = -1
     state[NODE_OF_STEP] = -1
-    for k in range(count + 2):
+    for k in range(count_without_ends + 2):
         state[POSITION, state[LINE, k]] = k
-        if 0 < k <= count:
+        if 0 < k <= count_without_ends:
             state[NODE_OF_STEP, network.nodes[2, state[LINE, k]]] = state[LINE, k]
-    state[NUMBERS, COUNT] = count
+    state[NUMBERS, COUNT] = count_without_ends
     _update(network, state)

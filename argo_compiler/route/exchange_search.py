@@ -49,7 +49,7 @@ class ExchangeSearch:
 
     def solve(self, search: Search, /) -> None:
         kernel = _Kernel.compiled(search)
-        if kernel is None or search.network.size < 2:
+        if kernel is None or search.network.node_count < 2:
             return
         kernel_network = _kernel_network(kernel, search.network, search.pruned)
         state = _initial_state(kernel, kernel_network, search.seed)
@@ -57,10 +57,11 @@ class ExchangeSearch:
         work, iterations, length = 0, 0, _FIRST_RUN
         while search.remaining_time() > 0.0:
             _restart(kernel, kernel_network, state, search)
-            begun, remaining = search.now(), search.remaining_time()
+            begun, remaining = search.elapsed_time(), search.remaining_time()
             length = remaining if remaining < 2.0 * length else length
             while (
-                search.remaining_time() > 0.0 and (passed := (search.now() - begun) / length) < 1.0
+                search.remaining_time() > 0.0
+                and (passed := (search.elapsed_time() - begun) / length) < 1.0
             ):
                 cost, missed = state[kernel.VALUES, 4:6].tolist()
                 mean = state[kernel.VALUES, 1] / max(1, state[kernel.VALUES, 0])
@@ -108,12 +109,13 @@ class _Kernel:
 
 
 def _restart(kernel: ModuleType, kernel_network: Any, state: Any, search: Search) -> None:
-    """Start an annealing run from the best route of all solvers if the best line is worse.
+    """Set the line from which the next annealing run starts.
 
+    It is the best route of all solvers if this is better than the best line of the annealing.
     Otherwise the run continues from the current line. The first run starts from an empty line if no
     solver has found a route yet.
     """
-    best, m = search.best, search.network.size
+    best, m = search.best, search.network.node_count
     path = best.path if best is not None else None
     if path is None:
         path = () if state[kernel.VALUES, 3] < 0 else None
@@ -136,7 +138,7 @@ def _restart(kernel: ModuleType, kernel_network: Any, state: Any, search: Search
 
 
 def _kernel_network(kernel: ModuleType, net: StepNetwork, pruned: Pruned) -> Any:
-    m, steps = net.size, len(net.prize)
+    m, steps = net.node_count, len(net.prize)
     time = np.full((m + 2, m + 2), kernel.NO_ARC)
     begun = np.minimum(net.time + np.append(net.service, 0)[:, None], kernel.NO_ARC)
     begun[:, :m][:, ~pruned.arcs[:, :m].any(axis=0)] = kernel.NO_ARC

@@ -57,7 +57,7 @@ def find_route(
         search.proven,
         () if best is None else tuple(v for v in range(problem.size) if v not in visited),
         words,
-        search.method,
+        search.proving_or_finding_solver,
         search.reasons,
         search.history,
         search.turns,

@@ -32,7 +32,7 @@ class FirstRules:
         return True
 
     def solve(self, search: Search, /) -> None:
-        network, m = search.network, search.network.size
+        network, m = search.network, search.network.node_count
         onward = least_arc_times_without_service(network)[:, :m] + network.service
         latest = np.minimum(search.pruned.latest, horizon(network))
         earliest = network.earliest[network.step]
@@ -43,7 +43,7 @@ class FirstRules:
             lambda _at, _now: latest,
         ]
         timing = PathTiming(network)
-        until = search.now() + search.remaining_time() + _OVERTIME
+        until = search.elapsed_time() + search.remaining_time() + _OVERTIME
         if not any(_build(search, timing, rule, until) for rule in rules):
             search.add_reason("no simple rule leads to a first route")
 
@@ -52,9 +52,10 @@ def _build(search: Search, timing: PathTiming, rule: Rule, until: float) -> bool
     """Build a route by a rule, offer it, and return whether there is one.
 
     The next node is always the one that the rule prefers among those from which the end can be
-    reached. The route is given up if there is no such node, or at the time `until`.
+    reached. The route is given up if there is no such node, or when
+    `search.elapsed_time()` is `until`.
     """
-    network, pruned, m = search.network, search.pruned, search.network.size
+    network, pruned, m = search.network, search.pruned, search.network.node_count
     path: list[int] = []
     remaining = network.mandatory.copy()
     missing = pruned.needs.sum(axis=0)
@@ -66,7 +67,7 @@ def _build(search: Search, timing: PathTiming, rule: Rule, until: float) -> bool
         nodes = np.flatnonzero(ready)
         cost = rule(at, labels[0].time)[nodes]
         for node in nodes[np.argsort(cost, kind="stable")].tolist():
-            if search.now() >= until:
+            if search.elapsed_time() >= until:
                 return False
             following = timing.extend(labels, at, node, len(path))
             end_labels = timing.extend(following, node, m, len(path) + 1)

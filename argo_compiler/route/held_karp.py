@@ -48,7 +48,7 @@ class Layer:
     """row of the set of k - 1 steps before each last node, shape of `times`"""
 
 
-def count_sets(
+def count_sets_up_to(
     network: StepNetwork,
     pruned: Pruned,
     most: int,
@@ -100,11 +100,13 @@ def layers_if_few(search: Search) -> list[Layer] | None:
     Always adds a reason to the search: the number of sets, or why there are no layers.
     """
     network, pruned = search.network, search.pruned
-    most = min(_MOST_SETS, _MOST_STATES // max(1, network.size))
+    most = min(_MOST_SETS, _MOST_STATES // max(1, network.node_count))
     share = search.with_time_share(0.7)
     if not search.timed:
-        most = min(most, int(share.remaining_time() / (_TIME_PER_STATE * max(1, network.size))))
-    sets = count_sets(network, pruned, most, lambda: share.remaining_time() <= 0.0)
+        most = min(
+            most, int(share.remaining_time() / (_TIME_PER_STATE * max(1, network.node_count)))
+        )
+    sets = count_sets_up_to(network, pruned, most, lambda: share.remaining_time() <= 0.0)
     is_ordered = network.has_windows or pruned.before.any() or network.problem.battery is not None
     # Windows may leave much fewer sets than the precedences do.
     is_few = sets <= (most if is_ordered else _FEW_SETS) or network.has_windows
@@ -116,7 +118,7 @@ def layers_if_few(search: Search) -> list[Layer] | None:
         search.add_reason("there are too many sets to check all, or the time was too short")
         return None
     count = 1 + sum(len(layer.masks) for layer in layers)
-    search.spend(count * network.size * _TIME_PER_STATE)
+    search.spend(count * network.node_count * _TIME_PER_STATE)
     search.add_reason(f"order and time allow {count} sets of {int(pruned.steps.sum())} steps")
     return layers
 
@@ -196,7 +198,7 @@ def times_of_allowed_arcs(
     """Return `times` for the unpruned arcs and that from start to end, and INF for the others."""
     arcs = np.minimum(times, INF).astype(np.int32)
     allowed = pruned.arcs.copy()
-    allowed[network.size, network.size] = True
+    allowed[network.node_count, network.node_count] = True
     arcs[~allowed] = INF
     return arcs
 
@@ -214,7 +216,7 @@ def iter_layers(
     `arcs`: times of arcs, shape (m + 1, m + 1); `earliest`, `latest`: limits on the begin of each
     node, shape (m,).
     """
-    m, size = network.size, 0
+    m, size = network.node_count, 0
     masks, times = np.zeros(1, np.int64), np.zeros((1, 1), np.int32)
     onward = arcs[m:, :]  # from the start; afterwards from all nodes
     while True:
@@ -255,7 +257,7 @@ def earliest_ends_of_sets(
 
     It is at least INF if there is no such route.
     """
-    to_end = arcs[: network.size, network.size]
+    to_end = arcs[: network.node_count, network.node_count]
     return np.asarray((layer.times + to_end).min(axis=1), np.int64)
 
 
@@ -308,7 +310,7 @@ def _best_end(
 
     Layer -1 means that the path has no nodes.
     """
-    m = network.size
+    m = network.node_count
     to_end = np.minimum(least_arc_times_without_service(network)[:, m], INF).astype(np.int32)
     limit = min(network.limit, int(INF) - 1)
     may_be_empty = can_end(network, bits, 0, np.zeros(1, np.int64)).all()
@@ -344,6 +346,6 @@ def _trace_path(
         row = int(layers[number].origin[row, node])
         number -= 1
         times = layers[number].times[row]
-        node = int((times + arcs[: network.size, node]).argmin())
+        node = int((times + arcs[: network.node_count, node]).argmin())
         path.append(node)
     return tuple(reversed(path))

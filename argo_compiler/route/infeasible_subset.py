@@ -42,7 +42,7 @@ class InfeasibleSubset:
 
 
 def requirements(problem: RouteProblem) -> list[Requirement]:
-    """Return all constraints of a problem that could be given up to make a route possible."""
+    """Return all constraints of a problem that could be given up, its mandatory visits too."""
     collected = [
         Requirement(precedence.words, "precedence", number)
         for number, precedence in enumerate(problem.precedences)
@@ -80,7 +80,7 @@ def _clock(seconds: float) -> str:
 def with_only_requirements(problem: RouteProblem, subset: list[Requirement]) -> RouteProblem:
     """Return the problem with only these requirements.
 
-    It has no visits but those required, and those that they need.
+    It has no visits but those that `subset` requires, all mandatory, and those that they need.
     """
     kinds: dict[str, set[int]] = {}
     for requirement in subset:

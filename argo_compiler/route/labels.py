@@ -274,7 +274,7 @@ def _goal_sets(network: StepNetwork, pruned: Pruned, layers: list[Layer]) -> tup
     The check of the time leaves out windows and the battery's state, but includes the least time to
     charge the energy used.
     """
-    limit, m = min(network.limit, int(INF) - 1), network.size
+    limit, m = min(network.limit, int(INF) - 1), network.node_count
     arcs = times_of_allowed_arcs(network, pruned, least_arc_times_without_service(network))
     goals, end = _earliest_ends(network, arcs, layers)
     may = can_end(network, StepBits(network, pruned), 0, goals)
@@ -302,7 +302,7 @@ def _earliest_ends(
 
     An end is that of a route which makes only the steps of the set.
     """
-    m = network.size
+    m = network.node_count
     masks, at_end = [np.zeros(1, np.int64)], [arcs[m:, m].astype(np.int64)]
     for layer in layers:
         masks.append(layer.masks)
@@ -311,7 +311,7 @@ def _earliest_ends(
 
 
 def _times_and_energies(network: StepNetwork) -> NDArray[np.int64]:
-    """Return the least sum of time and energy of each arc, straight or by a charger."""
+    """Return the least sum of time and energy (units) of each arc, straight or by a charger."""
     battery = network.problem.battery
     assert battery is not None
     assert network.energy is not None

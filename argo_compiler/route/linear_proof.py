@@ -47,7 +47,7 @@ class LinearProof:
         best = search.best
         to_optimality = network.has_additive_times and not network.before.any()
         search = search.with_time_share(_PROOF_SHARE if to_optimality else _BOUND_SHARE)
-        m = network.size
+        m = network.node_count
         if network.selective and (best is None or best.prize < search.prize_bound):
             prizes = np.zeros((m + 1, m + 1), np.int64)
             prizes[:, :m] = -network.prize[network.step]
@@ -119,7 +119,7 @@ class _Stage:
             search.report_bounds(prize_bound=-low if value is None else max(-low, -value))
         else:
             search.report_bounds(
-                bound=low if value is None else min(low, value), prize=self.least_prize
+                bound=low if value is None else min(low, value), least_prize=self.least_prize
             )
 
     def _solve_within(self, relaxation: LinearRelaxation, most: int) -> int:
@@ -130,7 +130,7 @@ class _Stage:
         """
         search, network, pruned = self.search, self.search.network, self.search.pruned
         arcs, mandatory = relaxation.possible_arcs_and_required_steps(most)
-        arcs[network.size, network.size] = False
+        arcs[network.node_count, network.node_count] = False
         steps = np.zeros_like(pruned.steps)
         steps[network.step[arcs[:, :-1].any(axis=0)]] = True
         restricted, pruned = (
@@ -143,7 +143,7 @@ class _Stage:
         for cut in relaxation.binding_cuts:
             model.require_at_least(cut.coefficients, cut.least)
         if _is_symmetric(network):
-            model.require_at_least(_one_direction(network.size), 0)
+            model.require_at_least(_one_direction(network.node_count), 0)
         if self.least_prize is None:
             model.set_prize_objective(-most)
         else:

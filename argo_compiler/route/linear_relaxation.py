@@ -87,7 +87,7 @@ class LinearRelaxation:
         `costs`: costs of arcs, shape (m + 1, m + 1); `least_prize`: lower limit on the prize of
         routes, or None.
         """
-        m = network.size
+        m = network.node_count
         self._network = network
         self._step = np.append(network.step, len(network.prize))
         self._mandatory = np.append(network.mandatory, True)
@@ -181,7 +181,7 @@ class LinearRelaxation:
     # Linear programme
 
     def _add_first_rows(self, times: Numbers, least_prize: int | None) -> None:
-        network, m = self._network, self._network.size
+        network, m = self._network, self._network.node_count
         none, zeros = np.zeros(m + 1, np.bool_), np.zeros(m + 1, np.int64)
         for unit in np.eye(m, m + 1, dtype=np.int64):
             self._add_row(LinearRow(none, none, -unit, unit, 0, equal=True))

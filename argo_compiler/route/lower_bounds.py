@@ -27,7 +27,7 @@ _CHUNK = 16
 class CompletionBound(Protocol):
     """Lower bounds on the remaining cost, for sets of steps and last nodes, and kinds of costs."""
 
-    def remaining_cost(self, size: int, masks: Masks, last: Vector) -> NDArray[np.int64]:
+    def remaining_cost_bounds(self, size: int, masks: Masks, last: Vector) -> NDArray[np.int64]:
         """Return lower bounds on the cost from each label's last node to the end of the route.
 
         Each label has a set of `size` steps in `masks`, and a node in `last`. The shape is (kinds
@@ -39,7 +39,7 @@ class CompletionBound(Protocol):
         """Return, for each set of `size`, whether a route may end with it."""
         ...
 
-    def contains(self, size: int, masks: Masks) -> NDArray[np.bool_]:
+    def can_occur_in_route(self, size: int, masks: Masks) -> NDArray[np.bool_]:
         """Return, for each set of `size`, whether a route may have it; others are not searched."""
         ...
 
@@ -53,7 +53,7 @@ class TableBound:
         self._sets = sets
         self._least = completion_costs(network, bits, sets, costs)
 
-    def remaining_cost(self, size: int, masks: Masks, last: Vector) -> NDArray[np.int64]:
+    def remaining_cost_bounds(self, size: int, masks: Masks, last: Vector) -> NDArray[np.int64]:
         index, _ = self._sets.find(size, masks)
         return self._least[size][:, index, last].astype(np.int64)
 
@@ -61,7 +61,7 @@ class TableBound:
         index, _ = self._sets.find(size, masks)
         return np.asarray(self._sets.can_end[size][index])
 
-    def contains(self, size: int, masks: Masks) -> NDArray[np.bool_]:
+    def can_occur_in_route(self, size: int, masks: Masks) -> NDArray[np.bool_]:
         if size >= len(self._sets.layers):
             return np.zeros(len(masks), np.bool_)
         return self._sets.find(size, masks)[1]
@@ -84,7 +84,7 @@ class DualBound:
         self._step = np.append(network.step, len(network.prize))
         self._tables_by_size: dict[int, list[NDArray[np.int64]]] = {}
 
-    def remaining_cost(self, size: int, masks: Masks, last: Vector) -> NDArray[np.int64]:
+    def remaining_cost_bounds(self, size: int, masks: Masks, last: Vector) -> NDArray[np.int64]:
         both = (self._leave + self._enter)[:, :-1]
         rest = np.repeat(both.sum(axis=1, keepdims=True), len(masks), axis=1)
         for chunk, sums in enumerate(self._sums(size, both)):
@@ -114,7 +114,7 @@ class DualBound:
     def can_end(self, size: int, masks: Masks) -> NDArray[np.bool_]:
         return can_end(self._network, self._bits, size, masks)
 
-    def contains(self, size: int, masks: Masks) -> NDArray[np.bool_]:
+    def can_occur_in_route(self, size: int, masks: Masks) -> NDArray[np.bool_]:
         return np.full(len(masks), size <= len(self._network.prize))
 
 

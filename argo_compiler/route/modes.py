@@ -54,8 +54,8 @@ class StepMode:
         """Return the times and energies of drives to the step, with those of the step added.
 
         `times` and `energies` are those of several drives to the first visit. A resulting time is
-        NEVER if the drive is not one to the first visit, or if after that drive the round ends at
-        other visits than `exit`.
+        NEVER if its drive's time is none of a round's `entries`, or if after that drive the round
+        ends at other visits than `exit`.
         """
         if self.entries is None or self.time is None or self.energy is None:
             return add_capped_at_never(times, self.service), energies
@@ -130,7 +130,7 @@ class StepOrder(Protocol):
         """Visits in the order of their first repetition."""
         ...
 
-    def outcome_after_drive(self, drive_time: int) -> "StepOutcome":
+    def outcome_after_drive(self, drive_time_units: int) -> "StepOutcome":
         """Return the outcome of all repetitions after a drive to `first` of this time (units).
 
         The time includes the drive; the energy does not.
@@ -156,8 +156,8 @@ class _SingleVisit:
     def order(self) -> tuple[int, ...]:
         return (self.first,)
 
-    def outcome_after_drive(self, drive_time: int) -> StepOutcome:
-        return StepOutcome(min(drive_time + self.service, NEVER), 0, (self.first,))
+    def outcome_after_drive(self, drive_time_units: int) -> StepOutcome:
+        return StepOutcome(min(drive_time_units + self.service, NEVER), 0, (self.first,))
 
 
 class _RoundOrder:
@@ -229,9 +229,9 @@ class _RoundOrder:
         time[interrupted] = round_.duration
         return time, energy, [once.exit, tuple(sorted(self.order))], interrupted.astype(np.int64)
 
-    def outcome_after_drive(self, drive_time: int) -> StepOutcome:
+    def outcome_after_drive(self, drive_time_units: int) -> StepOutcome:
         round_ = self._round
-        outcome, count = self.first_repetition(drive_time), 1
+        outcome, count = self.first_repetition(drive_time_units), 1
         while outcome.time < NEVER and (not round_.repeat or count < round_.repeat):
             if round_.duration and outcome.time >= round_.duration:
                 break
@@ -276,7 +276,10 @@ class _Drives:
         return self._entries[first]
 
     def after(self, outcome: StepOutcome, part: StepOrder) -> StepOutcome:
-        """Return the outcome after a further part, with the drive from the worst location."""
+        """Return the outcome after a further part, with the drive to it.
+
+        Its time and its energy are each the highest from any exit of `outcome`.
+        """
         if (outcome.exit, part.first) not in self._worst:
             origins = list(outcome.exit)
             drive, energy = int(self._travel[origins, part.first].max()), 0
@@ -446,10 +449,10 @@ def _best_orders(
     predecessors: list[int],
     is_time_up: Callable[[], bool],
 ) -> list[tuple[StepOrder, ...]] | None:
-    """Compute the undominated orders by dynamic programming, or return None if the time is up.
+    """Compute the undominated orders for each first and last part; None if the time is up.
 
-    The states are the parts made and the last one, for each first part; the labels of a state do
-    not dominate each other in time and energy.
+    This is dynamic programming. The states are the parts made and the last one, for each first
+    part; the labels of a state do not dominate each other in time and energy.
     """
     orders: list[tuple[StepOrder, ...]] = []
     for k, first in _available(choices, predecessors, 0):
@@ -486,7 +489,7 @@ def _rotations(
 ) -> list[tuple[StepOrder, ...]]:
     """Return the rotations of a cyclic order of the parts that start with a possible first part.
 
-    Parts with predecessors come as early as these allow.
+    A part that a rotation has before its predecessors is moved to just after the last of these.
     """
     rotations = []
     for k in range(len(cycle)):

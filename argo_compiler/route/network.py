@@ -56,7 +56,7 @@ class StepNetwork:
     """true if the network has all modes that may be optimal; large rounds may lack some"""
 
     @property
-    def size(self) -> int:
+    def node_count(self) -> int:
         """Number of nodes, which is also the row of the start and the column of the end."""
         return len(self.nodes)
 
@@ -100,11 +100,11 @@ class StepNetwork:
     def tour_path(self, tour: Tour) -> tuple[tuple[int, ...] | None, dict[int, int]]:
         """Return the nodes of a route, and its chargers by the position among them.
 
-        Instead of the nodes returns None if the network lacks the route's order of some round.
+        Returns None and no chargers if the network lacks the route's order of some round.
         """
         path: list[int] = []
         charges: dict[int, int] = {}
-        position, at = 0, self.size
+        position, at = 0, self.node_count
         while position < len(tour.order):
             if position in tour.charges:
                 charges[len(path)] = tour.charges[position]
@@ -213,9 +213,10 @@ def _worst_drives(matrix: NDArray[np.int64], exits: list[tuple[int, ...]]) -> ND
 def _enter_nodes(
     nodes: list[StepMode], times: NDArray[np.int64], used: NDArray[np.int64], end: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return times and energies until each single visit begins, each round ends, and the end.
+    """Return times and energies of the drives to each node, and to the end.
 
-    `times` and `used` have a row for each origin and a column for each location.
+    If the node is a round, they include the round; else they do not include the service. `times`
+    and `used` are those of drives, with a row for each origin and a column for each location.
     """
     firsts = [node.first for node in nodes] + [end]
     time, energy = times[:, firsts], used[:, firsts]

@@ -69,7 +69,10 @@ class StepBits:
         return int(self._number.max(initial=-1)) < MOST_BITS
 
     def _assign_numbers(self) -> Masks:
-        """Return the number of each step's bit: the first one free while it is undecided."""
+        """Return the number of each step's bit.
+
+        It is the lowest that is free at all sizes at which only some sets contain the step.
+        """
         if not self.shared:
             return np.arange(len(self._from))
         free_from: list[int] = []
@@ -97,7 +100,7 @@ class StepBits:
         return np.asarray(size >= self._to)
 
     def mask(self, steps: NDArray[np.bool_]) -> np.int64:
-        """Return the bits of some steps."""
+        """Return the bits of those steps for which `steps`, an array over all steps, is true."""
         total = np.int64(0)
         for number in self._number[steps].tolist():
             total |= np.int64(1) << np.int64(number)

@@ -99,8 +99,8 @@ class PathTiming:
 
     def evaluate_path(self, path: tuple[int, ...]) -> PathLabel | None:
         """Return the label of least cost at the end of a complete path, or None if infeasible."""
-        labels, origin = self.start_labels(), self.network.size
-        for position, node in enumerate((*path, self.network.size)):
+        labels, origin = self.start_labels(), self.network.node_count
+        for position, node in enumerate((*path, self.network.node_count)):
             labels = self.extend(labels, origin, node, position)
             if not labels:
                 return None

@@ -13,8 +13,8 @@ from argo_compiler.route.solvers import (
     PROVING,
     SMALL,
     RouteSolver,
+    all_solver_names,
     registered_solvers,
-    solver_names,
 )
 
 _FIRST_IMPROVING_SHARE = 0.35
@@ -34,9 +34,11 @@ def solve(search: Search, workers: int, chosen: Sequence[str | RouteSolver] | No
     objects = [solver for solver in chosen or () if not isinstance(solver, str)]
     names = [solver for solver in chosen or () if isinstance(solver, str)]
     for name in names:
-        if name not in solver_names():
-            near = nearest_name(name, solver_names())
-            remedy = f"did you mean {near!r}?" if near else f"there are {', '.join(solver_names())}"
+        if name not in all_solver_names():
+            near = nearest_name(name, all_solver_names())
+            remedy = (
+                f"did you mean {near!r}?" if near else f"there are {', '.join(all_solver_names())}"
+            )
             raise NotFound(f"no route solver is named {name!r}; {remedy}")
 
     def usable(group: Sequence[RouteSolver]) -> list[RouteSolver]:

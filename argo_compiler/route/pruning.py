@@ -34,7 +34,7 @@ class Pruned:
 
 def prune(network: StepNetwork) -> Pruned:
     """Return what travel times, precedences, windows and the limit leave possible in a network."""
-    m, step = network.size, network.step
+    m, step = network.node_count, network.step
     best = least_arc_times_without_service(network)
     earliest, latest = _windows(network, best)
     arcs: NDArray[np.bool_] = best < NEVER
@@ -75,8 +75,8 @@ def _orders(
     """
     if not network.has_windows and network.limit >= NEVER:
         return network.needs, network.before
-    m, count = network.size, len(network.prize)
-    distances = least_path_times(network)
+    m, count = network.node_count, len(network.prize)
+    distances = path_time_lower_bounds(network)
     late = earliest[:, None] + network.service[:, None] + distances > latest[None, :]
     too_late = np.ones((count, count), np.bool_)
     for i in range(m):
@@ -92,7 +92,7 @@ def _orders(
 
 
 def least_arc_times_without_service(network: StepNetwork) -> NDArray[np.int64]:
-    """Return the least time of each arc, straight or by a charger without the time of charging.
+    """Return the least time of each arc, straight or by a charger, without service and charging.
 
     It is a lower bound on the time from row to column, shape (m + 1, m + 1).
     """
@@ -144,7 +144,7 @@ def _windows(
     time of the shortest path to the end. As arcs may violate the triangle inequality, these are
     shortest paths over any nodes, with their services.
     """
-    m = network.size
+    m = network.node_count
     graph = best.astype(np.float64)
     graph[:m, :] += network.service[:, None]
     graph[best >= NEVER] = np.inf
@@ -163,12 +163,13 @@ def _windows(
     return earliest, np.minimum(network.latest[network.step], latest)
 
 
-def least_path_times(network: StepNetwork) -> NDArray[np.int64]:
+def path_time_lower_bounds(network: StepNetwork) -> NDArray[np.int64]:
     """Return lower bounds on the time from the end of one node to the begin of another.
 
-    Shape (m, m), by paths over any nodes. The bounds are exact for up to _MOST_NODES nodes.
+    Shape (m, m), by paths over any nodes. The bounds are the times of the shortest paths if the
+    network has at most _MOST_NODES nodes.
     """
-    m = network.size
+    m = network.node_count
     least = least_arc_times_without_service(network)[:m, :m]
     if m > _MOST_NODES:  # a path over another node has at least two arcs
         np.fill_diagonal(least, NEVER)

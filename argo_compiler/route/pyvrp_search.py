@@ -49,7 +49,7 @@ class PyvrpSearch:
         network = search.network
         if network.before.any() or not search.pruned.possible:
             return
-        m = network.size
+        m = network.node_count
         if not network.mandatory.any() and network.time[m, m] <= horizon(network):
             search.offer(())
         nodes = np.flatnonzero(search.pruned.steps[network.step]).tolist()
@@ -76,7 +76,7 @@ def _problem_data(network: StepNetwork, nodes: list[int]) -> "ProblemData":
     """Return the network as PyVRP's data: node k of `nodes` is location k, then start and end."""
     import pyvrp
 
-    n, m, worst = len(nodes), network.size, horizon(network)
+    n, m, worst = len(nodes), network.node_count, horizon(network)
     rows = [*nodes, m]
     service = np.append(network.service, 0)[rows]
     arcs = network.time[np.ix_(rows, rows)]
@@ -149,7 +149,10 @@ class _Turn:
         self._idle = 0
 
     def run(self, penalty: float) -> None:
-        """Search until no better route is found for some iterations, or the time is up."""
+        """Search until no better route is found for some iterations, or the time is up.
+
+        `penalty`: highest cost of each unit of lateness.
+        """
         import pyvrp
 
         prices = pyvrp.PenaltyParams(max_penalty=penalty)

@@ -53,19 +53,19 @@ class Relaxation:
         if (limit := blocks.problem.max_duration) is not None:
             self._rows.append((np.arange(n + self._arcs), self._times, -inf, limit + 0.5))
 
-    def prize_bound(self, stop_at: int) -> int | None:
+    def prize_bound(self, enough_bound: int) -> int | None:
         """Return an upper bound on the prize of any route, or None if the relaxation has no route.
 
-        The search ends when the bound is at most `stop_at`.
+        The search ends when the bound is at most `enough_bound`.
         """
-        least = self._minimum(-self._prizes, 0, -stop_at)
+        least = self._minimum(-self._prizes, 0, -enough_bound)
         return None if least is None else -least
 
-    def cost_bound(self, least_prize: int, stop_at: int) -> int | None:
+    def cost_bound(self, least_prize: int, enough_bound: int) -> int | None:
         """Return a lower bound on the cost of routes that win at least `least_prize`.
 
         Returns None if there is no such route. The search ends when the bound is at least
-        `stop_at`.
+        `enough_bound`.
         """
         if self._blocks.problem.objective is Objective.PRIZE:
             return 0
@@ -73,9 +73,9 @@ class Relaxation:
         if not self._blocks.problem.selective:
             rows, columns = linear_sum_assignment(self._least_times)
             cost = int(self._least_times[rows, columns].sum())
-            if cost >= stop_at:
+            if cost >= enough_bound:
                 return None if cost >= NEVER else cost
-        least = self._minimum(self._times, least_prize, stop_at)
+        least = self._minimum(self._times, least_prize, enough_bound)
         return None if least is None else max(least, cost)
 
     def _row(self, arcs: NDArray[np.bool_], block: int, least: float, most: float) -> Row:

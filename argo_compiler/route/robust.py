@@ -48,7 +48,7 @@ class RobustSuggestion:
     """number of different routes compared"""
 
     @property
-    def dropped(self) -> tuple[int, ...]:
+    def dropped_for_robustness(self) -> tuple[int, ...]:
         """Visits that this route leaves out, but the best route without any spread makes."""
         return tuple(sorted(set(self.nominal.order) - set(self.route.order)))
 

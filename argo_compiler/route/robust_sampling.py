@@ -58,10 +58,10 @@ class Draws:
         self.leg = lru_cache(_CACHED // samples)(self._draw_leg)
 
     def _draw_leg(self, location: int, time: int) -> tuple[Floats, Floats, Floats]:
-        """Draw the numbers of the leg to a location that is the `time`-th one, from 0.
+        """Draw the numbers of the `time`-th leg, from 0, to the same location.
 
-        Returns the factors of its time, the delays in s, and how often the service there is done,
-        for each sample.
+        Returns, for each sample, the factor of its time, the delay in s, and how often the service
+        there is done, 1 or 2.
         """
         spread, rng = self.spread, self._generator(1, location, time)
         factors = self.common * _factors(spread.way, self.samples, rng)
@@ -185,7 +185,7 @@ class _SampledSimulation:
     def _drive(self, selected: Bools, location: int) -> Floats:
         """Drive to a location in the `selected` samples.
 
-        Returns how often the service there is done in each sample.
+        Returns how often the service there is done, for all samples.
         """
         factors, delays, services = self.draws.leg(location, self._leg_counts[location])
         self._leg_counts[location] += 1

@@ -110,7 +110,7 @@ class LocalSearch:
 
         These are the removed steps, and some of those that the path has left out.
         """
-        m, rng = self._network.size, self._rng
+        m, rng = self._network.node_count, self._rng
         made = {self._step[node] for node in path}
         left_out = [s for s in np.flatnonzero(self._pruned.steps).tolist() if s not in made]
         left_out = rng.permutation(left_out)[:_MOST_ADDED].tolist()
@@ -158,7 +158,7 @@ class LocalSearch:
         high = min((k for k, t in enumerate(steps) if t in self._after[s]), default=len(path))
         if low > high:
             return None
-        m, near = self._network.size, self._near
+        m, near = self._network.node_count, self._near
         closed_path = np.array([m, *path, m])
         before, after = closed_path[low : high + 1], closed_path[low + 1 : high + 2]
         insertions: list[tuple[float, int, int]] = []

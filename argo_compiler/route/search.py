@@ -117,32 +117,37 @@ class Search:
         """True if there is no limit of work; under such a limit nothing may depend on time."""
         return self._shared.limits.work is None
 
-    def now(self) -> float:
+    def elapsed_time(self) -> float:
         """Return the time since the search began in s, or its work if that is limited."""
         shared = self._shared
         return shared.clock() - shared.begun if self.timed else shared.work
 
     def remaining_time(self) -> float:
-        """Return the remaining time, or work if that is limited, in s; 0 when the search ends."""
+        """Return the remaining time in s, or the remaining work if that is limited.
+
+        It is 0 as soon as the search is to end, for whatever reason.
+        """
         shared, limits = self._shared, self._shared.limits
         if not shared.stopped:
             is_late = limits.seconds is not None and shared.clock() - shared.begun >= limits.seconds
             if is_late or (limits.stop is not None and limits.stop(self.search_progress())):
                 shared.stopped = True
-        return 0.0 if shared.stopped or self.proven else max(0.0, self._deadline - self.now())
+        return (
+            0.0 if shared.stopped or self.proven else max(0.0, self._deadline - self.elapsed_time())
+        )
 
     def with_time_share(self, share: float, most: float = inf) -> "Search":
         """Return a view of this search with a share of the remaining time, at most `most` s."""
-        return self.with_deadline(self.now() + min(most, share * self.remaining_time()))
+        return self.with_deadline(self.elapsed_time() + min(most, share * self.remaining_time()))
 
-    def with_deadline(self, deadline: float) -> "Search":
-        """Return a view of this search with a deadline, on the clock of `now`.
+    def with_deadline(self, elapsed_time: float) -> "Search":
+        """Return a view of this search that ends when `elapsed_time()` returns `elapsed_time`.
 
         The deadline of this view applies as well, if it is earlier.
         """
         view = object.__new__(Search)
         view.__dict__.update(self.__dict__)
-        view._deadline = min(self._deadline, deadline)
+        view._deadline = min(self._deadline, elapsed_time)
         return view
 
     @contextmanager
@@ -197,7 +202,7 @@ class Search:
         return best.prize >= self._shared.prize_bound and best.cost <= self.bound
 
     @property
-    def method(self) -> str:
+    def proving_or_finding_solver(self) -> str:
         """Name of the solver that completed the proof, or, without one, found the best route.
 
         It is empty without a route and a proof.
@@ -275,12 +280,12 @@ class Search:
         return True
 
     def report_bounds(
-        self, prize_bound: int | None = None, bound: int | None = None, prize: int = 0
+        self, prize_bound: int | None = None, bound: int | None = None, least_prize: int = 0
     ) -> None:
         """Report proven bounds on all routes of the network.
 
-        No route wins more than `prize_bound`; no route that wins at least `prize` costs less than
-        `bound`. No-op if the network does not have all routes that may be optimal.
+        No route wins more than `prize_bound`; no route that wins at least `least_prize` costs less
+        than `bound`. No-op if the network does not have all routes that may be optimal.
         """
         shared = self._shared
         if not self.network.exact:
@@ -289,8 +294,8 @@ class Search:
             previous = shared.prize_bound, self.bound
             if prize_bound is not None:
                 shared.prize_bound = min(shared.prize_bound, prize_bound)
-            if bound is not None and bound > shared.bounds.get(prize, 0):
-                shared.bounds[prize] = bound
+            if bound is not None and bound > shared.bounds.get(least_prize, 0):
+                shared.bounds[least_prize] = bound
             if previous == (shared.prize_bound, self.bound):
                 return
             self._record()

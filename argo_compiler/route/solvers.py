@@ -59,7 +59,7 @@ def register_solver(solver: RouteSolver) -> None:
     _registered[solver.name] = solver
 
 
-def unregister_solver(name: str) -> None:
+def discard_solver(name: str) -> None:
     """Remove a registered solver; no-op if there is none of that name."""
     _registered.pop(name, None)
 
@@ -69,7 +69,7 @@ def registered_solvers() -> tuple[RouteSolver, ...]:
     return tuple(_registered.values())
 
 
-def solver_names() -> tuple[str, ...]:
+def all_solver_names() -> tuple[str, ...]:
     """Return the names of all solvers: Argo's own, then the registered ones."""
     groups = FIRST, SMALL, IMPROVING, PROVING, registered_solvers()
     return tuple(solver.name for group in groups for solver in group)

@@ -46,7 +46,7 @@ def gap(prize: int, cost: int, prize_bound: int, bound: int) -> float:
     """Return the optimality gap of a route, relative to a bound.
 
     It is the gap of the prize, as a share of `prize_bound`, while the prize is below that bound;
-    else the gap of the cost, as a share of the cost.
+    else the gap of the cost, as a share of the cost; 0 if the cost is not above `bound`.
     """
     if prize < prize_bound:
         return (prize_bound - prize) / prize_bound

@@ -18,7 +18,7 @@ class TourPause:
     """number of the charger; None: the robot waits"""
 
 
-def pauses(problem: RouteProblem, route: Tour) -> dict[int, tuple[TourPause, ...]]:
+def pauses_by_position(problem: RouteProblem, route: Tour) -> dict[int, tuple[TourPause, ...]]:
     """Return a route's pauses by the position in its order before which they take place.
 
     The position of pauses before the end is the length of the order.
@@ -40,7 +40,7 @@ def pauses(problem: RouteProblem, route: Tour) -> dict[int, tuple[TourPause, ...
 
 
 def _prefix(route: Tour, visit_count: int, last_charge: int) -> Tour:
-    """Return a route's first `visit_count` visits, and its charges up to and with `last_charge`."""
+    """Return a route's first `visit_count` visits, and its charges up to position `last_charge`."""
     charges = {k: charger for k, charger in route.charges.items() if k <= last_charge}
     return Tour(route.order[:visit_count], charges)
 

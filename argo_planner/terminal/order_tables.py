@@ -13,7 +13,7 @@ from argo_compiler.il import Mission, Order
 from argo_compiler.reorder.mission_problem import late_visit_texts
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.robust_spread import TravelSpread
-from argo_compiler.route.tour_pauses import TourPause, pauses
+from argo_compiler.route.tour_pauses import TourPause, pauses_by_position
 from argo_env.formatting import min_sec_text
 from argo_env.planning.opening import OpenedSite
 from argo_planner.terminal.words import insert_keep_order_option
@@ -59,7 +59,7 @@ def reordered_mission_lines(
 def _table(found: SuggestedOrder) -> Table:
     planned, route = found.planned, found.route
     worth = evaluate(planned.problem, route)
-    stops = pauses(planned.problem, route)
+    stops = pauses_by_position(planned.problem, route)
     before = found.written.arrivals
     written = {visit: k for k, visit in enumerate(planned.written.order)}
     late = {visit for _, visits in _unreached(found) for visit in visits}
@@ -108,7 +108,7 @@ def _lines(found: SuggestedOrder) -> Iterator[str]:
         limit = problem.words.get("max_duration", "requirements")
         yield f"{done} of {of} tasks within the {limit}; left out: {names}"
     yield _proof(found)
-    for pause in chain.from_iterable(pauses(problem, found.route).values()):
+    for pause in chain.from_iterable(pauses_by_position(problem, found.route).values()):
         refused = "" if pause.charger is None else "; no mission can charge, so -o can't write it"
         yield f"Pause: {_pause(found, pause)}{refused}"
     for words in late_visit_texts(planned, found.route):

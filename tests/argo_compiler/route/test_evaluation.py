@@ -15,7 +15,7 @@ from argo_compiler.route import (
     Visit,
     evaluate,
 )
-from argo_compiler.route.tour_pauses import TourPause, pauses
+from argo_compiler.route.tour_pauses import TourPause, pauses_by_position
 
 
 def line(*visits: Visit, chargers: int = 0, **more) -> RouteProblem:  # type: ignore[no-untyped-def]
@@ -155,7 +155,7 @@ EQUAL = np.full((4, 4), 10)
 def test_the_route_waits_at_visits_with_windows() -> None:
     visits = (Visit("a", 5, earliest=12), Visit("b", 5, earliest=50), Visit("c", 5, earliest=3))
     problem = RouteProblem(visits, EQUAL)
-    found = pauses(problem, Tour((2, 0, 1)))
+    found = pauses_by_position(problem, Tour((2, 0, 1)))
     # Without waiting: c at 10, a at 25, b at 40.
     assert found == {2: (TourPause(10, visit=1),)}
     assert evaluate(problem, Tour((2, 0, 1))).waiting == 10
@@ -168,7 +168,7 @@ def test_a_charge_returns_the_used_energy() -> None:
     )
     route = Tour((0, 1), {1: 0, 2: 0})
     # At the first charge (20 to 47), 3 + two legs are used; at the second one, two legs.
-    assert pauses(problem, route) == {
+    assert pauses_by_position(problem, route) == {
         1: (TourPause(27, charger=0), TourPause(3, visit=1)),
         2: (TourPause(24, charger=0),),
     }

@@ -8,7 +8,7 @@ from scipy.sparse.csgraph import shortest_path
 
 from argo_compiler.route import Precedence, RouteProblem, evaluate, suggest_route
 from argo_compiler.route.network import build_network
-from argo_compiler.route.pruning import least_path_times
+from argo_compiler.route.pruning import path_time_lower_bounds
 from argo_compiler.route.stop import FirstFeasible
 from benchmarks.routes_limits import KINDS, random_problem
 
@@ -96,7 +96,7 @@ def test_least_path_times_are_lower_bounds(size: int) -> None:
     service = np.array([visit.service for visit in problem.visits])
     arcs = travel[:size, :size] + service[:, None]
     shortest = shortest_path(arcs) - service[:, None]
-    times = least_path_times(build_network(problem, lambda step: tuple(step.parts)))
+    times = path_time_lower_bounds(build_network(problem, lambda step: tuple(step.parts)))
     off_diagonal = ~np.eye(size, dtype=np.bool_)
     assert (times <= shortest)[off_diagonal].all()
     assert (times <= travel[:size, :size])[off_diagonal].all()

@@ -27,7 +27,7 @@ def _relaxed(
 
 
 def _prizes(net: StepNetwork) -> NDArray[np.int64]:
-    costs = np.zeros((net.size + 1, net.size + 1), np.int64)
+    costs = np.zeros((net.node_count + 1, net.node_count + 1), np.int64)
     costs[:, :-1] = -net.prize[net.step]
     return costs
 
@@ -46,7 +46,7 @@ def _require_best_route(
     if path is None or charges:
         return
     arcs, mandatory = relaxation.possible_arcs_and_required_steps(most)
-    ends = [net.size, *path, net.size]
+    ends = [net.node_count, *path, net.node_count]
     assert arcs[ends[:-1], ends[1:]].all()
     assert set(np.flatnonzero(mandatory)) <= set(net.step[list(path)].tolist())
 
@@ -57,7 +57,7 @@ def test_no_bound_is_above_the_best_route(part: int) -> None:
         problem = random_problem(np.random.default_rng(50_000 + seed), 5)
         net = build_network(problem, lambda step: tuple(step.parts))
         pruned = prune(net)
-        if not net.size or not pruned.possible:
+        if not net.node_count or not pruned.possible:
             continue
         best = best_value(problem)
         won = _relaxed(net, pruned, _prizes(net), None)

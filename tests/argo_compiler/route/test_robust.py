@@ -200,7 +200,7 @@ def test_a_longer_route_may_be_more_robust():
     assert found.nominal.order == (1, 0)
     assert found.route.order == (0, 1)
     assert found.completion.probability > found.nominal_completion.probability + 0.03
-    assert found.dropped == ()
+    assert found.dropped_for_robustness == ()
 
 
 @pytest.mark.parametrize("objective", [Objective.DURATION, Objective.PRIZE])
@@ -213,7 +213,7 @@ def test_the_prize_is_maximised_at_the_confidence(objective):
     assert found.nominal_completion.probability < 0.9 <= found.completion.probability
     assert len(found.route.order) == 3
     assert found.prize == 9
-    assert found.dropped == (3,)
+    assert found.dropped_for_robustness == (3,)
     risky = suggest_robust_route(problem, CAUTIOUS, time_limit=2.0, confidence=0.01)
     assert len(risky.route.order) == 4
 

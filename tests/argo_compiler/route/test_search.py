@@ -21,7 +21,7 @@ from argo_compiler.route import (
 )
 from argo_compiler.route.batch import suggest_routes
 from argo_compiler.route.search import Search
-from argo_compiler.route.solvers import register_solver, unregister_solver
+from argo_compiler.route.solvers import discard_solver, register_solver
 from argo_compiler.route.stop import (
     FirstFeasible,
     MaxGap,
@@ -173,7 +173,7 @@ class TestCustomSolver:
             made = suggest_route(plain(60), 0.5, solvers=("reversed",))
             suggest_route(plain(60), 0.5)
         finally:
-            unregister_solver("reversed")
+            discard_solver("reversed")
         assert solver.calls > 1
         assert (made.method, made.order) == ("reversed", tuple(reversed(range(60))))
         with pytest.raises(NotFound, match="no route solver is named 'reversed'"):

@@ -142,7 +142,7 @@ class SimulationState:
             **self._vehicle.state_for_entry(),
         )
 
-    def apply(self, entry: Entry) -> None:
+    def apply_without_observers(self, entry: Entry) -> None:
         """Add an entry to the log, let the machine handle its events, and execute its commands."""
         self.log.add(entry)
         self.scheduled.add(entry.added)
@@ -199,7 +199,7 @@ class SimulationState:
                     f"the entry names '{entry.running}' as the running task, and the machine runs "
                     f"'{self._running_task}'"
                 )
-            self.apply(entry)
+            self.apply_without_observers(entry)
         except ValueError as error:
             raise Invalid(
                 f"the journal does not fit its mission at {entry.t:g} s: {error}; begin a new run",

@@ -547,7 +547,7 @@ class Simulation(Closing):
             for observer in self._observers:
                 observer.on_entry(entry)
             self._vehicle.clear_mishaps_and_ended_contacts()
-            self._state.apply(entry)
+            self._state.apply_without_observers(entry)
             for observer in self._observers:
                 observer.on_entry_applied(entry, self.machine)
 

@@ -31,7 +31,7 @@ from argo_env.sensing.sensor import MeasurementError
 from argo_env.sensing.vision.align import FacePose
 from argo_env.sensing.vision.instrument import Instrument
 from argo_env.sensing.vision.sensor import INSTRUMENTS, CameraSensor
-from argo_env.sensing.vision.views import plan_views_cheapest_first, solids_near
+from argo_env.sensing.vision.views import plan_views_cheapest_first, solids_with_box_near
 from argo_env.site.shapes import Box, Cylinder, Solid
 from argo_env.world.placement import AS_PLANNED, draw_checkpoint_placement
 from argo_env.world.world import World
@@ -136,7 +136,7 @@ class Scene:
         self, face: FacePose, instrument: Instrument, pose: BodyPose, share: float
     ) -> bool:
         """Return True if face and indicator are in sight from some view, by geometry alone."""
-        solids = solids_near(self.site, face.center, 1.5)
+        solids = solids_with_box_near(self.site, face.center, 1.5)
         size = 0.8 * instrument.shape.half_width
         indicator = instrument.indicator
         position = indicator.low + share * (indicator.high - indicator.low)

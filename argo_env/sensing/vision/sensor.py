@@ -23,7 +23,7 @@ from argo_env.sensing.vision.indicator import (
 from argo_env.sensing.vision.instrument import DIAL, LEVEL, VALVE, Instrument
 from argo_env.sensing.vision.locate import find_face, find_face_near
 from argo_env.sensing.vision.photo import Lens, Photo, make_photo, take_picture
-from argo_env.sensing.vision.views import ArmView, plan_views_cheapest_first, solids_near
+from argo_env.sensing.vision.views import ArmView, plan_views_cheapest_first, solids_with_box_near
 from argo_env.site import SiteCheckpoint
 from argo_env.site.shapes import Solid
 from argo_env.world.placement import MAX_OFFSET
@@ -110,7 +110,7 @@ class CameraSensor:
 
     def _solids_near(self, checkpoint: SiteCheckpoint) -> tuple[Solid, ...]:
         if checkpoint.id not in self._solids:
-            self._solids[checkpoint.id] = solids_near(
+            self._solids[checkpoint.id] = solids_with_box_near(
                 self._world.site, np.array(checkpoint.position), 1.5
             )
         return self._solids[checkpoint.id]

@@ -42,7 +42,7 @@ class ArmView:
     """m, from the camera to the middle of the face"""
 
 
-def solids_near(site: Site, point: NDArray[np.float64], reach: float) -> tuple[Solid, ...]:
+def solids_with_box_near(site: Site, point: NDArray[np.float64], reach: float) -> tuple[Solid, ...]:
     """Return the site's solids whose bounding box is within `reach` (m) of a point on each axis."""
     return tuple(
         solid

@@ -16,7 +16,7 @@ from argo_env.robot.spec import robot_folder
 from argo_env.run.action import TURNS
 from argo_env.sensing.vision.align import FacePose
 from argo_env.sensing.vision.arm import JOINTS, forward_kinematics, inverse_kinematics
-from argo_env.sensing.vision.views import plan_views_cheapest_first, solids_near
+from argo_env.sensing.vision.views import plan_views_cheapest_first, solids_with_box_near
 from argo_env.site.shapes import Box
 from tests.argo_env.robot.test_models import load
 from tests.conftest import examples
@@ -105,7 +105,7 @@ def test_planned_views_touch_nothing_and_see_the_checkpoint(
     id, place_before, simulation, umad, robot
 ):
     checkpoint, pose, face = place_before(id)
-    solids = solids_near(umad, face.center, 1.5)
+    solids = solids_with_box_near(umad, face.center, 1.5)
     views = plan_views_cheapest_first(simulation, pose, face, solids, 0.05, (), 0.5)
     obliqueness = []
     for _, view in zip(range(6), views, strict=False):

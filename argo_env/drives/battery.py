@@ -53,14 +53,17 @@ class Battery:
     def is_empty(self) -> bool:
         return self._remaining <= 0.0
 
-    def reduce_capacity_to(self, share: float) -> None:
-        """Reduce the capacity to this share of the present one; the charge, also a share, stays."""
+    def scale_capacity_and_energy(self, factor: float) -> None:
+        """Multiply capacity and remaining energy by `factor`; the charge, their ratio, stays."""
         charge = self.charge
-        self.capacity *= share
+        self.capacity *= factor
         self.charge = charge
 
     def use(self, watts: float, seconds: float) -> None:
-        """Draw power for some seconds, or charge the battery if `watts` is less than 0."""
+        """Draw power for some seconds, or charge the battery if `watts` is less than 0.
+
+        The remaining energy stays between 0 and the capacity.
+        """
         self._load = watts
         self._remaining = min(max(self._remaining - watts * seconds / 3600.0, 0.0), self.capacity)
 

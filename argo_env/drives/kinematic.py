@@ -184,9 +184,9 @@ class KinematicDrive(NonCopyable, TimedDrive):
     def can_batch_steps(self) -> bool:
         return self._world.has_surely_no_touches_at(self._pose)
 
-    def poses_ahead(self, count: int) -> PoseArray:
+    def poses_ahead(self, limit: int) -> PoseArray:
         clear = takewhile(
-            self._world.has_surely_no_touches_at, self._upcoming_poses(min(count, _LOOKAHEAD))
+            self._world.has_surely_no_touches_at, self._upcoming_poses(min(limit, _LOOKAHEAD))
         )
         poses = [(pose.x, pose.y, pose.z, pose.yaw, pose.pitch) for pose in clear]
         return np.array(poses).reshape(-1, 5)
@@ -194,7 +194,7 @@ class KinematicDrive(NonCopyable, TimedDrive):
     def _upcoming_poses(self, count: int) -> Iterator[BodyPose]:
         """Yield the pose after each of the next `count` steps, until the flippers have to move."""
         assert self._timetable is not None
-        for motion, shares in self._timetable.iter_motions_at(self._times_ahead(count)):
+        for motion, shares in self._timetable.iter_motions_and_shares_at(self._times_ahead(count)):
             if self._flippers != _flippers_on(motion):
                 return
             for share in shares.tolist():

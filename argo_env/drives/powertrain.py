@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_env.drives.drive import Drive, DriveStatus, Incident
-from argo_env.drives.standstill import PATIENCE, has_moved_noticeably, motionless_step_number
-from argo_env.drives.timed_drive import TimedDrive, path_from_pose
+from argo_env.drives.standstill import PATIENCE, first_motionless_step_from_1, has_moved_noticeably
+from argo_env.drives.timed_drive import TimedDrive, path_with_initial_shift
 from argo_env.navigation.path import Path
 from argo_env.robot.pose import BodyPose, PoseArray, PoseTuple, pose_tuple_at
 
@@ -78,7 +78,7 @@ class Powertrain:
 
         `velocity` (m/s) is the planned speed on the flat; None means the robot's own speed.
         """
-        self.path_and_velocity = path_from_pose(path, self._drive.pose), velocity
+        self.path_and_velocity = path_with_initial_shift(path, self._drive.pose), velocity
         self._credit, self._still_time, self._failure = 0.0, 0.0, None
         self._drive.follow(path, velocity)
 
@@ -110,7 +110,7 @@ class Powertrain:
     def steps_ahead(self, limit: int) -> StepsAhead:
         """Predict the next steps, up to `limit`, as far as the robot surely touches nothing.
 
-        In all of them the emergency stop holds the robot, or the robot surely moves.
+        The emergency stop holds the robot in all of them, or the robot surely moves in all of them.
         """
         drive = self._drive
         if self.path_and_velocity is None or not isinstance(drive, TimedDrive):
@@ -120,9 +120,11 @@ class Powertrain:
             return StepsAhead(here.repeat(limit, axis=0), np.zeros(limit, dtype=np.int64))
         if self.speed_share < _SLOWEST or self._last_pose is None:
             return _NO_STEPS
-        made = self._count_drive_steps(limit, drive.steps_left)
+        made = self._count_drive_steps(limit, drive.steps_left_before_arrival)
         poses = drive.poses_ahead(int(made[-1]) if len(made) else 0)
-        made = made[: np.searchsorted(made, motionless_step_number(_place(self._last_pose), poses))]
+        made = made[
+            : np.searchsorted(made, first_motionless_step_from_1(_place(self._last_pose), poses))
+        ]
         if not self._makes_every_step:
             poses = np.concatenate([here, poses])[made]
         return StepsAhead(poses[: len(made)], made)

@@ -15,11 +15,11 @@ PATIENCE = 30.0  # s without any motion, after which the robot gives its path up
 _MOVED = 1e-3  # m or rad, above which a change of pose is a motion
 
 
-def motionless_step_number(before: PoseTuple, poses: PoseArray) -> int:
-    """Return the number, from 1, of the first step in which the robot does not move.
+def first_motionless_step_from_1(before: PoseTuple, poses: PoseArray) -> int:
+    """Return the number, from 1, of the first step without noticeable motion.
 
-    Step k leads to pose k of `poses`, the first step from the pose `before`. If the robot moves in
-    each of n steps, the result is n + 1.
+    Step k leads to pose k of `poses`, from the pose before that one; the first step leads from
+    `before`. If the robot moves noticeably in each of n steps, the result is n + 1.
     """
     all_poses = np.concatenate([[before], poses])
     change = np.abs(np.diff(all_poses, axis=0))

@@ -52,7 +52,9 @@ class TimedDrive(ABC):
 
     def follow(self, path: Path, velocity: float | None) -> None:
         """Start to follow `path` at `velocity` (m/s) on the flat, or at the robot's own speeds."""
-        self._timetable = Timetable(path_from_pose(path, self._pose), self._robot, velocity)
+        self._timetable = Timetable(
+            path_with_initial_shift(path, self._pose), self._robot, velocity
+        )
         self._steps = 0
 
     def halt(self) -> None:
@@ -65,7 +67,7 @@ class TimedDrive(ABC):
             return DriveStatus.ARRIVED
         self._steps += 1
         arrived = self._steps >= count_steps(self._timetable.duration, self.time_step)
-        progress = self._timetable.last_begun_motion_at(
+        progress = self._timetable.motion_and_share_at(
             math.inf if arrived else self._steps * self.time_step
         )
         if progress is not None:
@@ -76,7 +78,7 @@ class TimedDrive(ABC):
         return DriveStatus.ARRIVED
 
     @property
-    def steps_left(self) -> int:
+    def steps_left_before_arrival(self) -> int:
         """Number of time steps before the one in which the robot arrives; 0 without a path."""
         if self._timetable is None:
             return 0
@@ -93,12 +95,12 @@ class TimedDrive(ABC):
         return steps * self.time_step
 
     @abstractmethod
-    def poses_ahead(self, count: int) -> PoseArray:
-        """Return the poses after each of the next `count` steps, shape (n, 5).
+    def poses_ahead(self, limit: int) -> PoseArray:
+        """Return the poses after each of the next steps, up to `limit` of them, shape (n, 5).
 
-        `count` is at most `steps_left`. The poses equal those that `step` would lead to, to the
-        last bit. There are fewer than `count` if the robot might touch something on its path, or
-        has to move its flippers.
+        `limit` is at most `steps_left_before_arrival`. The poses equal those that `step` would lead
+        to, to the last bit. There are fewer than `limit` if the robot might touch something on its
+        path, or has to move its flippers.
         """
 
     def skip_to(self, pose: PoseTuple, count: int) -> None:
@@ -111,7 +113,7 @@ class TimedDrive(ABC):
         """Return the robot's pose when a share, 0 to 1, of the motion is done."""
 
 
-def path_from_pose(path: Path, pose: BodyPose) -> Path:
+def path_with_initial_shift(path: Path, pose: BodyPose) -> Path:
     """Return the path, with a straight shift from the robot's pose to the path's start if needed.
 
     Paths begin at a state of the navigator's lattice. A robot that was stopped may be some
@@ -141,10 +143,10 @@ class RouteDrive(TimedDrive):
     def can_batch_steps(self) -> bool:
         return True
 
-    def poses_ahead(self, count: int) -> PoseArray:
+    def poses_ahead(self, limit: int) -> PoseArray:
         assert self._timetable is not None
-        poses, first = np.empty((count, 5)), 0
-        for motion, share in self._timetable.iter_motions_at(self._times_ahead(count)):
+        poses, first = np.empty((limit, 5)), 0
+        for motion, share in self._timetable.iter_motions_and_shares_at(self._times_ahead(limit)):
             rows = poses[first : first + len(share)]
             for column, values in enumerate(motion.coordinates_at(share)):
                 rows[:, column] = values

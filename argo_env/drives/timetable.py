@@ -33,7 +33,7 @@ class Timetable:
         """Duration of the whole path in s."""
         return self._ends[-1] if self._ends else 0.0
 
-    def last_begun_motion_at(self, t: float) -> tuple[Motion, float] | None:
+    def motion_and_share_at(self, t: float) -> tuple[Motion, float] | None:
         """Return the motion under way `t` s after the start, and the share of it that is done.
 
         After the end of the path this is the last motion, with share 1. Returns None if the path
@@ -46,7 +46,7 @@ class Timetable:
             return self._motions[-1], 1.0
         return self._motions[k], 1.0 - (self._ends[k] - t) / self._durations[k]
 
-    def iter_motions_at(
+    def iter_motions_and_shares_at(
         self, times: "NDArray[np.float64]"
     ) -> Iterator[tuple[Motion, "NDArray[np.float64]"]]:
         """Yield each motion under way at some of the times, and the shares of it that are done.

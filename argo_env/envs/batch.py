@@ -100,8 +100,8 @@ class ProcessVectorEnv(Copyable, VectorEnv[Observation, NDArray[Any], NDArray[An
     ) -> tuple[Observation, NDArray[Any], NDArray[Any], NDArray[Any], dict[str, Any]]:
         """Step each environment with its action, and return the results, stacked.
 
-        If an environment raises an error, it is raised here. Then all environments must be reset,
-        as some of them may have made the step.
+        An environment whose episode is over is reset instead. If an environment raises an error, it
+        is raised here. Then all environments must be reset, as some may have made the step.
         """
         self._require_episodes()
         action_array = np.asarray(actions)
@@ -154,7 +154,7 @@ class ProcessVectorEnv(Copyable, VectorEnv[Observation, NDArray[Any], NDArray[An
         return {"states": self.call("get_state"), "ended": tuple(ended)}
 
     def set_state(self, state: Mapping[str, Any]) -> Observation:
-        """Continue from a state that `get_state` returned, and return its observation.
+        """Continue from a state that `get_state` returned, and return the stacked observations.
 
         Raises ArgoError if it is not a state of such a batch of the same size.
         """

@@ -178,7 +178,7 @@ class DriveEnv(Copyable, Rendering, gym.Env[Observation, NDArray[np.float32]]):
         self.observation_space = dict_space(parts)
         self.action_space = spaces.Box(-1.0, 1.0, (3,), np.float32)
         self._sites = DriveSites(names)
-        self._site = self._sites.get_site(self._sites.scenario_names[0])
+        self._site = self._sites.get_site(self._sites.requested_site_names[0])
         self._over: bool | None = None
 
     # -- the environment
@@ -192,7 +192,7 @@ class DriveEnv(Copyable, Rendering, gym.Env[Observation, NDArray[np.float32]]):
         # There is no episode until the new one has begun.
         self._over = None
         rng, chosen = self.np_random, self._sites.options
-        names = self._sites.scenario_names
+        names = self._sites.requested_site_names
         name = names[int(rng.integers(len(names)))]
         guide = self._sites.get_site(name).guide
         floors = chosen.given_floors or guide.floors
@@ -200,7 +200,7 @@ class DriveEnv(Copyable, Rendering, gym.Env[Observation, NDArray[np.float32]]):
         x, y, z = goals[int(rng.integers(len(goals)))].tolist()
         goal = (x, y, z)
         longest = chosen.max_way or self._max_way
-        starts = guide.start_positions(goal, floors, MIN_TRAVEL_TIME, longest)
+        starts = guide.start_positions_or_nearest(goal, floors, MIN_TRAVEL_TIME, longest)
         x, y, z = starts[int(rng.integers(len(starts)))].tolist()
         self._start_episode(name, (x, y, z, float(rng.uniform(-math.pi, math.pi))), goal)
         observation = self._observe()
@@ -217,7 +217,7 @@ class DriveEnv(Copyable, Rendering, gym.Env[Observation, NDArray[np.float32]]):
         before = self._time_to_goal
         observation = self._observe()
         success, tipped = self._success, self._tipped
-        touches = body.pop_touches()
+        touches = body.pop_deepest_touches()
         terms = {
             "progress": PROGRESS * (before - self._time_to_goal),
             "goal": GOAL if success and not tipped else 0.0,
@@ -290,7 +290,7 @@ class DriveEnv(Copyable, Rendering, gym.Env[Observation, NDArray[np.float32]]):
         self._start_episode(state["scenario"], state["start"], state["goal"])
         for action in actions:
             self._apply_action(action)
-        self._site.body.pop_touches()
+        self._site.body.pop_deepest_touches()
         self.np_random.bit_generator.state = state["generator"]
         observation = self._observe()
         self._over = self._success or self._tipped or len(self._actions) >= self._limit
@@ -317,7 +317,7 @@ class DriveEnv(Copyable, Rendering, gym.Env[Observation, NDArray[np.float32]]):
         self._name, self._start, self._goal = name, start, goal
         self._site = self._sites.get_site(name)
         self._site.body.reset(BodyPose(*start))
-        self._site.body.pop_touches()
+        self._site.body.pop_deepest_touches()
         self._site.forget_camera_position()
         self._actions: list[Action] = []
 
@@ -350,7 +350,7 @@ class DriveEnv(Copyable, Rendering, gym.Env[Observation, NDArray[np.float32]]):
     def _apply_action(self, action: Action) -> None:
         """Apply an action for 0.1 s."""
         ahead, turn, flipper = action
-        body, share = self._site.body, self._site.speed_share(self._time)
+        body, share = self._site.body, self._site.speed_factor_from_faults(self._time)
         low, high = FLIPPER_LIMITS
         body.command(
             share * SPEED * ahead, share * TURN_RATE * turn, low + (flipper + 1) / 2 * (high - low)
@@ -361,7 +361,7 @@ class DriveEnv(Copyable, Rendering, gym.Env[Observation, NDArray[np.float32]]):
     def _observe(self) -> Observation:
         site, body = self._site, self._site.body
         self._pose = pose = body.pose
-        waypoint = site.guide.find_waypoint(self._goal, pose)
+        waypoint = site.guide.next_waypoint(self._goal, pose)
         self._time_to_goal = waypoint.seconds
         speed, turn = body.velocity
         left, right = body.belt_speeds

@@ -73,7 +73,7 @@ class DriveSite(Closing):
             self._scene.close()
             self._scene = None
 
-    def speed_share(self, now: float) -> float:
+    def speed_factor_from_faults(self, now: float) -> float:
         """Return the factor, 0 to 1, by which faults reduce the drive's speed at time `now` (s).
 
         `now` counts from the start of the episode.
@@ -138,7 +138,7 @@ class DriveSites:
         self._cached: dict[str, DriveSite] = {}
 
     @property
-    def scenario_names(self) -> tuple[str, ...]:
+    def requested_site_names(self) -> tuple[str, ...]:
         """Names of the sites that an episode may be on."""
         return self._requested_names(self.options)
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from argo_compiler.base.errors import Invalid
 from argo_compiler.base.model import Pose
 from argo_env.drives.tracked.body import FLIPPER_LIMITS
-from argo_env.drives.tracked.flippers import CAREFUL_SPEED, Flight, Flippers, find_flight
+from argo_env.drives.tracked.flippers import CAREFUL_SPEED, Flight, Flippers, measure_flight
 from argo_env.drives.tracked.follower import Follower
 from argo_env.envs.drive import PERIOD, SPEED, TURN_RATE, DriveEnv
 from argo_env.navigation.path import Motion, wrap
@@ -70,10 +70,10 @@ class Expert:
         # The heading at the goal is free: take that of the straight line to it.
         yaw = math.atan2(y - pose.y, x - pose.x)
         path = site.navigator.plan(start, Pose(x=x, y=y, z=z, yaw=yaw))
-        self._follower = Follower(path, site.robot, None, site.body.pivot_x)
+        self._follower = Follower(path, site.robot, None, site.body.turn_center_x)
 
     def _is_turn_complete(self, motion: Motion | None, pose: BodyPose) -> bool:
-        """Return True if the motion is a turn at whose end the robot only has to come to rest."""
+        """Return True if the motion is a turn, and the robot has its end's heading."""
         if motion is None or not motion.turn:
             return False
         return abs(wrap(motion.end.yaw - pose.yaw)) < _TURN_TOLERANCE
@@ -91,5 +91,5 @@ class Expert:
             return None
         if self._flight is None or self._flight[0] is not motion:
             site = self._env.site
-            self._flight = motion, find_flight(site.world, motion, site.robot.track_gauge)
+            self._flight = motion, measure_flight(site.world, motion, site.robot.track_gauge)
         return self._flight[1]

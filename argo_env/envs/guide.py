@@ -70,7 +70,7 @@ class Guide:
         return tuple(self._positions)
 
     def goal_positions(self, floors: tuple[int, ...]) -> NDArray[np.float64]:
-        """Return the possible goals (x, y, z in m) on these floors, shape (n, 3).
+        """Return the possible goals (x, y, z in m) on these floors, at least one, shape (n, 3).
 
         There are at most GOALS on each floor, the same ones each time.
         """
@@ -81,7 +81,7 @@ class Guide:
             parts.append(positions[np.sort(chosen), :3])
         return np.concatenate(parts)
 
-    def start_positions(
+    def start_positions_or_nearest(
         self,
         goal: tuple[float, float, float],
         floors: tuple[int, ...],
@@ -91,7 +91,7 @@ class Guide:
         """Return all possible start positions (x, y, z in m) on these floors, shape (n, 3).
 
         Their travel times to the goal are from `least_seconds` to `most_seconds`. If there are
-        none, those with the lowest time of at least `least_seconds` are returned.
+        none, those with the next higher time are returned.
         """
         positions = np.concatenate([self._positions[floor] for floor in floors])[:, :3]
         seconds, _ = self._paths_to(goal)
@@ -104,7 +104,7 @@ class Guide:
             suitable = above == above.min()
         return np.asarray(positions[suitable])
 
-    def find_waypoint(self, goal: tuple[float, float, float], pose: BodyPose) -> Waypoint:
+    def next_waypoint(self, goal: tuple[float, float, float], pose: BodyPose) -> Waypoint:
         """Return the next point of the path from a pose to the goal.
 
         The path begins at the state of the lattice nearest to the pose, however far away it is: the

@@ -416,7 +416,8 @@ class InspectEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
     def _count_slots(self, name: str, requested: int | None, existing: int, site: str) -> int:
         """Return the number of slots: `existing`, which the site has, or the requested number.
 
-        Raises ArgoError if the requested number is below `existing`, or above it and `_MAX_SLOTS`.
+        Raises ArgoError if the requested number is below `existing`, or above both it and
+        `_MAX_SLOTS`.
         """
         if requested is None:
             return existing
@@ -455,7 +456,7 @@ class InspectEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
             and not (run.is_time_up or run.is_battery_empty)
         )
         if arrived and slot != self._slots + self._end:
-            stay = run.stay(_WAIT, until_full=True)
+            stay = run.stay(_WAIT, longer_until_full=True)
             return replace(result, anomalies=result.anomalies + stay.anomalies), False
         return result, arrived
 

@@ -134,14 +134,14 @@ class Inspection(Closing):
         """Drive to a pose, and return what happened on the way."""
         return self._carry_out(Task(name=self._name("drive"), action=Action.WAYPOINT, pose=pose))
 
-    def stay(self, seconds: float, until_full: bool = False) -> ActionResult:
-        """Stay for `seconds`; with `until_full` longer, if needed, until the battery is full.
+    def stay(self, seconds: float, longer_until_full: bool = False) -> ActionResult:
+        """Stay for `seconds`; or longer, with `longer_until_full`, until the battery is full.
 
         It ends earlier if the time limit is reached or the run ends.
         """
         self._observer.clear()
         end = self.now + seconds
-        while not self._over and (self.now < end or (until_full and self.charge < FULL)):
+        while not self._over and (self.now < end or (longer_until_full and self.charge < FULL)):
             self._advance(end if self.now < end else self._earliest_full_time)
         if self.is_time_up:
             self._stop()
@@ -189,7 +189,7 @@ class Inspection(Closing):
             self._simulation.handle(StopRun(f"the time limit of {self._limit:g} s was reached"))
 
     def _advance(self, until: float) -> None:
-        """Let one time step pass, or several, which may end before the time `until` (s)."""
+        """Let one time step pass, or several that end by the time `until` (s)."""
         began = self.now
         poses = self._simulation.fast_forward(min(until, self._limit))
         for index in _spaced_indices(_position(self._trail[-1][1]), poses):
@@ -200,7 +200,7 @@ class Inspection(Closing):
     def _action_result(self, began: float = math.inf) -> ActionResult:
         """Return the result of the action, from what has happened since the observer was cleared.
 
-        It counts the contacts that ended after the time `began` (s); none by default.
+        It counts the contacts that lasted beyond the time `began` (s); none by default.
         """
         observer = self._observer
         anomalies = tuple(n for n in observer.sensed if isinstance(n, Anomaly))

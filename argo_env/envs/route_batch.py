@@ -267,9 +267,9 @@ class RouteVectorEnv(Copyable, VectorEnv[Observation, NDArray[np.int64], NDArray
     ) -> NDArray[np.bool_]:
         """Return a mask of the visits that fail, shape (num_envs,), and record all visits.
 
-        `prizes` and `effect` are changed in place: the values of visits that fail are set to 0. A
-        node where a visit fails has one failure less left. The prizes of the other visits are won,
-        and their nodes have no prize any more.
+        `prizes` and `effect`, what the visits subtract from `_missing`, are changed in place: the
+        values of visits that fail are set to 0. A visit that fails reduces the failures left of its
+        node by one. The prizes of the other visits are won, and their nodes have no prize any more.
         """
         rows = self._all_rows
         failed = self._failing[rows, nodes] > 0

@@ -45,7 +45,7 @@ class WornBattery(Fault):
 
     def apply(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.capacity is not None
-        targets.battery.reduce_capacity_to(self.capacity)
+        targets.battery.scale_capacity_and_energy(self.capacity)
 
 
 class ConnectionLoss(TimedFault):

@@ -160,7 +160,7 @@ def make_run_setup(spec: RunSpec, navigator: Navigator, gui: bool, stack: ExitSt
         RadioNetwork(site),
         Battery(robot),
     )
-    battery.reduce_capacity_to(conditions.capacity)
+    battery.scale_capacity_and_energy(conditions.capacity)
     battery.charge = 1.0 if conditions.charge is None else conditions.charge
     sensor = SensorWithFaults(camera, site, seed, conditions.sensor_noise)
     targets = FaultTargets(world, truth, surroundings, drive, sensor, battery, network)

@@ -71,7 +71,7 @@ class DriveWithCurrentMotion(RouteDrive):
 
     @property
     def motion(self):
-        return self._timetable and self._table.last_begun_motion_at(self._steps * self.time_step)[0]
+        return self._timetable and self._table.motion_and_share_at(self._steps * self.time_step)[0]
 
 
 class StuckDrive(DriveWithCurrentMotion):

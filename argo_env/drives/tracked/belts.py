@@ -67,7 +67,7 @@ class Belts:
         self.bends = [0.0] * (3 * _BELTS)
         """bending of the grousers along, across and by twisting in m, for each belt"""
 
-    def wrench(
+    def wrench_and_other_contacts(
         self,
         contacts: list[Contact],
         walking: int,
@@ -86,7 +86,7 @@ class Belts:
         Args:
             contacts: the robot's contacts, rows of PyBullet's `getContactPoints`
             walking: the link of the terrain with the walking surfaces
-            speeds: of the left and the right belts (m/s)
+            speeds: of the left and the right belts (m/s), positive when driving forwards
             position: the body's centre of mass (m)
             axes: the body's rotation matrix row by row
             velocity: of the body at `position` (m/s)
@@ -111,7 +111,8 @@ class Belts:
         """Return the sums for each belt, the total normal force (N), and the other contacts.
 
         The sums are those that `_NO_SUMS` lists, over the contacts of a belt. The total is that of
-        all belts, summed in the order of the contacts. The arguments are as for `wrench`.
+        all belts, summed in the order of the contacts. The arguments are as for
+        `wrench_and_other_contacts`.
         """
         # Plain floats in local variables: this runs 240 times a simulated second.
         px, py, pz = position

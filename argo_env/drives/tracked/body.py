@@ -114,7 +114,7 @@ class TrackedBody(Connection):
         self._belts.bends = [0.0] * len(self._belts.bends)
         self._speed, self._turn, self._push = 0.0, 0.0, 0.0
         self._contacts = []
-        self._contact_log.pop()
+        self._contact_log.pop_deepest_touches()
         for k in self._flippers:
             pybullet.resetJointState(self._body, k, flipper, physicsClientId=self._client)
         self.command(0.0, 0.0, flipper)
@@ -140,7 +140,7 @@ class TrackedBody(Connection):
             velocity, spin = pybullet.getBaseVelocity(body, physicsClientId=client)
             axes = pybullet.getMatrixFromQuaternion(turned)
             speeds = self._belt_speeds(spin[0] * axes[2] + spin[1] * axes[5] + spin[2] * axes[8])
-            (fx, fy, fz, tx, ty, tz), other_contacts = self._belts.wrench(
+            (fx, fy, fz, tx, ty, tz), other_contacts = self._belts.wrench_and_other_contacts(
                 self._contacts, self._walking, speeds, position, axes, velocity, spin, TIME_STEP
             )
             pybullet.applyExternalForce(
@@ -150,7 +150,9 @@ class TrackedBody(Connection):
                 body, -1, (tx, ty, tz), pybullet.WORLD_FRAME, physicsClientId=client
             )
             if other_contacts:
-                self._contact_log.add(other_contacts, self._origin(position, axes), axes)
+                self._contact_log.add_strong_contacts(
+                    other_contacts, self._origin(position, axes), axes
+                )
             self._simulate()
             self._contacts = pybullet.getContactPoints(bodyA=body, physicsClientId=client)
         self._show()
@@ -166,7 +168,7 @@ class TrackedBody(Connection):
         )
 
     @property
-    def pivot_x(self) -> float:
+    def turn_center_x(self) -> float:
         """Position in m on the robot's x axis of the point about which the robot turns in place.
 
         It is below the robot's centre of mass.
@@ -198,9 +200,9 @@ class TrackedBody(Connection):
         half = self._robot.track_gauge / 2 * (self._turn + self._push)
         return self._speed - half, self._speed + half
 
-    def pop_touches(self) -> tuple[Touch, ...]:
+    def pop_deepest_touches(self) -> tuple[Touch, ...]:
         """Return the contacts with what the robot must not touch, and discard them."""
-        return self._contact_log.pop()
+        return self._contact_log.pop_deepest_touches()
 
     def snapshot(self) -> Snapshot:
         """Return the present state; call `release` when it is no longer needed.

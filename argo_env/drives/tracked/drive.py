@@ -13,7 +13,7 @@ from argo_env.closing import NonCopyable
 from argo_env.drives.drive import DriveStatus, Incident, Trouble
 from argo_env.drives.tracked.belts import Traction
 from argo_env.drives.tracked.body import TIME_STEP, TrackedBody
-from argo_env.drives.tracked.flippers import CAREFUL_SPEED, Flight, Flippers, find_flight
+from argo_env.drives.tracked.flippers import CAREFUL_SPEED, Flight, Flippers, measure_flight
 from argo_env.drives.tracked.follower import Follower
 from argo_env.navigation.path import Motion, Path, wrap
 from argo_env.robot.pose import BodyPose
@@ -200,7 +200,7 @@ class TrackedDrive(NonCopyable):
     def follow(self, path: Path, velocity: float | None) -> None:
         """Start to follow `path` at `velocity` (m/s) on the flat, or at the robot's own speeds."""
         self._clear()
-        self._follower = Follower(path, self._robot, velocity, self.body.pivot_x)
+        self._follower = Follower(path, self._robot, velocity, self.body.turn_center_x)
 
     def halt(self) -> None:
         """Stop the tracks, and discard the path; the robot comes to rest in the next steps."""
@@ -214,7 +214,7 @@ class TrackedDrive(NonCopyable):
         for _ in range(round(self.time_step / _CONTROL)):
             self._control()
             self.body.advance(round(_CONTROL / TIME_STEP))
-        touches = self.body.pop_touches()
+        touches = self.body.pop_deepest_touches()
         self._world.set_drive_touches(touches)
         if self._follower is not None and self._failure is None:
             self._check_motion(touches)
@@ -266,7 +266,7 @@ class TrackedDrive(NonCopyable):
         if not motion.on_stairs:
             return None
         if self._flight is None or self._flight[0] is not motion:
-            self._flight = motion, find_flight(self._world, motion, self._robot.track_gauge)
+            self._flight = motion, measure_flight(self._world, motion, self._robot.track_gauge)
         return self._flight[1]
 
     def _check_motion(self, touches: tuple[Touch, ...]) -> None:

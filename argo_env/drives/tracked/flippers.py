@@ -51,14 +51,14 @@ class Flight:
     def distances_to_top_and_foot(self, pose: BodyPose) -> tuple[float, float]:
         """Return the distances (m) along the tracks from the robot's middle to top edge and foot.
 
-        They are positive while the edge lies downhill of the middle, whichever way the robot
+        Each is positive while that edge lies downhill of the middle, whichever way the robot
         drives, and less than 0 while it lies uphill.
         """
         at = (pose.x - self.x) * self.ahead[0] + (pose.y - self.y) * self.ahead[1]
         return (self.top - at) / math.cos(pose.pitch), (self.foot - at) / math.cos(pose.pitch)
 
 
-def find_flight(world: World, motion: Motion, gauge: float) -> Flight:
+def measure_flight(world: World, motion: Motion, gauge: float) -> Flight:
     """Return the flight that the ground below the left track shows along a motion on stairs.
 
     `gauge` (m) is the distance between the middles of the tracks.

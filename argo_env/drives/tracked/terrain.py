@@ -43,9 +43,9 @@ class Terrain:
         """name of the part that tracks may stand on"""
 
     def elements_at(self, part: str, points: Sequence[Vector]) -> list[str]:
-        """Return the names of the elements at points (m) on the surface of a part of the terrain.
+        """Return the name of the nearest element to each of some points (m) on the terrain.
 
-        `part` is `_WALKING` or `_OTHER`.
+        Only elements of `part`, which is `_WALKING` or `_OTHER`, count.
         """
         return self._index[part].nearest_each(points)
 
@@ -103,7 +103,9 @@ class ContactLog:
         self._pending: list[StrongContact] = []
         self._deepest: dict[tuple[str, str], Touch] = {}
 
-    def add(self, contacts: list[tuple[Any, ...]], origin: Vector, axes: tuple[float, ...]) -> None:
+    def add_strong_contacts(
+        self, contacts: list[tuple[Any, ...]], origin: Vector, axes: tuple[float, ...]
+    ) -> None:
         """Add the contacts (rows of PyBullet's `getContactPoints`) with at least `_LEAST_FORCE` N.
 
         `origin` (m) and `axes`, a rotation matrix row by row, are those of the robot's frame.
@@ -119,14 +121,14 @@ class ContactLog:
         if len(self._pending) >= _BATCH:
             self._look_up()
 
-    def pop(self) -> tuple[Touch, ...]:
+    def pop_deepest_touches(self) -> tuple[Touch, ...]:
         """Return the deepest contact of each part with each element, and clear the log."""
         touches = tuple(touch for _, touch in self.deepest_touches())
         self._deepest = {}
         return touches
 
     def deepest_touches(self) -> tuple[tuple[tuple[str, str], Touch], ...]:
-        """Return the contacts that `pop` would return, in a form for `restore`; clear nothing."""
+        """Return what `pop_deepest_touches` would, in a form for `restore`; clear nothing."""
         if self._pending:
             self._look_up()
         return tuple(self._deepest.items())

@@ -31,7 +31,7 @@ def test_lasts_as_long_as_its_energy(robot):
 def test_a_worn_one_keeps_its_share_and_holds_less(robot):
     battery = Battery(robot)
     battery.charge = 0.6
-    battery.reduce_capacity_to(0.5)
+    battery.scale_capacity_and_energy(0.5)
     assert battery.charge == pytest.approx(0.6)
     battery.use(robot.battery * 0.3, 3600.0)
     assert battery.charge == pytest.approx(0.0, abs=1e-9)

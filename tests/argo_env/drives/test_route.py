@@ -101,7 +101,7 @@ def test_the_front_is_down_on_stairs_and_level_elsewhere(path, robot):
     for k, pose in enumerate(follow(drive, path)[:-1]):
         if k == 0 or not path.motions:
             continue
-        motion, share = table.last_begun_motion_at(k * 0.1)
+        motion, share = table.motion_and_share_at(k * 0.1)
         slope = math.atan(0.6) if motion.on_stairs else 0.0
         assert pose.pitch == pytest.approx(slope, abs=1e-6)
         assert 0.0 <= share <= 1.0

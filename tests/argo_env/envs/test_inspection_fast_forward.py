@@ -44,7 +44,7 @@ def results_of(seed: int) -> list[object]:
                 case 1:
                     result = run.drive_to(docks[chosen.choice([1, 2])])
                     if not (run.is_time_up or run.is_battery_empty):
-                        result = run.stay(chosen.choice([0.0, 10.0]), until_full=True)
+                        result = run.stay(chosen.choice([0.0, 10.0]), longer_until_full=True)
                 case _:
                     result = run.stay(chosen.choice([0.05, 0.3, 33.3, 200.0]))
             results += [result, run.now, run.charge, run.pose]

@@ -27,7 +27,7 @@ def standing():
 
 def pull(belts, contacts, speeds=(0.0, 0.0), velocity=STILL, spin=STILL, steps=1):
     for _ in range(steps):
-        wrench, other = belts.wrench(
+        wrench, other = belts.wrench_and_other_contacts(
             contacts, GROUND, speeds, STILL, LEVEL, velocity, spin, 1 / 240
         )
     return wrench, other

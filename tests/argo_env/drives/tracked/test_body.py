@@ -31,7 +31,7 @@ def test_rests_level_where_it_is_put(body):
     assert (pose.x, pose.y, pose.z) == pytest.approx((5.0, -2.05, -0.03), abs=0.002)
     assert (pose.yaw, pose.pitch, body.roll) == pytest.approx((0.0, 0.0, 0.0), abs=0.002)
     assert body.velocity == pytest.approx((0.0, 0.0), abs=1e-3)
-    assert body.pop_touches() == ()
+    assert body.pop_deepest_touches() == ()
 
 
 @pytest.mark.parametrize(("heading", "up"), [(0.0, 1), (math.pi, -1)])
@@ -126,12 +126,12 @@ def test_pressing_on_a_wall_is_a_touch(body):
     body.reset(BodyPose(2.5, 7.7, 0.0, 0.0))
     body.command(0.2, 0.0, 0.0)
     seconds(body, 1.5)
-    assert {t.element for t in body.pop_touches()} == {"contactor V-101"}
+    assert {t.element for t in body.pop_deepest_touches()} == {"contactor V-101"}
     body.command(-0.2, 0.0, 0.0)
     seconds(body, 1.0)
-    body.pop_touches()
+    body.pop_deepest_touches()
     seconds(body, 0.5)
-    assert body.pop_touches() == ()
+    assert body.pop_deepest_touches() == ()
 
 
 def dance(body):

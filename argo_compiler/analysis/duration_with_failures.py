@@ -85,7 +85,7 @@ class _ReactionTimes:
             return math.inf
         # A reaction of the same or a higher rank may be active when the time is up.
         return limit + sum(
-            self._time_to_end(r) for r in self.reactions if r.urgency >= last.urgency
+            self._time_to_end(r) for r in self.reactions if r.urgency_score >= last.urgency_score
         )
 
     def _time_to_end(self, reaction: Reaction) -> float:

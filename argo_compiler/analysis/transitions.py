@@ -7,7 +7,7 @@ from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.value_regions import Scale
 from argo_compiler.base.graphs import path_to, shortest_path_predecessors
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.hfsm.conditions import condition_text, conditions_text
+from argo_compiler.hfsm.conditions import condition_text, conjunction_text
 from argo_compiler.il import Action, Condition
 
 _MOST_SEARCHES = 10  # objects for which a path that does not measure them is searched
@@ -156,7 +156,7 @@ def _is_always_taken(study: Study, leaf: int, k: int) -> bool:
 
 def _always_taken(study: Study, leaf: int, k: int, index: int) -> Diagnostic:
     task = study.leaf_task(leaf)
-    held = conditions_text(task.transitions[index].conditions)
+    held = conjunction_text(task.transitions[index].conditions)
     after = len(task.transitions) > 1
     return study.diagnostic(
         "transition-always",

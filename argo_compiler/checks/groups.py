@@ -16,9 +16,9 @@ from argo_compiler.il import Action, Group, Mission, Stop, Task
 from argo_compiler.il.grouping import (
     GroupNesting,
     GroupRange,
-    group_ranges,
     parent_name,
     task_positions,
+    valid_ranges_parents_first,
 )
 from argo_compiler.il.subjects import Subjects
 from argo_compiler.il.transitions import default_target, failure_targets_by_field
@@ -38,7 +38,7 @@ def check_groups(mission: Mission) -> tuple[Diagnostic, ...]:
     """
     if not mission.groups:
         return ()
-    ranges = group_ranges(mission)
+    ranges = valid_ranges_parents_first(mission)
     subjects = Subjects(mission)
     diagnostics = [
         *_check_names(mission.groups, subjects),

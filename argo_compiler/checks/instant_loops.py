@@ -6,7 +6,7 @@ from graphlib import CycleError, TopologicalSorter
 from argo_compiler.checks.checked_item import CheckedItem
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Action, Mission, OnFailure, Task
-from argo_compiler.il.grouping import GroupRange, group_ranges
+from argo_compiler.il.grouping import GroupRange, valid_ranges_parents_first
 from argo_compiler.il.subjects import Subjects
 
 MIN_TIME_S = 1e-3
@@ -90,7 +90,7 @@ def _unlimited_groups(mission: Mission) -> Iterator[GroupRange]:
     groups around.
     """
     around: list[tuple[GroupRange, int]] = []
-    for inner in group_ranges(mission):
+    for inner in valid_ranges_parents_first(mission):
         while around and around[-1][0].last < inner.first:
             around.pop()
         count = inner.group.max_repeat_count

@@ -7,7 +7,7 @@ from graphlib import CycleError, TopologicalSorter
 from argo_compiler.base.graphs import Successors, components, reachable_from
 from argo_compiler.diagnostics import Diagnostic, Severity, diagnostic_of
 from argo_compiler.il import Mission, Order
-from argo_compiler.il.velocities import MISSION_START, transition_pairs
+from argo_compiler.il.velocities import MISSION_START, possible_successor_pairs
 
 _SHOWN = 20
 """how many violated pairs, and tasks of a cycle, are reported"""
@@ -90,7 +90,7 @@ class _TaskGraph:
         self.position = {name: i for i, name in enumerate(self.names)}
         following: list[dict[int, None]] = [{} for _ in self.names]
         begun = False
-        for source, target in transition_pairs(mission):
+        for source, target in possible_successor_pairs(mission):
             if not begun:
                 following[0][self.position.get(target, 0)] = None
                 begun = True

@@ -27,7 +27,7 @@ def check_reactions(mission: Mission) -> Iterator[Diagnostic]:
         yield from _check_poses(item, reaction, mission)
         yield from _check_rank(item, reaction, ranked)
         if reaction.response is not Response.REPORT:
-            ranked.setdefault(reaction.urgency, reaction)
+            ranked.setdefault(reaction.urgency_score, reaction)
         yield from _check_battery(item, reaction)
         yield from _check_unused(item, reaction)
         if _may_hold(reaction.response) and reaction.until is not None:
@@ -68,7 +68,7 @@ def _check_rank(
     `ranked` has, by rank, the first of the previous reactions in the mission's list; it is not
     changed.
     """
-    other = ranked.get(reaction.urgency)
+    other = ranked.get(reaction.urgency_score)
     if (
         other is None
         or reaction.response in (Response.REPORT, Response.ABORT)
@@ -80,7 +80,8 @@ def _check_rank(
     yield item.diagnostic(
         "il.equal-priority",
         f"the reactions to {other.event} and {reaction.event} have the same priority "
-        f"{reaction.urgency[1]}: the one whose event occurs later waits until the other is over",
+        f"{reaction.urgency_score[1]}: the one whose event occurs later waits until the other is "
+        "over",
         "give the more urgent one the higher priority",
         ".priority",
     )
@@ -135,7 +136,11 @@ def _check_until(
         )
         return
     other = first.get(reaction.until) if reaction.until else None
-    if other and other.response is not Response.REPORT and other.urgency > reaction.urgency:
+    if (
+        other
+        and other.response is not Response.REPORT
+        and other.urgency_score > reaction.urgency_score
+    ):
         yield item.diagnostic(
             "il.until-answered",
             f"the reaction to {reaction.event} waits for {reaction.until}, which has a reaction of "

@@ -8,7 +8,12 @@ from argo_compiler.editing.errors import EditConflict, ambiguous, conflict, unkn
 from argo_compiler.editing.linked_list import LinkedList, ListItem
 from argo_compiler.editing.targets import default_targets, with_default_target, with_renamed_targets
 from argo_compiler.il import Action, Group, Mission, Task
-from argo_compiler.il.grouping import GroupNesting, GroupRange, group_ranges, parent_name
+from argo_compiler.il.grouping import (
+    GroupNesting,
+    GroupRange,
+    parent_name,
+    valid_ranges_parents_first,
+)
 from argo_compiler.il.transitions import default_target
 
 
@@ -332,7 +337,7 @@ def _leads_to(task: Task, following: str | None) -> bool:
 
 def _names_match_nesting(mission: Mission) -> bool:
     """Return True if the names and the ranges of the mission's groups give the same nesting."""
-    ranges = group_ranges(mission)
+    ranges = valid_ranges_parents_first(mission)
     names = {r.group.name for r in ranges}
     if not len(names) == len(ranges) == len(mission.groups):
         return False

@@ -25,7 +25,7 @@ from argo_compiler.il import (
 )
 from argo_compiler.il.grouping import GroupNesting, GroupRange
 from argo_compiler.il.reserved import RETURN_TASK
-from argo_compiler.il.transitions import default_target, find_start_action_task
+from argo_compiler.il.transitions import default_target, find_start_pose_task
 
 MAX_MSEC = 2**32 - 1
 
@@ -78,7 +78,7 @@ class _Tree:
     def __init__(self, mission: Mission) -> None:
         self.mission = mission
         self.layout = GroupNesting.from_mission(mission)
-        start = find_start_action_task(mission)
+        start = find_start_pose_task(mission)
         self.start = start
         self.positions = {task.name: i for i, task in enumerate(mission.tasks, 1)}
         self.end = len(mission.tasks) + 1

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from argo_compiler.hfsm import Composite, Hfsm, Leaf, StateTransition, TransitionKind
-from argo_compiler.hfsm.conditions import conditions_text, wait_text
+from argo_compiler.hfsm.conditions import conjunction_text, wait_end_text
 from argo_compiler.hfsm.model import DONE
 from argo_compiler.il import Afterwards, Reaction, Response, Stop, Task, WaitRule
 
@@ -113,7 +113,7 @@ def transition_label(transition: StateTransition, group: Composite | None = None
     `group` is the group that the transition belongs to; None if it belongs to a task.
     """
     if transition.kind is TransitionKind.CONDITIONAL:
-        return conditions_text(transition.conditions)
+        return conjunction_text(transition.conditions)
     if transition.kind is TransitionKind.FAILURE:
         return "failed, abort" if transition.target == DONE else "failed"
     if transition.kind is TransitionKind.MISSED:
@@ -132,7 +132,7 @@ def transition_label(transition: StateTransition, group: Composite | None = None
     if group.repeat.every:
         limits.append(f"every {group.repeat.every:g} s")
     if group.repeat.until:
-        limits.append(f"until {conditions_text(group.repeat.until)}")
+        limits.append(f"until {conjunction_text(group.repeat.until)}")
     return ", ".join(["repeat", *limits])
 
 
@@ -164,7 +164,7 @@ def _wait_label(wait: WaitRule) -> str:
     if wait.duration is not None:
         return f"wait {wait.duration:g} s" if wait.duration else "junction"
     limit = "" if wait.limit is None else f", at most {wait.limit:g} s"
-    return f"wait until {wait_text(wait)}{limit}"
+    return f"wait until {wait_end_text(wait)}{limit}"
 
 
 def reaction_label(reaction: Reaction) -> str:

@@ -13,7 +13,7 @@ from argo_compiler.base.number_text import number_text
 from argo_compiler.export.scxml_control import (
     ControlRegion,
     outcome_code,
-    round_due_time,
+    round_due_expression,
     write_outcome_states,
 )
 from argo_compiler.export.scxml_data import (
@@ -32,7 +32,7 @@ from argo_compiler.export.xml import Attributes, XmlWriter
 from argo_compiler.hfsm import Composite, Hfsm, Leaf, Outcome, StateTransition, TransitionKind
 from argo_compiler.hfsm.model import DONE, RETURN, RepeatRule
 from argo_compiler.il import Condition, ConditionType, Mission, Task
-from argo_compiler.il.transitions import find_start_action_task
+from argo_compiler.il.transitions import find_start_pose_task
 
 NAMESPACE = "http://www.w3.org/2005/07/scxml"
 
@@ -47,7 +47,7 @@ def to_scxml(mission: Mission, hfsm: Hfsm, timers: bool = False) -> str:
     Without, the time-outs come from outside like all other events, so that any clock can drive the
     machine.
     """
-    start = find_start_action_task(mission)
+    start = find_start_pose_task(mission)
     return _Document(hfsm, start, timers).text()
 
 
@@ -206,7 +206,9 @@ class _Document:
             if repeat.every:
                 due = f"entered_{n} + (round_{n} - 1) * {number_text(repeat.every)}"
                 with self.xml.nest_in("if", {"cond": f"{due} > {clock}"}):
-                    self._assign([("awaits", str(n)), ("due_round", round_due_time(n, repeat))])
+                    self._assign(
+                        [("awaits", str(n)), ("due_round", round_due_expression(n, repeat))]
+                    )
 
     # Tasks
 
@@ -249,7 +251,7 @@ class _Document:
                 ("visit", "0" if waits else "count"),
                 ("first", "count"),
                 ("place", f"'{id}'"),
-                ("object", str(self.ids.measured_object_number(task))),
+                ("object", str(self.ids.measured_object_number_or_0(task))),
                 ("limit", number_text(0 if waits else task.time_limit or 0)),
                 ("earliest", number_text(0 if window is None else window.earliest)),
                 ("occurred", "0"),
@@ -361,7 +363,7 @@ class _Document:
         )
         with xml.nest_in("transition", {"event": event, "cond": cond, "target": target}):
             self._assign([("now", "_event.data.time"), ("clock", "now - lost")])
-            if k := self.ids.measured_object_number(task):
+            if k := self.ids.measured_object_number_or_0(task):
                 self._assign(
                     [
                         (f"known_{k}", str(_FAILED)),

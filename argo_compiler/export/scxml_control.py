@@ -144,7 +144,7 @@ class ControlRegion:
                 self._assign([("mode", 0), ("lost", "now - clock"), ("look", 1)])
                 for n, repeat in self.rounds:
                     with self.xml.nest_in("if", {"cond": f"awaits == {n}"}):
-                        self._assign([("due_round", round_due_time(n, repeat))])
+                        self._assign([("due_round", round_due_expression(n, repeat))])
                 for n, counted in self.timed.items():
                     with self.xml.nest_in("if", {"cond": f"In('g{n}') && until_{n} < {NEVER}"}):
                         write_group_timer_start(self.xml, n, counted)
@@ -263,7 +263,7 @@ class ControlRegion:
         if InterruptGuard.HIGHER_WAITS in row.when:
             assert active is not None
             for higher in self.reactions.values():
-                if higher.urgency > active.urgency:
+                if higher.urgency_score > active.urgency_score:
                     waits = _conjunction([cond or "", f"since_{higher.event} != 0"])
                     target = self._target(row.target, None)
                     self._transition(row, stage, event, waits, target, active, own, kind)
@@ -286,7 +286,7 @@ class ControlRegion:
         guards += (
             f"(since_{r.event} == 0 || since_{reaction.event} < since_{r.event})"
             for r in self.reactions.values()
-            if r.urgency == reaction.urgency and r is not reaction
+            if r.urgency_score == reaction.urgency_score and r is not reaction
         )
         return " && ".join(guards)
 
@@ -407,7 +407,7 @@ def _events(own: Reaction | None, active: Reaction | None) -> dict[str, str]:
     }
 
 
-def round_due_time(n: int, repeat: RepeatRule) -> str:
+def round_due_expression(n: int, repeat: RepeatRule) -> str:
     """Return the expression for the time at which the present round of group `n` is due to begin.
 
     The time is in s since the mission's start.

@@ -75,7 +75,7 @@ class ChartIds:
     def _number(self, object_id: str) -> None:
         self.objects.setdefault(object_id, len(self.objects) + 1)
 
-    def measured_object_number(self, task: Task) -> int:
+    def measured_object_number_or_0(self, task: Task) -> int:
         """Return the chart's number of the task's checkpoint, or 0 if it measures none."""
         if task.action is not Action.MEASURE or task.object_id is None:
             return 0
@@ -171,20 +171,20 @@ def write_group_timer_start(xml: XmlWriter, n: int, counts_interruptions: bool) 
     """Write the start of the engine's own timer for the time-out of group `n`.
 
     The caller writes starts and cancellations at such places of the chart that the timer runs while
-    the group is active and the mission is not interrupted. Unless `counts_interruptions`, the
-    time-out is later by the time that interruptions took.
+    the group is active and the mission is not interrupted. Unless `counts_interruptions`, a start
+    adds the time that interruptions took until then to the time-out.
     """
     deadline = f"until_{n}" if counts_interruptions else f"until_{n} + lost"
     _send(xml, f"timeout.g{n}", f"timer_{n}", deadline)
 
 
-def write_timer_start(xml: XmlWriter, deadline: str) -> None:
+def write_timer_start(xml: XmlWriter, deadline_name: str) -> None:
     """Write the start of the engine's own timer for a deadline of `DEADLINES`.
 
     The engine starts the timer only if the deadline is set at that time of the run.
     """
-    with xml.nest_in("if", {"cond": f"due_{deadline} != 0"}):
-        _send(xml, f"timeout.{deadline}", f"timer_{deadline}", f"due_{deadline}")
+    with xml.nest_in("if", {"cond": f"due_{deadline_name} != 0"}):
+        _send(xml, f"timeout.{deadline_name}", f"timer_{deadline_name}", f"due_{deadline_name}")
 
 
 def write_timer_cancel(xml: XmlWriter, deadline: str) -> None:

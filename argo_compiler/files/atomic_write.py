@@ -20,7 +20,8 @@ _MAX_LINKS = 40
 def is_stream(path: Path) -> bool:
     """Return True if a file at the path can only be written to, not replaced by another one.
 
-    That is so for a terminal, a pipe, a device, and a file descriptor that this process has open.
+    That is so for a terminal, a pipe, a device, and the path of an open file descriptor such as
+    `/dev/fd/3`.
     """
     absolute = path.absolute()
     if absolute in _STREAMS or absolute.parent in _OPEN_FILES:

@@ -7,7 +7,7 @@ from argo_compiler.base.nearest_name import nearest_name
 from argo_compiler.files.json_places import JsonPath
 
 
-def similar_field_hint(model: type[Model], path: JsonPath) -> str:
+def unknown_field_hint(model: type[Model], path: JsonPath) -> str:
     """Return a hint for a field that `model` does not have: a similar name, or to check it.
 
     The path leads to the field in the JSON data of the model.

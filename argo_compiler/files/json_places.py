@@ -49,14 +49,14 @@ class JsonText:
         column = start - self._lines[line - 1] + 1
         return Span(line=line, column=column, length=max(1, end - start))
 
-    def line(self, number: int) -> str:
+    def line_text(self, line_number: int) -> str:
         """Return the text of a line (from 1) without its line end."""
-        return self.text[self._lines[number - 1] : self._line_end(number)].rstrip("\r")
+        return self.text[self._lines[line_number - 1] : self._line_end(line_number)].rstrip("\r")
 
     def _line_end(self, number: int) -> int:
         return self._lines[number] - 1 if number < len(self._lines) else len(self.text)
 
-    def values(self) -> Iterator[JsonValue]:
+    def iter_all_values(self) -> Iterator[JsonValue]:
         """Yield all values, containers too, in the order of their first characters in the text.
 
         This is not recursive, so any depth of nesting is possible.
@@ -104,7 +104,7 @@ class _Node:
     children: dict[Step, "_Node"] = field(default_factory=dict)
 
 
-def find_places(text: JsonText, paths: Collection[JsonPath]) -> dict[JsonPath, Span]:
+def find_places_or_parents(text: JsonText, paths: Collection[JsonPath]) -> dict[JsonPath, Span]:
     """Return, by path, the place in the text of the value there, including its key if it has one.
 
     The place of an object without a key is that of its first member, which shows more than a brace.
@@ -121,7 +121,7 @@ def find_places(text: JsonText, paths: Collection[JsonPath]) -> dict[JsonPath, S
 
 def _locate(text: JsonText, root: _Node) -> None:
     enclosing: list[_Node | None] = []  # node of each open container; None if no path leads there
-    for value in text.values():
+    for value in text.iter_all_values():
         del enclosing[value.depth :]
         if value.depth == 0:
             node: _Node | None = root
@@ -153,12 +153,12 @@ def _place(text: JsonText, root: _Node, path: JsonPath) -> Span:
 def find_duplicate_keys(text: JsonText, limit: int) -> dict[JsonPath, Span]:
     """Return the paths of keys that occur repeatedly in their object, with the first key's place.
 
-    At most `limit` paths are returned. `find_places` returns the last place of a key.
+    At most `limit` paths are returned. `find_places_or_parents` returns the last place of a key.
     """
     duplicates: dict[JsonPath, Span] = {}
     path: list[Step] = []
     seen: list[dict[Step, tuple[int, int]]] = [{}]  # for each depth, the keys of the open object
-    for value in text.values():
+    for value in text.iter_all_values():
         del path[max(0, value.depth - 1) :], seen[value.depth + 1 :]
         if value.depth:
             path.append(value.step)

@@ -53,22 +53,22 @@ class UnreadableFile(FileError, Invalid):
     """Raised when a file exists, but can't be read or is not of the expected kind."""
 
 
-def read_bytes(path: Path, kind: str, max_bytes: int, magic: bytes = b"") -> bytes:
+def read_bytes(path: Path, kind: str, max_bytes: int, whole_if_magic: bytes = b"") -> bytes:
     """Return the content of a file.
 
     Args:
         path: The file.
         kind: What the file should be, such as `script`; for messages.
         max_bytes: Size of the largest file that is accepted.
-        magic: First bytes of all files of this kind. If the file has others, only its first bytes,
-            as many as `magic` has, are returned.
+        whole_if_magic: First bytes of all files of this kind. If the file has others, only as many
+            of its first bytes as `whole_if_magic` has are returned.
 
     Raises:
         FileError: The file does not exist, can't be read, or is too large.
     """
     with open_file(path, kind) as file:
-        content = file.read(len(magic))
-        if content == magic:
+        content = file.read(len(whole_if_magic))
+        if content == whole_if_magic:
             size = os.fstat(file.fileno()).st_size
             # `read(n)` allocates n bytes at once, and pipes report no size.
             fits = 0 < size <= max_bytes

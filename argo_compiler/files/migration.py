@@ -28,8 +28,8 @@ _NEW_FIELDS = {
 """Fields that were added in version 3, by list of the mission."""
 
 
-def mark_as_current_version(data: dict[str, Any]) -> tuple[dict[str, Any], int]:
-    """Return the data of a mission marked as the current version, and the version they had.
+def copy_with_current_version(data: dict[str, Any]) -> tuple[dict[str, Any], int]:
+    """Return the data with the current version in a copy, and the version that they had.
 
     All fields of older versions exist in the current one. After the data have become a mission,
     `newer_fields` finds fields that the older version did not have, and `upgrade` restores the
@@ -43,7 +43,7 @@ def mark_as_current_version(data: dict[str, Any]) -> tuple[dict[str, Any], int]:
 
 
 def newer_fields(mission: Mission, version: int) -> Iterator[tuple[JsonPath, str]]:
-    """Yield the path and the name of each field that is set but did not exist in `version`.
+    """Yield path and name of each non-default field that is newer than `version`.
 
     This includes the `action` of WAIT tasks, with the name `WAIT`.
     """

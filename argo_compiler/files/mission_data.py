@@ -13,7 +13,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, diagnostic_of
-from argo_compiler.files.fields import similar_field_hint
+from argo_compiler.files.fields import unknown_field_hint
 from argo_compiler.files.json_places import JsonPath, format_path
 from argo_compiler.il import Group, Mission, Reaction, Task
 
@@ -156,7 +156,7 @@ def _faults(
         if fault["type"] == "extra_forbidden":
             message, hint = (
                 "the mission format has no such field",
-                similar_field_hint(Mission, path),
+                unknown_field_hint(Mission, path),
             )
         where = format_path(path) or "the file"
         yield unplaced("file.wrong-field", f"{where}: {message}", hint, path)

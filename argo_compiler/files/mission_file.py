@@ -18,7 +18,7 @@ from argo_compiler.files.json_places import (
     JsonPath,
     JsonText,
     find_duplicate_keys,
-    find_places,
+    find_places_or_parents,
     format_path,
 )
 from argo_compiler.files.loading import (
@@ -28,7 +28,7 @@ from argo_compiler.files.loading import (
     read_bytes,
     require_size,
 )
-from argo_compiler.files.migration import VERSION, mark_as_current_version, newer_fields, upgrade
+from argo_compiler.files.migration import VERSION, copy_with_current_version, newer_fields, upgrade
 from argo_compiler.files.mission_data import (
     MAX_FAULTS,
     UnplacedDiagnostic,
@@ -60,7 +60,8 @@ class MissionFile:
     ) -> tuple[Diagnostic, ...]:
         """Return the diagnostics with their places in the file, found by their subjects.
 
-        The new places replace those in the script from which the mission was imported.
+        The new places replace those in the script from which the mission was imported. A diagnostic
+        without a subject loses its place.
         """
         path = Subjects(self.mission).subject_path
         unplaced = (
@@ -106,7 +107,7 @@ def decode_mission(content: bytes, source_name: str) -> MissionFile:
         _refuse(source_name, text, [*faults, _not_a_mission()])
     if _RECORD_FIELDS.issubset(data):
         _refuse(source_name, text, [*faults, _run_record()])
-    current, written_as = mark_as_current_version(data)
+    current, written_as = copy_with_current_version(data)
     version = current.get("version", VERSION)
     if version != VERSION or isinstance(version, bool):
         _refuse(source_name, text, [*faults, _unsupported_version(version)])
@@ -165,14 +166,14 @@ def _add_places(text: str, faults: Iterable[UnplacedDiagnostic]) -> list[Diagnos
     faults = list(faults)
     paths = [path for _, path in faults if path is not None]
     lines = JsonText(text)
-    spans = find_places(lines, paths) if paths else {}
+    spans = find_places_or_parents(lines, paths) if paths else {}
     return [
         _with_span(lines, diagnostic, spans[path] if path else None) for diagnostic, path in faults
     ]
 
 
 def _with_span(lines: JsonText, diagnostic: Diagnostic, span: Span | None) -> Diagnostic:
-    excerpt = lines.line(span.line) if span else None
+    excerpt = lines.line_text(span.line) if span else None
     if excerpt is not None and len(excerpt) > MAX_EXCERPT:
         excerpt = None
     return diagnostic.model_copy(update={"span": span, "excerpt": excerpt})

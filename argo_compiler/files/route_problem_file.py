@@ -17,7 +17,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError, create_model
 from argo_compiler.base.errors import Invalid, Unavailable
 from argo_compiler.base.nearest_name import nearest_name
 from argo_compiler.files.atomic_write import write_atomically
-from argo_compiler.files.json_places import JsonPath, JsonText, find_places, format_path
+from argo_compiler.files.json_places import JsonPath, JsonText, find_places_or_parents, format_path
 from argo_compiler.files.loading import decode_text, read_bytes
 from argo_compiler.route.problem import (
     NEVER,
@@ -135,7 +135,7 @@ def _fault_text(error: ValidationError, text: str) -> str:
     first = error.errors(include_url=False)[0]
     path: JsonPath = first["loc"]
     owner = path[:-1] if first["type"] in {"missing", "extra_forbidden"} else path
-    span = find_places(JsonText(text), [owner]).get(owner) if owner else None
+    span = find_places_or_parents(JsonText(text), [owner]).get(owner) if owner else None
     place = f":{span.line}:{span.column}" if span else ""
     what = first["msg"][:1].lower() + first["msg"][1:]
     if first["type"] == "extra_forbidden":

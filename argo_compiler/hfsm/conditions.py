@@ -112,15 +112,15 @@ def condition_text(condition: Condition) -> str:
     return text
 
 
-def conditions_text(conditions: Iterable[Condition]) -> str:
+def conjunction_text(conditions: Iterable[Condition]) -> str:
     """Return conditions that must all be satisfied, as text."""
     return " and ".join(map(condition_text, conditions))
 
 
-def wait_text(rule: WaitRule) -> str:
+def wait_end_text(rule: WaitRule) -> str:
     """Return what ends a WAIT, such as `gas leak or #4 < 2`; empty if only its duration ends it."""
     ends = [] if rule.event is None else [rule.event.replace("_", " ")]
-    ends += [conditions_text(rule.conditions)] if rule.conditions else []
+    ends += [conjunction_text(rule.conditions)] if rule.conditions else []
     return " or ".join(ends)
 
 

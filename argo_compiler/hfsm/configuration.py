@@ -79,7 +79,7 @@ class Configuration:
         """The active task; None before the start and at the end of the mission."""
         return self.visit.leaf
 
-    def new_number(self) -> int:
+    def new_visit_or_turn_number(self) -> int:
         self.last_number += 1
         return self.last_number
 
@@ -87,13 +87,14 @@ class Configuration:
         """Return the time (s) on a group's clock at `now`; it is not 0 when the group starts."""
         return self._clock_time(now, group) + self._clock_offset(group)
 
-    def take_transition(
+    def take_first_possible_transition(
         self, transitions: tuple[CompiledTransition, ...], now: float
     ) -> CompiledTransition:
         """Take the first of these transitions that is possible at `now`, and return it.
 
-        If none before it is possible, the last one is taken. If the transition completes a group's
-        round, one of the group's own transitions is taken and returned instead.
+        If none before it is possible, the last one is taken. If the transition completes the round
+        of a group, one of the group's own transitions, to its next round or out of it, is taken and
+        returned instead.
         """
         if self.awaited_round is not None:
             self.start_awaited_round(now)
@@ -112,16 +113,16 @@ class Configuration:
             self._await_round(self.frames[repeated.depth], now)
         return transition
 
-    def enter_initial(self, leaf: LeafNode | None, now: float) -> None:
-        """Enter the mission's first task, or its end if `leaf` is None."""
-        self._enter(leaf, 0, None, now)
+    def enter_first_task_or_end(self, first_leaf: LeafNode | None, now: float) -> None:
+        """Enter the mission's first task, or go to the mission's end if `first_leaf` is None."""
+        self._enter(first_leaf, 0, None, now)
 
     def interrupt(self, now: float) -> None:
         if self.interrupted_at is None:
             self.interrupted_at = now
             # A new turn: the action is cancelled and started again, even if the interruption is
             # over before the driver calls the executor again.
-            self.visit.turn = self.new_number()
+            self.visit.turn = self.new_visit_or_turn_number()
             self.group_due = self.visit_due = self.visit.action_due = math.inf
 
     def resume(self, now: float) -> None:
@@ -132,10 +133,10 @@ class Configuration:
         if self.interrupted_at is not None:
             self.interrupted_s += now - self.interrupted_at
             self.interrupted_at = None
-        self.schedule_wait_check(now)
+        self.schedule_wait_check_now(now)
         self._update_group_due(now)
 
-    def advance_group_clocks(self, by_hand_seconds: float, now: float) -> None:
+    def advance_stopped_group_clocks(self, by_hand_seconds: float, now: float) -> None:
         """Advance the clocks of groups by the duration (s) of a task done by hand.
 
         Groups that count interruptions are not affected: their clocks have run meanwhile.
@@ -155,9 +156,9 @@ class Configuration:
     def schedule_check_if_waiting(self, now: float) -> None:
         """Let the active task, if it is a WAIT, check its conditions, as a reading has changed."""
         if self.visit.leaf is not None and self.visit.leaf.wait is not None:
-            self.schedule_wait_check(now)
+            self.schedule_wait_check_now(now)
 
-    def schedule_wait_check(self, now: float) -> None:
+    def schedule_wait_check_now(self, now: float) -> None:
         """Schedule a check of the active WAIT's conditions at `now`, or after the interruption."""
         self.visit.check_at = now
         self.update_visit_due()
@@ -201,9 +202,9 @@ class Configuration:
         elif leaf.is_timed or visit.action_due < math.inf:
             self.visit_due = visit.next_due(self.started_at)
 
-    def clear(self) -> None:
+    def leave_all_states(self) -> None:
         """Leave all states, as the mission has ended."""
-        number = self.new_number()
+        number = self.new_visit_or_turn_number()
         self.visit = TaskVisit(None, number, number, 0.0)
         self.frames.clear()
         self.awaited_round = None

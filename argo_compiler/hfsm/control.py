@@ -54,11 +54,11 @@ class Control:
         return self.interrupt_state.stage is not Stage.GOING
 
     @property
-    def driving(self) -> bool:
+    def reaction_is_driving(self) -> bool:
         return self.interrupt_state.stage is Stage.DRIVING
 
     @property
-    def holding(self) -> bool:
+    def reaction_is_holding(self) -> bool:
         return self.interrupt_state.stage is Stage.HOLDING
 
     @property
@@ -68,7 +68,7 @@ class Control:
         return due if due < self.hold_due else self.hold_due
 
     def start(self, supervised: bool) -> None:
-        """Start the mission, or continue it as restored; `supervised` pauses it at once."""
+        """Start the mission, or continue it as restored; if `supervised`, paused until `resume`."""
         if supervised:
             self.pause("it begins under supervision")
         if self.interrupted:
@@ -100,7 +100,7 @@ class Control:
                 if configuration.visit.leaf is None:
                     mission.step()
                     self._advance(Trigger.DONE)
-                elif configuration.visit_due <= now and mission.end_wait():
+                elif configuration.visit_due <= now and mission.end_wait_if_over():
                     continue
                 elif mission.time_up_at <= now:
                     self.handle_event(EventKind.TIME_UP, "")
@@ -122,8 +122,8 @@ class Control:
     # Events and reactions
 
     def handle_event(self, kind: EventKind, detail: str) -> None:
-        """Add an event to the trace, and start the mission's reaction to it if it has one."""
-        self.mission.record_event(kind)
+        """Add an event to the trace; its reaction, if any, starts or waits, by its urgency."""
+        self.mission.handle_wait_or_time_up_event(kind)
         self.mission.add_entry(Cause.REPORT, event=kind, detail=detail)
         self._advance(Trigger.EVENT, kind)
 
@@ -143,7 +143,7 @@ class Control:
 
     def give_back(self, by_hand: Sequence[ByHand]) -> None:
         """Resume the mission after a person has done or skipped the tasks in `by_hand`."""
-        self.mission.add_by_hand(by_hand, self.mission.now)
+        self.mission.queue_tasks_done_by_hand(by_hand, self.mission.now)
         self.resume()
 
     def resume(self) -> None:
@@ -200,7 +200,7 @@ class Control:
             started = self.active_reaction
             assert started is not None
             self._add_reaction_entry(started)
-            self.drive_turn = mission.configuration.new_number()
+            self.drive_turn = mission.configuration.new_visit_or_turn_number()
         elif row.target is Stage.HOLDING:
             self.held_since = mission.now
             mission.add_entry(Cause.HOLD, event=active)
@@ -238,7 +238,7 @@ class Control:
     def _update_hold_due(self) -> None:
         self.hold_due = math.inf
         active = self.active_reaction
-        if active is None or not self.holding or self.paused:
+        if active is None or not self.reaction_is_holding or self.paused:
             return
         limit = active.state.reaction.hold_limit
         if limit is not None:

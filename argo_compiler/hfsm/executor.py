@@ -122,11 +122,11 @@ class Executor:
         mission.now = _seconds(now)
         mission.configuration = restore_configuration(control.tables, progress, now, _seconds(away))
         control.interrupt_state = restore_interrupt_state(control.tables, progress)
-        control.drive_turn = mission.configuration.new_number()
+        control.drive_turn = mission.configuration.new_visit_or_turn_number()
         if progress.reaction is not None:
             control.held_since = now - progress.reaction.held - away
         for done in progress.by_hand:
-            mission.add_by_hand((done,), now if done.age is None else now - away)
+            mission.queue_tasks_done_by_hand((done,), now if done.age is None else now - away)
         for tally in progress.tallies:
             mission.tallies[tally.task] = [tally.done, tally.failed, tally.by_hand]
         mission.failed = progress.failed
@@ -151,7 +151,7 @@ class Executor:
             mission.now = now
             if self._fresh:
                 mission.configuration.started_at = now
-                mission.configuration.enter_initial(control.tables.initial, now)
+                mission.configuration.enter_first_task_or_end(control.tables.initial, now)
             mission.add_entry(Cause.START if self._fresh else Cause.RESTORE, source=None)
             if control.outcome is None:
                 limit = control.tables.max_duration
@@ -255,7 +255,7 @@ class Executor:
             reaction=reaction,
             waiting=waiting,
             outcome=control.outcome,
-            by_hand=mission.by_hand_progress(),
+            by_hand=mission.pending_tasks_done_by_hand(),
         )
 
     @property
@@ -291,7 +291,7 @@ class Executor:
     @property
     def holding(self) -> bool:
         """True if the active reaction holds: the robot stands still and waits."""
-        return self._control.holding
+        return self._control.reaction_is_holding
 
     @property
     def configuration(self) -> tuple[str, ...]:
@@ -374,7 +374,7 @@ class Executor:
             pass
         elif interrupt_state.active is not None:
             active = control.active_reaction
-            if control.driving and active is not None:
+            if control.reaction_is_driving and active is not None:
                 leaf, task, turn = None, active.task, control.drive_turn
         elif leaf is not None and leaf.wait is None and mission.configuration.awaited_round is None:
             task, turn = leaf.task, visit.turn
@@ -430,7 +430,7 @@ class Executor:
         if self._running_visit == mission.configuration.visit.number:
             mission.complete(leaf)
         else:
-            mission.record_late_success(leaf)
+            mission.record_success_after_leaving(leaf)
 
     def _end_action(self, event: ActionFailed | ActionStopped) -> None:
         """Handle the failure of the running action, or its end after a cancellation."""
@@ -447,12 +447,12 @@ class Executor:
         if leaf.time_limit is not None:
             mission.clear_time_limit()
         if failure is not None and self._running_turn == mission.configuration.visit.turn:
-            mission.fail(leaf, failure.reason, failure.unreadable)
+            mission.retry_or_fail(leaf, failure.reason, failure.unreadable)
 
     def _is_active_drive(self) -> bool:
         """Return whether the drive that has just ended belongs to the active reaction."""
         control = self._control
-        return control.driving and control.drive_turn == self._running_turn
+        return control.reaction_is_driving and control.drive_turn == self._running_turn
 
     def _require_time_order(self, now: float) -> None:
         if not self._control.mission.now <= _seconds(now):

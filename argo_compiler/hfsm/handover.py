@@ -7,7 +7,7 @@ from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, diagnostic_of
 from argo_compiler.hfsm.progress import ByHand, GroupProgress, Progress
 from argo_compiler.il import Action, Mission, OnFailure, Response
-from argo_compiler.il.grouping import group_ranges
+from argo_compiler.il.grouping import valid_ranges_parents_first
 from argo_compiler.il.reserved import RETURN_TASK
 
 AnyModel = TypeVar("AnyModel", bound=Model)
@@ -107,7 +107,9 @@ def _match_groups(
     """
     position = next((i for i, t in enumerate(mission.tasks) if t.name == progress.active), None)
     around = [
-        r.group.name for r in group_ranges(mission) if position is not None and r.contains(position)
+        r.group.name
+        for r in valid_ranges_parents_first(mission)
+        if position is not None and r.contains(position)
     ]
     known = {p.group: p for p in progress.groups}
     diagnostics = [

@@ -39,8 +39,8 @@ class InterruptState:
         return tuple(p for p in self.pending if p.event is not self.active)
 
     @property
-    def until_occurred(self) -> bool:
-        """True if the event for which the active reaction would hold has occurred."""
+    def active_until_occurred(self) -> bool:
+        """True if the event that ends the active reaction's hold occurred, even before the hold."""
         return any(p.until_occurred for p in self.pending if p.event is self.active)
 
 
@@ -108,14 +108,16 @@ def _evaluate_guard(
         case InterruptGuard.PAUSED:
             return state.paused
         case InterruptGuard.OVER:
-            return state.until_occurred
+            return state.active_until_occurred
         case InterruptGuard.NEW:
             return all(pending.event is not event for pending in state.pending)
         case InterruptGuard.SOME_WAITS:
             return bool(state.waiting)
         case InterruptGuard.HIGHER_WAITS:
             assert active is not None
-            return any(reactions[p.event].urgency > active.urgency for p in state.waiting)
+            return any(
+                reactions[p.event].urgency_score > active.urgency_score for p in state.waiting
+            )
         case _:
             return evaluate_static_guard(guard, own, active, event)
 
@@ -135,7 +137,7 @@ def evaluate_static_guard(
     assert active is not None
     match guard:
         case InterruptGuard.HIGHER:
-            return own is not None and own.urgency > active.urgency
+            return own is not None and own.urgency_score > active.urgency_score
         case InterruptGuard.AWAITED:
             return active.until is event
         case InterruptGuard.DRIVES:
@@ -172,7 +174,7 @@ def _apply_effect(
             return replace(state, active=None)
         case Effect.ACTIVATE:
             # Among equal ranks, max returns the one that occurred first.
-            highest = max(state.pending, key=lambda pending: reactions[pending.event].urgency)
+            highest = max(state.pending, key=lambda pending: reactions[pending.event].urgency_score)
             return replace(state, active=highest.event)
         case Effect.DROP:
             return replace(state, active=None, pending=state.waiting)
@@ -196,7 +198,7 @@ _OUTCOMES = {
 
 
 def reaction_outcome(reaction: Reaction) -> Outcome:
-    """Return the outcome of a mission that ends with a reaction, by its drive's destination."""
+    """Return the outcome after a mission's last reaction: by its destination, or ABORTED."""
     return {
         Response.RETURN: Outcome.RETURNED,
         Response.SAFE_AREA: Outcome.SHELTERED,

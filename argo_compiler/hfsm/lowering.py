@@ -108,7 +108,7 @@ class _Lowering:
             reactions=tuple(
                 _reaction_state(reaction, self.mission)
                 for reaction in sorted(
-                    self.mission.reactions, key=lambda r: r.urgency, reverse=True
+                    self.mission.reactions, key=lambda r: r.urgency_score, reverse=True
                 )
             ),
             max_duration=self.mission.max_duration,
@@ -247,7 +247,7 @@ class _Lowering:
     def _domain(self, inside: int | None, target: str) -> str:
         at = self.position[target]
         if self.layout.innermost[at] != inside:
-            inside = self.layout.common_range(inside, at)
+            inside = self.layout.innermost_common_range(inside, at)
         return MISSION if inside is None else self.group_ids[inside]
 
     def _composite_id(self, index: int | None) -> str:

@@ -5,7 +5,7 @@ from collections import defaultdict, deque
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from argo_compiler.hfsm.conditions import CheckpointReading, conditions_text
+from argo_compiler.hfsm.conditions import CheckpointReading, conjunction_text
 from argo_compiler.hfsm.configuration import Configuration
 from argo_compiler.hfsm.kinds import Cause, Outcome, ReadingKind
 from argo_compiler.hfsm.progress import ByHand
@@ -70,7 +70,7 @@ class MachineState:
         )
         return due if due < self.time_up_at else self.time_up_at
 
-    def record_event(self, kind: EventKind) -> None:
+    def handle_wait_or_time_up_event(self, kind: EventKind) -> None:
         """Record an event; only TIME_UP and what the active WAIT awaits have an effect."""
         if kind is EventKind.TIME_UP:
             self.time_up = True
@@ -86,7 +86,7 @@ class MachineState:
         configuration.visit.occurred = True
         configuration.update_visit_due()
 
-    def add_by_hand(self, tasks: Iterable[ByHand], now: float) -> None:
+    def queue_tasks_done_by_hand(self, tasks: Iterable[ByHand], now: float) -> None:
         """Add tasks that a person did or skipped; each stands in for the next visit of its task."""
         for task in tasks:
             self._by_hand_count += 1
@@ -101,7 +101,7 @@ class MachineState:
         """Resume the mission at its present task."""
         self.configuration.resume(self.now)
 
-    def end_wait(self) -> bool:
+    def end_wait_if_over(self) -> bool:
         """End the active WAIT if it is over now, and return whether it was.
 
         The mission must not be interrupted. This does nothing for a WAIT that a person has done by
@@ -117,9 +117,9 @@ class MachineState:
         ):
             return False
         if (
-            not visit.earliest_wait_end(configuration.started_at)
+            not visit.earliest_wait_end_or_check(configuration.started_at)
             <= self.now
-            <= visit.missed_at(configuration.started_at)
+            <= visit.window_missed_at(configuration.started_at)
         ):
             return False
         wait = leaf.wait
@@ -133,7 +133,7 @@ class MachineState:
             if not wait.guards or not configuration.are_satisfied(wait.guards, self.now):
                 configuration.update_visit_due()
                 return False
-            why = conditions_text(wait.conditions)
+            why = conjunction_text(wait.conditions)
         self.complete(leaf, why)
         return True
 
@@ -163,17 +163,17 @@ class MachineState:
     def _handle_visit_due(self, leaf: LeafNode) -> bool:
         """Make the change that is due by the visit's own times: round, window or time limits.
 
-        `end_wait` ends a WAIT. Returns True if a change was made.
+        `end_wait_if_over` ends a WAIT. Returns True if a change was made.
         """
         configuration, visit = self.configuration, self.configuration.visit
         if configuration.awaited_round is not None:
             frame = configuration.awaited_round
             configuration.start_awaited_round(self.now)
             self.add_entry(Cause.ROUND, detail=f"{frame.round} of '{frame.group.name}'")
-        elif visit.missed_at(configuration.started_at) <= self.now:
+        elif visit.window_missed_at(configuration.started_at) <= self.now:
             self._fail_for_good(leaf, _OVER, leaf.missed or leaf.failure)
         elif visit.action_due <= self.now:
-            self.fail(leaf, f"not done within {leaf.time_limit:g} s")
+            self.retry_or_fail(leaf, f"not done within {leaf.time_limit:g} s")
         elif visit.wait_limit_at <= self.now:
             assert leaf.wait is not None
             self._fail_for_good(leaf, f"waited {leaf.wait.limit:g} s in vain", leaf.failure)
@@ -196,7 +196,7 @@ class MachineState:
             self.configuration.visit.action_due = math.inf
             self.configuration.update_visit_due()
 
-    def by_hand_progress(self) -> tuple[ByHand, ...]:
+    def pending_tasks_done_by_hand(self) -> tuple[ByHand, ...]:
         """Return the tasks done by hand that the machine has not reached yet, with their ages."""
         remaining = sorted(done for queue in self.by_hand.values() for done in queue)
         return tuple(
@@ -226,12 +226,15 @@ class MachineState:
             object_id, CheckpointReading(_VALUE, at, value, abnormal), self.now
         )
 
-    def fail(self, leaf: LeafNode, reason: str, unreadable: bool = False) -> None:
-        """Handle a failure of the active task's action: retry it, or let the task fail for good."""
+    def retry_or_fail(self, leaf: LeafNode, reason: str, unreadable: bool = False) -> None:
+        """Retry the active task after a failure of its action, or let the task fail for good.
+
+        When a measurement fails for good, its reading is FAILED, or UNREADABLE if `unreadable`.
+        """
         visit = self.configuration.visit
         if visit.attempt < leaf.retries:
             visit.attempt += 1
-            visit.turn = self.configuration.new_number()
+            visit.turn = self.configuration.new_visit_or_turn_number()
             visit.action_due = math.inf
             self.configuration.update_visit_due()
             self.add_entry(Cause.RETRY, failure=reason)
@@ -269,10 +272,10 @@ class MachineState:
         self.tallies[leaf.name][0] += 1
         self.ended.append(leaf.ended_visit)
         configuration, now = self.configuration, self.now
-        transition = configuration.take_transition(leaf.transitions, now)
+        transition = configuration.take_first_possible_transition(leaf.transitions, now)
         self.trace.append((now, leaf, configuration.visit.leaf, transition, detail))
 
-    def record_late_success(self, leaf: LeafNode) -> None:
+    def record_success_after_leaving(self, leaf: LeafNode) -> None:
         """Count the success of an action that came after the mission had left its task."""
         if not leaf.is_return:
             self._count_end(leaf)
@@ -288,7 +291,7 @@ class MachineState:
         """End the mission at once, whatever it was doing."""
         source = self.active_task
         self.outcome = outcome
-        self.configuration.clear()
+        self.configuration.leave_all_states()
         self.time_up_at = math.inf
         self.add_entry(cause, source, event=event, failure=failure, detail=str(outcome))
 
@@ -328,7 +331,7 @@ class MachineState:
     ) -> None:
         configuration, now = self.configuration, self.now
         source = configuration.visit.leaf
-        transition = configuration.take_transition(transitions, now)
+        transition = configuration.take_first_possible_transition(transitions, now)
         target, repeated = configuration.visit.leaf, transition.repeats
         self.trace.append(
             RawEntry(
@@ -354,7 +357,7 @@ class MachineState:
             del self.by_hand[leaf.name]
         if self.configuration.awaited_round is not None:
             self.configuration.start_awaited_round(self.now)
-        self.configuration.advance_group_clocks(done.duration, self.now)
+        self.configuration.advance_stopped_group_clocks(done.duration, self.now)
         if leaf.measures is not None:
             if done.value is None or done.skipped:
                 self.configuration.set_reading(leaf.measures, None, self.now)

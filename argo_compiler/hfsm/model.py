@@ -179,7 +179,7 @@ class Hfsm(Model):
         return self.composites[0]
 
     def transitions(self) -> Iterator[StateTransition]:
-        """Yield all transitions, ordered by their source state."""
+        """Yield all transitions: those of the leaves first, then those of the composites."""
         for leaf in self.leaves:
             yield from leaf.transitions
             if leaf.failure:

@@ -112,10 +112,10 @@ class _Reach:
         if missable and leaf.missed is not None:
             self._follow_transitions((leaf.missed,), under_way)
         if leaf.failure is not None and (
-            leaf.can_fail_for_good or (missable and leaf.missed is None)
+            leaf.can_fail_by_action_or_limit or (missable and leaf.missed is None)
         ):
             self._follow_transitions((leaf.failure,), under_way)
-        for group in leaf.groups:
+        for group in leaf.groups_outward:
             if (group.id, under_way, True) in self._searched:
                 break
             if group.timeout is not None:
@@ -163,7 +163,7 @@ def _last_round_flags(leaf: LeafNode, progress: tuple[GroupProgress, ...]) -> li
     """Return, for each group around the leaf, outermost first, whether it is in its last round."""
     known = {p.group: p for p in progress}
     last = []
-    for group in leaf.groups:
+    for group in leaf.groups_outward:
         p = known.get(group.name)
         last.append(
             p is not None

@@ -38,7 +38,7 @@ def restore_configuration(
     configuration = Configuration(tables)
     configuration.started_at = now - progress.elapsed - away
     leaf = None if progress.active is None else leaf_for(tables, progress.active)
-    number = configuration.new_number()
+    number = configuration.new_visit_or_turn_number()
     configuration.visit = TaskVisit(
         leaf,
         number,
@@ -141,18 +141,18 @@ def tally_progress(tallies: Mapping[str, list[int]]) -> tuple[TaskTally, ...]:
 
 
 def reaction_progress(
-    state: InterruptState, held: float
+    state: InterruptState, held_seconds: float
 ) -> tuple[Reacting | None, tuple[Waiting, ...]]:
     """Return the active reaction, if any, and the waiting ones.
 
-    `held` is the time (s) since the hold of the active reaction began, if it holds.
+    `held_seconds` is the time (s) since the hold of the active reaction began, if it holds.
     """
     waiting = tuple(Waiting(event=p.event, over=p.until_occurred) for p in state.waiting)
     if state.active is None:
         return None, waiting
-    active = Reacting(event=state.active, over=state.until_occurred, phase=Phase.DRIVING)
+    active = Reacting(event=state.active, over=state.active_until_occurred, phase=Phase.DRIVING)
     if state.stage is Stage.HOLDING:
-        active = active.model_copy(update={"phase": Phase.HOLDING, "held": max(0.0, held)})
+        active = active.model_copy(update={"phase": Phase.HOLDING, "held": max(0.0, held_seconds)})
     return active, waiting
 
 
@@ -167,7 +167,7 @@ def leaf_for(tables: Tables, name: str) -> LeafNode:
 
 
 def _groups(leaf: LeafNode, progress: Progress) -> list[GroupNode]:
-    groups = [*leaf.groups][::-1]
+    groups = [*leaf.groups_outward][::-1]
     if [group.name for group in groups] != [known.group for known in progress.groups]:
         raise Conflict(
             f"task '{leaf.name}' is in other groups in the progress than in the mission; {_OTHER}"

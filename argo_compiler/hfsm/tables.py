@@ -116,7 +116,7 @@ class LeafNode:
     missed: CompiledTransition | None = None
 
     @property
-    def groups(self) -> Iterator[GroupNode]:
+    def groups_outward(self) -> Iterator[GroupNode]:
         """The groups around the task, from the innermost outward."""
         group = self.parent
         while group is not None:
@@ -124,7 +124,7 @@ class LeafNode:
             group = group.parent
 
     @property
-    def can_fail_for_good(self) -> bool:
+    def can_fail_by_action_or_limit(self) -> bool:
         """True if the task can fail for good by its action or its wait's limit, not its window."""
         return self.wait is None or self.wait.limit is not None
 
@@ -137,8 +137,8 @@ class ReactionNode:
     task: Task | None
 
     @property
-    def urgency(self) -> tuple[int, int]:
-        return self.state.reaction.urgency
+    def urgency_score(self) -> tuple[int, int]:
+        return self.state.reaction.urgency_score
 
 
 @dataclass(slots=True, eq=False)

@@ -28,11 +28,11 @@ class TaskVisit:
     action_due: float = math.inf
     """time (s) at which the time limit of the running action ends"""
 
-    def earliest_wait_end(self, started_at: float) -> float:
+    def earliest_wait_end_or_check(self, mission_started_at: float) -> float:
         """Return the earliest time (s) at which a WAIT may end by duration, event or next check.
 
-        Whether its conditions are satisfied is not checked. `started_at` is the time (s) at which
-        the mission started. The result is infinite if the task is no WAIT.
+        Whether its conditions are satisfied is not checked. The result is infinite if the task is
+        no WAIT. `mission_started_at` is a time (s).
         """
         leaf = self.leaf
         if leaf is None or leaf.wait is None:
@@ -41,7 +41,7 @@ class TaskVisit:
             at = self.since + leaf.wait.duration
         else:
             at = self.since if self.occurred else self.check_at
-        return max(at, started_at + leaf.earliest) if leaf.earliest else at
+        return max(at, mission_started_at + leaf.earliest) if leaf.earliest else at
 
     @property
     def wait_limit_at(self) -> float:
@@ -51,23 +51,23 @@ class TaskVisit:
             return math.inf
         return self.since + leaf.wait.limit
 
-    def missed_at(self, started_at: float) -> float:
+    def window_missed_at(self, mission_started_at: float) -> float:
         """Return the time (s) at which the task's hard window ends; infinite without one.
 
-        `started_at` is the time (s) at which the mission started.
+        `mission_started_at` is a time (s).
         """
         leaf = self.leaf
-        return math.inf if leaf is None or leaf.latest is None else started_at + leaf.latest
+        return math.inf if leaf is None or leaf.latest is None else mission_started_at + leaf.latest
 
-    def next_due(self, started_at: float) -> float:
+    def next_due(self, mission_started_at: float) -> float:
         """Return the earliest time (s) at which the visit may change without an event.
 
         It changes when its wait, the wait's limit, the task's hard window or the running action's
-        time limit ends. `started_at` is the time (s) at which the mission started.
+        time limit ends. `mission_started_at` is a time (s).
         """
         return min(
-            self.earliest_wait_end(started_at),
+            self.earliest_wait_end_or_check(mission_started_at),
             self.wait_limit_at,
-            self.missed_at(started_at),
+            self.window_missed_at(mission_started_at),
             self.action_due,
         )

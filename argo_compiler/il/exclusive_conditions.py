@@ -10,7 +10,7 @@ Alternatives = Sequence[Sequence[Condition]]
 """alternatives; each one is satisfied if all its conditions are"""
 
 
-def are_exclusive(first: Alternatives, second: Alternatives) -> bool:
+def are_surely_exclusive(first: Alternatives, second: Alternatives) -> bool:
     """Return True if no values satisfy an alternative of `first` and one of `second` together.
 
     False may also mean that this could not be shown.
@@ -25,7 +25,7 @@ def are_contradictory(conditions: Iterable[Condition]) -> bool:
     return any(_are_disjoint(a, b) for a, b in combinations(conditions, 2))
 
 
-def are_exhaustive(alternatives: Alternatives) -> bool:
+def are_surely_exhaustive(alternatives: Alternatives) -> bool:
     """Return True if each value of a checkpoint satisfies one of the alternatives.
 
     It detects only a pair of alternatives that cover all values together, GREATER and LESS, with

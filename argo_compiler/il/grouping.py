@@ -37,7 +37,7 @@ def parent_name(name: str) -> str | None:
     return parent if slash else None
 
 
-def group_ranges(mission: Mission) -> tuple[GroupRange, ...]:
+def valid_ranges_parents_first(mission: Mission) -> tuple[GroupRange, ...]:
     """Return the ranges of the groups that have a valid one, parents before children.
 
     A range is valid if the tasks `start` and `end` exist and are in this order. The ranges are
@@ -75,19 +75,19 @@ class GroupNesting:
         """
         return _nesting(mission)
 
-    def common_range(self, inside: int | None, task: int) -> int | None:
-        """Return the smallest range that contains both the range `inside` and the task.
+    def innermost_common_range(self, range_index: int | None, task: int) -> int | None:
+        """Return the smallest range that contains both the range `range_index` and the task.
 
         None stands for the mission, as an argument and as the result.
         """
-        while inside is not None and not self.ranges[inside].contains(task):
-            inside = self.parent[inside]
-        return inside
+        while range_index is not None and not self.ranges[range_index].contains(task):
+            range_index = self.parent[range_index]
+        return range_index
 
 
 @cache_last_results_by_identity
 def _nesting(mission: Mission) -> GroupNesting:
-    ranges = group_ranges(mission)
+    ranges = valid_ranges_parents_first(mission)
     parent: list[int | None] = []
     innermost: list[int | None] = []
     ending: list[tuple[int, ...]] = []

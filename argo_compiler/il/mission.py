@@ -360,8 +360,8 @@ class Reaction(Model):
         return self.until is not None or self.response is Response.PAUSE
 
     @property
-    def urgency(self) -> tuple[int, int]:
-        """Urgency (rank) among reactions; the greatest one goes first.
+    def urgency_score(self) -> tuple[int, int]:
+        """Urgency among reactions; the reaction with the greatest goes first.
 
         ABORT ranks above all others, then the reaction to an emergency stop, then the priority
         decides, by default that of the event.

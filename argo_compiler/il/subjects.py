@@ -18,15 +18,15 @@ class Subjects:
         self.mission = mission
 
     def task_subject(self, position: int, rest: str = "") -> str:
-        """Return the subject of the task at a position; `rest` is a path within it."""
+        """Return the subject of the task at a position, followed by `rest`, such as `.pose`."""
         return _named("tasks", position, self._tasks, rest)
 
     def group_subject(self, position: int, rest: str = "") -> str:
-        """Return the subject of the group at a position; `rest` is a path within it."""
+        """Return the subject of the group at a position, followed by `rest`, such as `.pose`."""
         return _named("groups", position, self._groups, rest)
 
     def reaction_subject(self, position: int, rest: str = "") -> str:
-        """Return the subject of the reaction at a position; `rest` is a path within it."""
+        """Return the subject of the reaction at a position, followed by `rest`, such as `.pose`."""
         return _named("reactions", position, self._reactions, rest)
 
     def subject_path(self, text: str) -> tuple[str | int, ...]:

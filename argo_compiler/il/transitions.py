@@ -21,7 +21,7 @@ def failure_targets_by_field(task: Task) -> dict[str, str]:
     return targets
 
 
-def find_start_action_task(mission: Mission) -> Task | None:
+def find_start_pose_task(mission: Mission) -> Task | None:
     """Return the START task, which has the robot's initial pose, or None if there is none."""
     return next((task for task in mission.tasks if task.action is Action.START), None)
 
@@ -31,7 +31,7 @@ def initial_task(mission: Mission) -> str | None:
 
     Returns None if the mission has no task but START.
     """
-    start = find_start_action_task(mission)
+    start = find_start_pose_task(mission)
     target = None if start is None else default_target(start)
     if target is not None:
         return target

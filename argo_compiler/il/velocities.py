@@ -6,23 +6,25 @@ mission files of versions 1 and 2 have the velocity on the path to the next task
 
 from collections.abc import Iterator, Mapping
 
-from argo_compiler.il.grouping import group_ranges
+from argo_compiler.il.grouping import valid_ranges_parents_first
 from argo_compiler.il.mission import Action, Mission, Task
 from argo_compiler.il.transitions import (
     default_target,
     failure_targets_by_field,
-    find_start_action_task,
+    find_start_pose_task,
     initial_task,
 )
 
 Velocity = float | None
 """m/s; None: the robot's planning speed"""
+TasksWithLoss = tuple[str, ...]
+"""names of the tasks that lose a velocity in a conversion"""
 
 MISSION_START = ""
 """stands for the robot's initial pose, if a mission has no START; no task has an empty name"""
 
 
-def transition_pairs(mission: Mission) -> Iterator[tuple[str, str]]:
+def possible_successor_pairs(mission: Mission) -> Iterator[tuple[str, str]]:
     """Yield pairs of names, a task and one that may follow it; some pairs more than once.
 
     They come from transitions, other targets after failures, the next rounds of groups, and what
@@ -30,7 +32,7 @@ def transition_pairs(mission: Mission) -> Iterator[tuple[str, str]]:
     to the first task.
     """
     tasks = mission.tasks
-    start = find_start_action_task(mission)
+    start = find_start_pose_task(mission)
     if (first := initial_task(mission)) is not None:
         yield MISSION_START if start is None else start.name, first
     for task in tasks:
@@ -43,7 +45,7 @@ def transition_pairs(mission: Mission) -> Iterator[tuple[str, str]]:
     for task in tasks:
         if (following := default_target(task)) is not None:
             onward[task.name].append(following)
-    for around in group_ranges(mission):  # parents before children
+    for around in valid_ranges_parents_first(mission):  # parents before children
         group = around.group
         if group.has_hard_stop:
             for task in tasks[around.first : around.last + 1]:
@@ -53,7 +55,7 @@ def transition_pairs(mission: Mission) -> Iterator[tuple[str, str]]:
         onward[group.end].append(group.start)
 
 
-def departure_to_approach_velocities(mission: Mission) -> tuple[Mission, tuple[str, ...]]:
+def departure_to_approach_velocities(mission: Mission) -> tuple[Mission, TasksWithLoss]:
     """Convert velocities on the path to the next task into velocities on the path to the task.
 
     Also returns the names of the tasks for which this loses something, because transitions to them
@@ -61,14 +63,14 @@ def departure_to_approach_velocities(mission: Mission) -> tuple[Mission, tuple[s
     """
     on: Mapping[str, Velocity] = {task.name: task.velocity for task in mission.tasks}
     there: dict[str, set[Velocity]] = {}
-    for source, target in transition_pairs(mission):
+    for source, target in possible_successor_pairs(mission):
         there.setdefault(target, set()).add(on.get(source))
     differ = tuple(task.name for task in mission.tasks if len(there.get(task.name, ())) > 1)
     tasks = tuple(_with(task, _slowest(there.get(task.name, set()))) for task in mission.tasks)
     return mission.model_copy(update={"tasks": tasks}), differ
 
 
-def approach_to_departure_velocities(mission: Mission) -> tuple[Mission, tuple[str, ...]]:
+def approach_to_departure_velocities(mission: Mission) -> tuple[Mission, TasksWithLoss]:
     """Convert velocities on the path to the task into velocities on the path to the next task.
 
     Also returns the names of the tasks for which this loses something, because transitions from
@@ -78,7 +80,7 @@ def approach_to_departure_velocities(mission: Mission) -> tuple[Mission, tuple[s
     """
     there: Mapping[str, Velocity] = {task.name: task.velocity for task in mission.tasks}
     on: dict[str, set[Velocity]] = {}
-    for source, target in transition_pairs(mission):
+    for source, target in possible_successor_pairs(mission):
         on.setdefault(source, set()).add(there.get(target))
     differ = tuple(
         name

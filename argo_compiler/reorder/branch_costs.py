@@ -61,7 +61,7 @@ class BranchCosts:
         """
         return self._row(unit, self._time, self._probabilities)
 
-    def inner_time_units(self, unit: TaskUnit) -> float:
+    def time_units_after_first_task(self, unit: TaskUnit) -> float:
         """Return the time from the end of a unit's first task to the end of its last one.
 
         It is in units of time, for the worst case or the mean as in `times_to_destinations`, and 0

@@ -87,7 +87,7 @@ def route_problem(
     battery = _battery(visits, matrix, times, energies)
     limit = _duration_limit(mission, requirements)
     windows = Windows(visits, matrix)
-    latest = min((end for end in (limit, windows.end_limit()) if end), default=None)
+    latest = min((end for end in (limit, windows.end_limit_seconds()) if end), default=None)
     words = {} if latest is None else {"max_duration": latest[1]}
     for k in range(len(visits.task_units)):
         if window_words := windows.latest_end_text(k):
@@ -168,7 +168,7 @@ def require_known(mission: Mission, requirements: Requirements) -> None:
 
 
 def _probabilities(visits: Visits, requirements: Requirements) -> dict[tuple[int, int], float]:
-    """Return the required probabilities of transitions, by the leaves that they connect."""
+    """Return the probabilities given in the requirements, by the leaves that they connect."""
     flow = visits.chain.flow
     number = {leaf.name: i for i, leaf in enumerate(flow.leaves)}
     probabilities: dict[tuple[int, int], float] = {}
@@ -221,7 +221,8 @@ def _costs(
     columns = [unit.entry for unit in visits.task_units]
     columns += [len(time[0]) - 1 if end is None else end, *chargers]
     inner_times = [
-        int(branch_costs.inner_time_units(unit) + _ROUNDING) for unit in visits.task_units
+        int(branch_costs.time_units_after_first_task(unit) + _ROUNDING)
+        for unit in visits.task_units
     ]
     return np.array(times)[:, columns], np.array(energies)[:, columns], inner_times
 

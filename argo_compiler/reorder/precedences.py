@@ -28,7 +28,7 @@ def precedences(
     result: list[Precedence] = []
     is_fixed = mission_is_precise or requirements.keep_order
     if is_fixed and len(everything) > 1:
-        names = ", ".join(visits.short_name(k) for k in everything)
+        names = ", ".join(visits.checkpoint_number_or_name(k) for k in everything)
         words = f"precise order {names}" if mission_is_precise else AS_WRITTEN
         result.append(Precedence(everything, words))
     result += required_precedences(visits, requirements)
@@ -44,9 +44,9 @@ def precedences(
 
 
 def required_last_visit(visits: Visits) -> int | None:
-    """Return the visit written last if it must be made, as some earlier unit can't come last.
+    """Return the visit written last if no order may leave it out; None if it need not be made.
 
-    Returns None if it need not be made. A unit that is left by several transitions can't come last
+    It must be made if some earlier unit can't come last: one that is left by several transitions,
     in a mission that does not dock.
     """
     if visits.chain.end is not None or not visits.chain.units:
@@ -88,7 +88,7 @@ def _mission_precedences(visits: Visits) -> Iterator[Precedence]:
 def precedence_name_pairs(
     visits: Visits, requirements: Requirements
 ) -> tuple[tuple[str, str], ...]:
-    """Return the precedences of the requirements as pairs of task names, as in `Mission.before`."""
+    """Return the precedences of the requirements for `Mission.before`: pairs of first tasks."""
     names = [visits.chain.name(unit.entry) for unit in visits.task_units]
     return tuple(
         dict.fromkeys(

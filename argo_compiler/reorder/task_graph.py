@@ -197,7 +197,7 @@ class TaskGraph:
         tail: bool,
         through: int | None,
     ) -> None:
-        """Add the edge from a leaf of a child to a node, or record an early exit or a chain error.
+        """Add the edge from a leaf of a child to a node, or an early exit, or set `chain_error`.
 
         `number` is the child's position in the level. `tail` states that the transition is the
         leaf's unconditional one. `through` is the group whose end the transition passes, if any. A

@@ -55,7 +55,7 @@ class Visits:
     @cached_property
     def names(self) -> tuple[str, ...]:
         """Names of the visits for messages."""
-        return tuple(self.name(unit.entry) for unit in self.task_units)
+        return tuple(self.leaf_display_name(unit.entry) for unit in self.task_units)
 
     def is_optional(self, visit: int) -> bool:
         """Return True if a visit's tasks are optional or WAITs, and at least one is optional."""
@@ -64,7 +64,7 @@ class Visits:
             task.optional for task in tasks
         )
 
-    def name(self, leaf: int) -> str:
+    def leaf_display_name(self, leaf: int) -> str:
         """Return the name of a leaf for messages: `checkpoint 8`, or the task's name in quotes.
 
         The task's name is added to the checkpoint if another task measures the same one.
@@ -75,13 +75,13 @@ class Visits:
         others = self._leaves_measuring[task.object_id or ""]
         return f"checkpoint {task.object_id}" + (f" ('{task.name}')" if len(others) > 1 else "")
 
-    def other_tasks(self, visit: int) -> tuple[str, ...]:
+    def other_task_display_names(self, visit: int) -> tuple[str, ...]:
         """Return the names of a visit's tasks except the first, done always or in some cases."""
         unit = self.task_units[visit]
-        others = (self.name(leaf) for leaf in unit.leaves if leaf != unit.entry)
+        others = (self.leaf_display_name(leaf) for leaf in unit.leaves if leaf != unit.entry)
         return tuple(dict.fromkeys(others))
 
-    def short_name(self, visit: int) -> str:
+    def checkpoint_number_or_name(self, visit: int) -> str:
         """Return the visit's name without the word `checkpoint`."""
         return self.names[visit].removeprefix("checkpoint ")
 

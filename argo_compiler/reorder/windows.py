@@ -75,7 +75,7 @@ class Windows:
         start = f"begun from {time_words(window.earliest)} on and " if window.earliest else ""
         return f"{self._visits.names[visit]} {start}done by {time_words(window.latest)}"
 
-    def end_limit(self) -> tuple[float, str] | None:
+    def end_limit_seconds(self) -> tuple[float, str] | None:
         """Return the latest end of the mission's last task in s, and its description.
 
         It counts from the mission's start. Returns None if no window limits the end.

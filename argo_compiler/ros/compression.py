@@ -72,7 +72,7 @@ def _check(compression: str, content: bytes) -> None:
 
 
 def _bounded_decompressor(compression: str) -> Callable[[bytes, int], bytes] | None:
-    """Return a function that unpacks bytes up to a limit; None for an unknown compression."""
+    """Return a function that unpacks bytes and cuts off at a size; None: unknown compression."""
     if "bz2" in compression:
         return bz2.BZ2Decompressor().decompress
     if "lz4" in compression:

@@ -51,8 +51,8 @@ class Blocks:
             for first in precedence.sequence[:k]
         }
         self.exact = all(len(members) <= _MOST_MEMBERS for members in self.members)
-        """true if `executions` returns all executions of each block; if false, it returns lower
-        bounds for large rounds"""
+        """true if `distinct_executions` returns all executions of each block; if false, it returns
+        lower bounds for large rounds"""
         self._orders = [self._feasible_orders(members) for members in self.members]
         visits_by_block = [[problem.visits[v] for v in members] for members in self.members]
         self.prize = [sum(visit.prize for visit in visits) for visits in visits_by_block]
@@ -79,12 +79,15 @@ class Blocks:
                         self.followers[first] |= 1 << second
                         self.needs[second] |= 1 << first if precedence.needed else 0
 
-    def can_follow(self, made: int, block: int) -> bool:
-        """Return True if the precedences allow a block as the next one after the blocks in `made`.
+    def can_come_next(self, made_mask: int, block: int) -> bool:
+        """Return True if the precedences allow a block next when those of `made_mask` are made.
 
-        The set `made` has a bit for each block.
+        `made_mask` has a bit for each block.
         """
-        return not made & (self.followers[block] | 1 << block) and not self.needs[block] & ~made
+        return (
+            not made_mask & (self.followers[block] | 1 << block)
+            and not self.needs[block] & ~made_mask
+        )
 
     def worst_arrival(self, origins: Locations, goal: int) -> Arrival | None:
         """Return the worst arrival after a drive to a location, or None if it may be impossible.
@@ -103,12 +106,15 @@ class Blocks:
             return None
         return time, energy, frozenset([goal])
 
-    def executions(self, block: int, origins: Locations) -> list[tuple[Arrival, tuple[int, ...]]]:
+    def distinct_executions(
+        self, block: int, origins: Locations
+    ) -> list[tuple[Arrival, tuple[int, ...]]]:
         """Return the possible executions of a block: of each, the arrival and the order of members.
 
         `origins` are the robot's possible locations before the block. The arrival at a single visit
         is before its service; that of a round is after all its repetitions, services included. Of
-        orders with the same arrival only one is returned. For large rounds see `exact`.
+        orders with the same arrival only one is returned. If `exact` is false, large rounds have
+        lower bounds as arrivals, and arbitrary orders.
         """
         if (block, origins) not in self._executions:
             self._executions[block, origins] = self._compute_executions(block, origins)
@@ -184,7 +190,7 @@ class Blocks:
                 for b in range(n):
                     if b == last or (last < n and self.followers[b] >> last & 1):
                         continue
-                    for (time, _, end), _ in self.executions(b, origins):
+                    for (time, _, end), _ in self.distinct_executions(b, origins):
                         block_time = added + time + self.visit[b].service
                         times[last, b] = min(times[last, b], block_time)
                         if (b, end) not in seen:

@@ -20,7 +20,7 @@ _TIME_PER_ARC = 6e-5
 """s to build and presolve an arc; twice as long with begin times or ranks in the model"""
 
 
-def time_to_build(network: StepNetwork, pruned: Pruned) -> float:
+def seconds_to_build_and_presolve(network: StepNetwork, pruned: Pruned) -> float:
     """Return the time in s that a search must have left to build a CircuitModel of the network.
 
     It is the estimated time to build the model and to presolve it. With less time left, the model

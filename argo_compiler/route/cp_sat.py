@@ -8,7 +8,7 @@ from math import ceil, floor
 
 from ortools.sat.python import cp_model
 
-from argo_compiler.route.circuit_model import CircuitModel, time_to_build
+from argo_compiler.route.circuit_model import CircuitModel, seconds_to_build_and_presolve
 from argo_compiler.route.cp_solver import run_solver, solver_for, spend_solver_work
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.problem import Objective, RouteProblem, Tour
@@ -36,14 +36,14 @@ class CpSat:
             search.add_reason(f"{len(network.prize)} steps are too many for CP-SAT")
             return
         if not network.mandatory.any():
-            offer_empty_routes(search)
+            offer_routes_without_visits(search)
         patience = _PATIENCE
-        while search.remaining_time() > time_to_build(network, search.pruned):
+        while search.remaining_time() > seconds_to_build_and_presolve(network, search.pruned):
             _Attempt(search, self.name, patience).run()
             patience *= 2.0
 
 
-def offer_empty_routes(search: Search) -> None:
+def offer_routes_without_visits(search: Search) -> None:
     """Offer the feasible routes without visits: straight to the end, or by one charger."""
     for charges in ({}, *({0: number} for number in range(len(search.network.chargers)))):
         tour = Tour((), charges)

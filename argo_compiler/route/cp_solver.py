@@ -38,7 +38,7 @@ def solver_for(search: Search) -> cp_model.CpSolver:
 
 
 def spend_solver_work(search: Search, solver: cp_model.CpSolver) -> None:
-    """Add the solver's work to that of the search."""
+    """Add the solver's work, from its deterministic time, to that of the search."""
     search.spend(_NOMINAL * solver.deterministic_time)
 
 

@@ -65,7 +65,7 @@ class Enumeration:
         """number of partial routes"""
 
     def run(self, *, use_dominance: bool) -> None:
-        """Enumerate the routes, and store the best one in `best`.
+        """Enumerate the routes; store the best one, if better than `better_than`, in `best`.
 
         `use_dominance`: prune partial routes that another one with the same blocks and locations
         dominates; otherwise only equal ones are merged.
@@ -128,9 +128,9 @@ class Enumeration:
         With each comes its key: the set of its blocks, and the robot's possible locations.
         """
         for block, visit in enumerate(self._blocks.visit):
-            if not self._blocks.can_follow(made, block):
+            if not self._blocks.can_come_next(made, block):
                 continue
-            for arrival, order in self._blocks.executions(block, origins):
+            for arrival, order in self._blocks.distinct_executions(block, origins):
                 self._spend()
                 arrived = self._after_drive(partial, arrival)
                 if arrived is None:

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 from ortools.sat.python import cp_model
 
-from argo_compiler.route.circuit_model import CircuitModel, time_to_build
-from argo_compiler.route.cp_sat import offer_empty_routes
+from argo_compiler.route.circuit_model import CircuitModel, seconds_to_build_and_presolve
+from argo_compiler.route.cp_sat import offer_routes_without_visits
 from argo_compiler.route.cp_solver import run_solver, solver_for, spend_solver_work
 from argo_compiler.route.linear_relaxation import LinearRelaxation
 from argo_compiler.route.network import StepNetwork
@@ -43,7 +43,7 @@ class LinearProof:
         if not pruned.possible or not 0 < int(pruned.arcs.sum()) <= _MOST_ARCS:
             return
         if not network.mandatory.any():
-            offer_empty_routes(search)  # the circuit model excludes them
+            offer_routes_without_visits(search)  # the circuit model excludes them
         best = search.best
         to_optimality = network.has_additive_times and not network.before.any()
         search = search.with_time_share(_PROOF_SHARE if to_optimality else _BOUND_SHARE)
@@ -137,7 +137,7 @@ class _Stage:
             replace(network, mandatory=mandatory),
             replace(pruned, arcs=arcs, steps=pruned.steps & steps),
         )
-        if search.remaining_time() < time_to_build(restricted, pruned):
+        if search.remaining_time() < seconds_to_build_and_presolve(restricted, pruned):
             return min(relaxation.bound or 0, most)
         model = CircuitModel(restricted, pruned)
         for cut in relaxation.binding_cuts:

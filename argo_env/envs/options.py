@@ -10,7 +10,7 @@ from pydantic_core import ErrorDetails
 
 from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.base.model import Model
-from argo_compiler.files.fields import similar_field_hint
+from argo_compiler.files.fields import unknown_field_hint
 from argo_compiler.files.json_places import format_path
 from argo_env.files.yaml_messages import error_message, strip_discriminators
 
@@ -96,7 +96,7 @@ def _describe_error(model: type[Model], error: ErrorDetails, data: Any) -> str:
     path = strip_discriminators(error["loc"], data)
     place, context = f"`{format_path(path)}`", error.get("ctx", {})
     if error["type"] == "extra_forbidden":
-        return f"{place}: there is no such option ({similar_field_hint(model, error['loc'])})"
+        return f"{place}: there is no such option ({unknown_field_hint(model, error['loc'])})"
     if error["type"] == "union_tag_not_found":
         return f"{place}: it has no `kind`"
     if error["type"] == "union_tag_invalid":

@@ -8,7 +8,7 @@ from pydantic import ValidationError
 
 from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity, Span, with_excerpts
-from argo_compiler.files.fields import similar_field_hint
+from argo_compiler.files.fields import unknown_field_hint
 from argo_compiler.files.json_places import JsonPath, format_path
 from argo_env.files.yaml_messages import error_message, strip_discriminators
 
@@ -157,7 +157,7 @@ def _wrong_fields(
         message, hint = error_message(fault, path), _list_hint(model, fault["loc"])
         unknown = fault["type"] == "extra_forbidden"
         if unknown:
-            message, hint = f"{things} have no such field", similar_field_hint(model, fault["loc"])
+            message, hint = f"{things} have no such field", unknown_field_hint(model, fault["loc"])
             if len(path) > 1:
                 hint = no_field.get(str(path[-1]), hint)
         elif fault["type"] == "duplicate":

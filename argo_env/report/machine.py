@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from argo_compiler.hfsm import Composite, Hfsm, StateTransition, TransitionKind
-from argo_compiler.hfsm.conditions import conditions_text
+from argo_compiler.hfsm.conditions import conjunction_text
 from argo_compiler.hfsm.model import DONE, MISSION
 from argo_compiler.il import Stop
 from argo_env.report.svg import Node, drawing, node, number, shorten
@@ -164,7 +164,7 @@ def _arrow(source: str, transition: StateTransition, group: Composite | None) ->
 
 def _label(transition: StateTransition, group: Composite | None) -> str:
     if transition.kind is TransitionKind.CONDITIONAL:
-        return conditions_text(transition.conditions)
+        return conjunction_text(transition.conditions)
     if transition.kind in _AFTER_FAILURES:
         return _AFTER_FAILURES[transition.kind]
     if group is None or group.repeat is None:
@@ -175,7 +175,7 @@ def _label(transition: StateTransition, group: Composite | None) -> str:
         return ""
     limits = ["repeat"]
     if group.repeat.until:
-        limits = [f"repeat until {conditions_text(group.repeat.until)}"]
+        limits = [f"repeat until {conjunction_text(group.repeat.until)}"]
     limits += [f"up to {group.repeat.count} rounds"] if group.repeat.count else []
     if group.repeat.duration:
         whole = ", whole rounds" if group.repeat.stop is Stop.SOFT else ""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import groupby, pairwise
 
 from argo_compiler.hfsm import Composite, Hfsm
-from argo_compiler.hfsm.conditions import conditions_text
+from argo_compiler.hfsm.conditions import conjunction_text
 from argo_compiler.hfsm.model import task_id
 from argo_compiler.il import Condition
 from argo_compiler.il.reserved import RESERVED_NAMES
@@ -208,7 +208,7 @@ def repeat_rules(record: RunRecord) -> list[str]:
         if repeat is None or not (repeat.every or repeat.until):
             continue
         limits = [f"a round every {repeat.every:g} s"] if repeat.every else []
-        limits += [f"until {conditions_text(repeat.until)}"] if repeat.until else []
+        limits += [f"until {conjunction_text(repeat.until)}"] if repeat.until else []
         limits += [f"{repeat.count} rounds at most"] if repeat.count else []
         limits += [f"for {repeat.duration:g} s at most"] if repeat.duration else []
         rules.append(f"{group.name}: {', '.join(limits)}.")

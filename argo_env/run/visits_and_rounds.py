@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 
 from argo_compiler.hfsm import Cause, Hfsm, RepeatRule, TraceEntry
-from argo_compiler.hfsm.conditions import wait_text
+from argo_compiler.hfsm.conditions import wait_end_text
 from argo_compiler.hfsm.progress import GroupProgress
 from argo_compiler.il import Action, EventKind, Mission, Task
 from argo_env.run.machine import Machine
@@ -124,7 +124,7 @@ def _awaited_in_words(task: Task) -> str:
     if rule.duration is not None:
         return f"{rule.duration:g} s"
     limit = f", {rule.limit:g} s at most" if rule.limit is not None else ""
-    return wait_text(rule) + limit
+    return wait_end_text(rule) + limit
 
 
 def _is_junction(task: Task) -> bool:

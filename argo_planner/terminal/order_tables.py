@@ -76,7 +76,7 @@ def _table(found: SuggestedOrder) -> Table:
             str(written[visit] + 1),
             min_sec_text(found.to_seconds(before[written[visit]])),
         )
-        if along := planned.visits.other_tasks(visit):
+        if along := planned.visits.other_task_display_names(visit):
             table.add_row("", f"[italic]then {escape(', '.join(along))}[/]", "", "", "")
     for pause in stops.get(len(route.order), ()):
         table.add_row("", f"[italic]{escape(_pause(found, pause))}[/]", "", "", "")

@@ -8,7 +8,7 @@ from typing import NoReturn
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.base.listing import listed
 from argo_compiler.il import Action, OnFailure
-from argo_compiler.il.exclusive_conditions import are_exclusive
+from argo_compiler.il.exclusive_conditions import are_surely_exclusive
 from argo_compiler.script.resolve.accepting import require_used
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.manners import Manners
@@ -403,7 +403,9 @@ def _put_together(last: Choice) -> bool:
     several = [c for c in chain if c is last or not isinstance(c.then.last, Leave)]
     if len(several) == 1:
         return True
-    clear = all(are_exclusive(a.alternatives, b.alternatives) for a, b in combinations(several, 2))
+    clear = all(
+        are_surely_exclusive(a.alternatives, b.alternatives) for a, b in combinations(several, 2)
+    )
     if not clear or any(c.negated or c.otherwise.first is not None for c in chain):
         return False
     for outer, inner in pairwise(chain):

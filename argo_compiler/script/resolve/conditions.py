@@ -5,7 +5,7 @@ from itertools import product
 
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.il import Condition, ConditionType
-from argo_compiler.il.exclusive_conditions import are_contradictory, are_exhaustive
+from argo_compiler.il.exclusive_conditions import are_contradictory, are_surely_exhaustive
 from argo_compiler.script.resolve.lookup import told
 from argo_compiler.script.resolve.nouns import NounResolver
 from argo_compiler.script.resolve.program import Alternatives
@@ -69,7 +69,7 @@ class ConditionResolver:
                 message = f"this condition has more than {_MOST} alternatives"
                 hint = "divide it into several sentences"
                 self.diagnostics.refuse("condition", message, condition.span, hint)
-        if are_exhaustive(tuple(found)):
+        if are_surely_exhaustive(tuple(found)):
             said = self.diagnostics.source.said(condition.span)
             message = f"every value satisfies `{said}`"
             hint = "is `and` meant, or another bound?"

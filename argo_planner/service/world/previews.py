@@ -14,7 +14,7 @@ from argo_compiler.base.model import Model, Pose
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, has_errors
 from argo_compiler.il import Action, Mission, OnFailure, Task
-from argo_compiler.il.grouping import group_ranges
+from argo_compiler.il.grouping import valid_ranges_parents_first
 from argo_compiler.il.transitions import default_target, failure_targets_by_field, initial_task
 from argo_env.formatting import rounded_time_text
 from argo_env.navigation import Path
@@ -281,7 +281,7 @@ def _other_transitions(
         successors[task.name] += [
             (target, WayKind.FAILURE) for target in failure_targets_by_field(task).values()
         ]
-    for around in group_ranges(mission):
+    for around in valid_ranges_parents_first(mission):
         successors[around.group.end].append((around.group.start, WayKind.ROUND))
     default = set(pairwise(order))
     reached = dict.fromkeys(order)

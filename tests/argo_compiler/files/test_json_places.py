@@ -10,7 +10,7 @@ from argo_compiler.diagnostics.subject import split_subject
 from argo_compiler.files.json_places import (
     JsonText,
     find_duplicate_keys,
-    find_places,
+    find_places_or_parents,
     format_path,
 )
 
@@ -35,7 +35,7 @@ def paths(data, at=()):
 def test_the_text_at_a_place_is_the_value_of_its_path(data, layout, ascii):
     text = json.dumps(data, ensure_ascii=ascii, **layout)
     everything = dict(paths(data))
-    places = find_places(JsonText(text), everything)
+    places = find_places_or_parents(JsonText(text), everything)
     lines = text.split("\n")
     for path, value in everything.items():
         span = places[path]
@@ -66,7 +66,7 @@ def test_written_data_have_no_duplicate_keys(data, layout):
 
 def test_the_place_of_a_missing_path_is_its_longest_existing_part():
     text = JsonText('{"tasks": [\n  {"name": "A"}\n]}')
-    places = find_places(text, [("tasks", 0, "pose", "x"), ("tasks", 7), ("dock",)])
+    places = find_places_or_parents(text, [("tasks", 0, "pose", "x"), ("tasks", 7), ("dock",)])
     assert (places["tasks", 0, "pose", "x"].line, places["tasks", 0, "pose", "x"].column) == (2, 4)
     assert places["tasks", 7].line == 1
     assert places[("dock",)].line == 1
@@ -79,7 +79,7 @@ def test_duplicate_keys_are_found_at_any_depth_and_in_any_spelling():
         ("b", 0, "c"): (1, 17),
         ("a",): (1, 2),
     }
-    last = find_places(text, duplicates)
+    last = find_places_or_parents(text, duplicates)
     assert (last["b", 0, "c"].line, last["b", 0, "c"].column) == (2, 2)
     assert last[("a",)].line == 3
     assert len(find_duplicate_keys(text, 1)) == 1
@@ -92,4 +92,4 @@ def test_a_parsed_path_is_formatted_as_before(path):
 
 def test_deep_nesting_is_no_problem():
     text = JsonText('{"a": ' + "[" * 100_000 + "]" * 100_000 + "}")
-    assert find_places(text, [("a", 0, 0)])["a", 0, 0].column == 9
+    assert find_places_or_parents(text, [("a", 0, 0)])["a", 0, 0].column == 9

@@ -13,7 +13,7 @@ from argo_compiler.il.velocities import (
     MISSION_START,
     approach_to_departure_velocities,
     departure_to_approach_velocities,
-    transition_pairs,
+    possible_successor_pairs,
 )
 from tests.mission_writing import drive
 
@@ -163,7 +163,7 @@ def routes(draw):
 def test_each_path_keeps_its_velocity_or_its_task_is_reported(mission):
     there, differ = departure_to_approach_velocities(mission)
     old_velocities, new_velocities = velocities(mission), velocities(there)
-    for source, target in transition_pairs(mission):
+    for source, target in possible_successor_pairs(mission):
         old = None if source == MISSION_START else old_velocities[source]
         assert new_velocities[target] == old or target in differ
 
@@ -174,5 +174,5 @@ def test_converting_velocities_to_version_2_and_back_changes_nothing(mission):
     on, differ = approach_to_departure_velocities(mission)
     if not differ:
         there, _ = departure_to_approach_velocities(on)
-        reached = {target for _, target in transition_pairs(mission)}
+        reached = {target for _, target in possible_successor_pairs(mission)}
         assert all(velocities(there)[t] == velocities(mission)[t] for t in reached)

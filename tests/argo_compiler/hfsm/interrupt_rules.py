@@ -46,7 +46,9 @@ class Rules:
         s = replace(s, alarms=alarms)
         if own and own.response is not Response.REPORT and event not in known:
             active = self.reactions.get(s.at)
-            only_ends_the_hold = active and active.until is event and own.urgency <= active.urgency
+            only_ends_the_hold = (
+                active and active.until is event and own.urgency_score <= active.urgency_score
+            )
             if not only_ends_the_hold:
                 s = replace(s, alarms=(*alarms, (event, False)))
         return self.arranged(s)
@@ -97,9 +99,9 @@ class Rules:
         """Return the state after a change: the highest rank is active, and a hold may be over."""
         if s.paused or not s.alarms:
             return s
-        top = max(s.alarms, key=lambda alarm: self.reactions[alarm[0]].urgency)[0]
+        top = max(s.alarms, key=lambda alarm: self.reactions[alarm[0]].urgency_score)[0]
         active = self.reactions.get(s.at)
-        if active is None or self.reactions[top].urgency > active.urgency:
+        if active is None or self.reactions[top].urgency_score > active.urgency_score:
             s = replace(s, at=top, there=False)
             return self.arrived(s) if self.reactions[top].response is Response.PAUSE else s
         return self.released(s) if s.there and dict(s.alarms)[s.at] else s

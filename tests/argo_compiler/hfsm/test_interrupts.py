@@ -178,23 +178,25 @@ def assert_invariants(known, before, trigger, event, rows):
     if own is not None and own.response is not Response.REPORT:
         active = known.get(before.active)
         ends_a_hold = active is not None and active.until is event
-        if not (ends_a_hold and own.urgency <= active.urgency):
+        if not (ends_a_hold and own.urgency_score <= active.urgency_score):
             assert event in {*pending, *had_its_turn, *(p.event for p in before.pending)}
     # Whoever has the robot ranks highest, unless a person has to let it go on.
     if not after.paused:
-        ranks = [known[one.event].urgency for one in after.waiting]
+        ranks = [known[one.event].urgency_score for one in after.waiting]
         if after.active is None:
             assert not ranks
         else:
-            assert all(rank <= known[after.active].urgency for rank in ranks)
-            equal = [e for e in pending if known[e].urgency == known[after.active].urgency]
+            assert all(rank <= known[after.active].urgency_score for rank in ranks)
+            equal = [
+                e for e in pending if known[e].urgency_score == known[after.active].urgency_score
+            ]
             assert equal[0] is after.active
     # A hold ends by its event, a person, its limit, or one of higher rank.
     left = before.stage is Stage.HOLDING and after.active is not before.active
     if left:
         hold = known[before.active]
         awaited = trigger is Trigger.EVENT and hold.until is event and not before.paused
-        higher = own is not None and own.urgency > hold.urgency
+        higher = own is not None and own.urgency_score > hold.urgency_score
         assert awaited or higher or trigger in (Trigger.RESUME, Trigger.LIMIT)
 
 

@@ -36,7 +36,7 @@ from argo_env.drives.tracked.drive import TrackedDrive
 from argo_env.navigation import Navigator, Path
 from argo_env.navigation.path import Motion
 from argo_env.planning import OpenedSite, open_site
-from argo_env.planning.start import start_pose_or_lowest_dock
+from argo_env.planning.start import start_pose_or_area_dock
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import Calibration, MotionKind, RobotSpec, calibration_file, load_robot
 from argo_env.run.session import simulate
@@ -129,7 +129,7 @@ def time_motions_and_count_failed_paths(
     with World(navigator.site, navigator.robot) as world:
         drive = make(world, navigator.robot)
         start = navigator.snap_keeping_heading(
-            start_pose_or_lowest_dock(mission, navigator.site.docks)
+            start_pose_or_area_dock(mission, navigator.site.docks)
         )
         drive.place_robot(BodyPose(start.x, start.y, start.z, start.yaw))
         for task in mission.tasks[1:]:

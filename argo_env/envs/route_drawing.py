@@ -12,7 +12,7 @@ from argo_env.envs.route_instance import DOCK, RouteInstance, Stair
 from argo_env.envs.route_site_times import navigator_without
 from argo_env.envs.route_sources import DEPTH, WIDTH, RandomRoutes, RouteSource, SiteRoutes
 from argo_env.navigation import Navigator
-from argo_env.pictures.drawing.floors import FloorPlan, aisle_plans, empty_floor_plans
+from argo_env.pictures.drawing.floors import FloorPlan, empty_floor_plans, rectangular_floor_plans
 from argo_env.pictures.drawing.path import PathPoint
 from argo_env.pictures.drawing.plan import Marker, PlanDrawing, StationMark, draw_plan
 from argo_env.pictures.drawing.sheet import FloorSheet, make_sheet, site_sheet
@@ -231,7 +231,7 @@ def _sheet(
         return site_sheet(source.scenario, low, high, requested or tuple(numbers))
     plans: tuple[FloorPlan, ...]
     if isinstance(source, RandomRoutes):
-        plans = aisle_plans(WIDTH, DEPTH, high, source.ends_with_stairs)[low - 1 :]
+        plans = rectangular_floor_plans(WIDTH, DEPTH, high, source.ends_with_stairs)[low - 1 :]
     else:
         plans = empty_floor_plans([position[:2] for position in positions if position[2]], numbers)
     return make_sheet(plans, [n for n in numbers if requested and n not in requested])

@@ -25,7 +25,7 @@ from argo_env.navigation.stencil import (
     Stencil,
     footprint_stencil,
     heading_angle,
-    turn_stencil,
+    stencil_of_turn_to_next,
 )
 from argo_env.navigation.surface import Surface
 from argo_env.robot.spec import MotionKind, RobotSpec, motion_kind
@@ -244,7 +244,9 @@ def _turns(surface: Surface, robot: RobotSpec, state_of: NDArray[np.int64]) -> l
     for heading in range(HEADINGS):
         here, there = state_of[:, heading], state_of[:, (heading + 1) % HEADINGS]
         middle = np.flatnonzero((here >= 0) & (there >= 0))
-        z = turn_stencil(robot.footprint, heading, MARGIN).surface_heights(surface, middle)
+        z = stencil_of_turn_to_next(robot.footprint, heading, MARGIN).surface_heights(
+            surface, middle
+        )
         ok = middle[z.max(axis=0) - z.min(axis=0) <= TURNING_LEVEL]  # False where a height is nan
         time = np.full(len(ok), seconds)
         edges += [(here[ok], there[ok], time), (there[ok], here[ok], time)]

@@ -155,12 +155,12 @@ def costs_and_times_from_entries(
     The states are in the region's own numbers. Both arrays have the shape (entries, ends). Without
     a path, the cost is inf and the time 0.
     """
-    return area.trees_from_entries[0][:, ends], tree_times(
+    return area.trees_from_entries[0][:, ends], times_from_tree_roots(
         lattice, area, area.trees_from_entries, ends
     )
 
 
-def tree_times(
+def times_from_tree_roots(
     lattice: Lattice, area: Region, trees: Trees, ends: NDArray[np.int64]
 ) -> NDArray[np.float64]:
     """Return the time (s) of the path from the root of each tree to each of `ends`.
@@ -291,7 +291,10 @@ class PathSearch:
             area = part.regions[here]
             tree = shortest_path_trees(area.forward, np.array([source]))
             ends = np.concatenate([local[columns[here]], area.exits])
-            costs, times = tree[0][0, ends], tree_times(self._lattice, area, tree, ends)[0]
+            costs, times = (
+                tree[0][0, ends],
+                times_from_tree_roots(self._lattice, area, tree, ends)[0],
+            )
             inside = len(columns[here])
             # To each portal of the site, by the best of the region's exits.
             exits = portals.indices_of_exits(area)
@@ -317,7 +320,7 @@ class PathSearch:
         return result
 
     def _portal_path(self, source: int, goals: Goals) -> _PortalPath | None:
-        """Return the cheapest path from `source` to a goal that leaves the region of `source`.
+        """Return the cheapest path from `source` over portals to a goal, in any region.
 
         Returns None if there is none.
         """
@@ -347,7 +350,7 @@ class PathSearch:
         return best
 
     def _path_over(self, source: int, portal_path: _PortalPath) -> list[int]:
-        """Return the states of a path over portals."""
+        """Return the states of a path over portals, from `source` to its goal, both included."""
         part, portals = self.partition, self._portals
         area = part.regions[part.region[source]]
         first = int(portals.indices_of_exits(area)[portal_path.leaving])
@@ -361,7 +364,7 @@ class PathSearch:
         return [*states, *portal_path.area.members[steps[1:]].tolist()]
 
     def _states_between(self, a: int, b: int) -> list[int]:
-        """Return the states after portal `a` up to portal `b`, the next one on a cheapest path."""
+        """Return the states after portal `a` up to and including `b`, the next portal on a path."""
         part = self.partition
         area = part.regions[part.region[a]]
         if part.region[b] != part.region[a]:

@@ -79,7 +79,10 @@ def rasterise(elements: tuple[Element, ...], grid: Grid) -> Columns:
 def _columns_of(
     solid: Solid, grid: Grid
 ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Return cells, a solid's lowest and highest point in each, and its top at each centre."""
+    """Return cells, a solid's lowest and highest point in each, and its top at each centre.
+
+    The top is -inf where the solid misses the centre.
+    """
     half = half_extents(solid)
     i0, i1 = _cells(solid.center[0], half[0], grid.x0, grid.nx)
     j0, j1 = _cells(solid.center[1], half[1], grid.y0, grid.ny)

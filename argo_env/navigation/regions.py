@@ -53,15 +53,15 @@ class Landmarks:
     """name of the part of the disk cache that has the costs from and to the landmarks"""
 
     def lower_bounds_from_all_states(
-        self, source: int, ends: NDArray[np.int64], end_costs: NDArray[np.float64]
+        self, search_start: int, ends: NDArray[np.int64], end_costs: NDArray[np.float64]
     ) -> NDArray[np.float64] | None:
         """Return for each state a lower bound (s) on the cost to reach one of `ends`.
 
         Along a move, bounds fall by less than the cost of the move. They are closest to the true
-        costs near the paths from `source`.
+        costs near the paths from `search_start`.
 
         Args:
-            source: State from which the search starts.
+            search_start: State from which the search starts.
             ends: States to reach.
             end_costs: Additional cost (s) of each of `ends`.
 
@@ -75,7 +75,7 @@ class Landmarks:
         behind = (onto[:, ends] - end_costs).max(axis=1).astype(np.float32)
         before = (away[:, ends] + end_costs).min(axis=1).astype(np.float32)
         with np.errstate(invalid="ignore"):
-            worth = np.concatenate([onto[:, source] - behind, before - away[:, source]])
+            worth = np.concatenate([onto[:, search_start] - behind, before - away[:, search_start]])
         usable = np.isfinite(np.concatenate([behind, before]))
         worth[~usable] = -np.inf
         best = np.zeros(len(self.positions), dtype=np.float32)
@@ -171,7 +171,7 @@ class Region:
 
     @cached_property
     def trees_to_exits(self) -> Trees:
-        """Cheapest paths to each exit, the root: the next state is the one after on a path."""
+        """Cheapest paths to each exit: their costs, and each state's next one towards the exit."""
         return self._trees("exits", self.backward, self.exits)
 
     def _trees(self, kind: str, graph: Graph, sources: NDArray[np.int64]) -> Trees:

@@ -148,7 +148,10 @@ class FlatMap:
 
 
 def _distances(cells: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """Return the distance (m) from each cell's centre to that of the nearest cell of the mask."""
+    """Return the distance (m) from each cell's centre to that of the nearest cell of the mask.
+
+    It is 0 in the mask.
+    """
     # scipy is imported with the first path only: see `graphs`.
     from scipy.ndimage import distance_transform_edt
 
@@ -166,7 +169,7 @@ def _inner_radius(footprint: Footprint) -> float:
 def _centers_near(
     centers: Centers, low: tuple[float, float], high: tuple[float, float], reach: float
 ) -> Centers:
-    """Return the centres within `reach` (m) of the rectangle from `low` to `high`."""
+    """Return the centres in a rectangle, from `low` - `reach` to `high` + `reach` (m)."""
     x, y = centers
     part = slice(*np.searchsorted(x, (low[0] - reach, high[0] + reach)))
     x, y = x[part], y[part]
@@ -264,7 +267,7 @@ def _direct_times(
 
 
 def _vertices(stretch: list[Motion]) -> list[Pose]:
-    """Return the ends of the motions, and poses between them along long drives and turns."""
+    """Return the start, the end of each motion, and poses between along long drives and turns."""
     poses = [stretch[0].start]
     for motion in stretch:
         pieces = math.ceil(

@@ -54,7 +54,8 @@ class Stencil:
 def make_stencil(cells: set[tuple[int, int]]) -> Stencil:
     """Return the stencil of a set of offsets; the middle (0, 0) is added.
 
-    From each offset, steps to neighbours in the set must lead ever nearer to the middle.
+    From each offset, steps to neighbours in the set must lead ever nearer to the middle;
+    otherwise a ValueError is raised.
     """
     ordered = sorted(cells | {(0, 0)}, key=lambda c: (c[0] ** 2 + c[1] ** 2, c))
     index = {offset: k for k, offset in enumerate(ordered)}
@@ -165,7 +166,7 @@ def footprint_stencil(footprint: Footprint, heading: int, margin: float) -> Sten
     return make_stencil(covered_cells(footprint, heading_angle(heading), margin))
 
 
-def turn_stencil(footprint: Footprint, heading: int, margin: float) -> Stencil:
+def stencil_of_turn_to_next(footprint: Footprint, heading: int, margin: float) -> Stencil:
     """Return the stencil of a turn in place from `heading` to the next one, counter-clockwise.
 
     It has all cells that the robot touches on the way. `margin` (m) is added on all sides.

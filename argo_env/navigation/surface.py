@@ -90,9 +90,9 @@ def find_surface(
     A cell is traversable at the height of the top of a solid that is there to walk on, measured at
     the cell's centre, if nothing in the cell obstructs the space from there to `headroom` above it.
     Solids that rise at most 1 cm into this space don't obstruct it, nor do solids to walk on that
-    rise at most `max_step` (m) into it, as the robot climbs them. Of tops within `max_step` of each
-    other only the highest counts. Links lead to neighbouring cells at most `max_step` higher or
-    lower.
+    rise at most `max_step` (m) into it, as the robot climbs them. Of several tops, each at most
+    `max_step` above the one below, only the highest counts. Links lead to neighbouring cells at
+    most `max_step` higher or lower.
     """
     columns = rasterise(elements, grid)
     cell, z = _candidates(columns, max_step)

@@ -39,7 +39,7 @@ class Camera:
         )
         return matrix
 
-    def project(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    def project_with_depth(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return column and row (px) and depth (m) of points (m), shape (n, 3), in the same shape.
 
         The depth is along the camera's line of sight, less than 0 behind the camera.

@@ -20,15 +20,17 @@ _NORMAL, _ABNORMAL = (110, 226, 160, 255), (255, 128, 120, 255)
 _TONES = {Tone.GOOD: _NORMAL, Tone.NOTICE: (255, 196, 92, 255), Tone.BAD: _ABNORMAL}
 
 
-def add_caption(frame: Image.Image, record: RunRecord, t: float, floor: int) -> Image.Image:
+def with_caption(frame: Image.Image, record: RunRecord, t: float, floor: int) -> Image.Image:
     """Return a copy of the RGB frame with a bar at its bottom that describes the run at `t` (s).
 
     `floor` is the number of the floor that the robot is on.
     """
-    return add_bottom_bar(frame, *_caption_texts(record, t, floor))
+    return with_bar_over_bottom(frame, *_caption_texts(record, t, floor))
 
 
-def add_bottom_bar(frame: Image.Image, left: Sequence[Text], right: Sequence[Text]) -> Image.Image:
+def with_bar_over_bottom(
+    frame: Image.Image, left: Sequence[Text], right: Sequence[Text]
+) -> Image.Image:
     """Return a copy of the RGB frame with a bar at its bottom that has texts at both ends."""
     width, height = frame.size
     bar = Image.new("RGBA", (width, round(height * HEIGHT)), _BAR)
@@ -54,8 +56,11 @@ def add_bottom_bar(frame: Image.Image, left: Sequence[Text], right: Sequence[Tex
     return result
 
 
-def add_verdict(frame: Image.Image, record: RunRecord) -> Image.Image:
-    """Return a copy of the RGB frame with the verdict of the run in a bar above the caption."""
+def with_verdict(frame: Image.Image, record: RunRecord) -> Image.Image:
+    """Return a copy of the RGB frame with the verdict of the run in a bar above the caption.
+
+    The area of the caption stays free, whether the frame has one already or not.
+    """
     width, height = frame.size
     headline = record.headline
     word, ink = headline.word, _TONES[headline.tone]
@@ -79,7 +84,7 @@ def add_verdict(frame: Image.Image, record: RunRecord) -> Image.Image:
 def _wrap_lines(
     text: str, draw: ImageDraw.ImageDraw, font: ImageFont.ImageFont | _Font, room: float
 ) -> list[str]:
-    """Return the text in lines of at most `room` px; what does not fit is cut off."""
+    """Return at most LINES lines of at most `room` px; `…` stands for what does not fit."""
     lines = [""]
     for word in text.split():
         longer = f"{lines[-1]} {word}".strip()

@@ -86,7 +86,10 @@ class ChaseCamera:
 def _eyes(
     target: NDArray[np.float64], sides: NDArray[np.float64], heights: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Return positions at the camera's distance from the target, shape (n, 3)."""
+    """Return positions at the camera's distance from the target, shape (n, 3).
+
+    `sides` and `heights` have the azimuth and the elevation (rad) of each, shape (n,).
+    """
     level = np.cos(heights)
     ways = np.column_stack([level * np.cos(sides), level * np.sin(sides), np.sin(heights)])
     return np.asarray(target + _DISTANCE * ways)

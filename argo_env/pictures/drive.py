@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from argo_env.pictures.camera import Camera
-from argo_env.pictures.caption import BRIGHT, DIM, HEIGHT, add_bottom_bar
+from argo_env.pictures.caption import BRIGHT, DIM, HEIGHT, with_bar_over_bottom
 from argo_env.pictures.scene import CameraView
 
 GOAL = (251, 191, 36)
@@ -46,7 +46,7 @@ def draw_drive(
     )
     left = [(f"{time:.1f} s", BRIGHT), (f"floor {here}", DIM)]
     right = [(remaining, BRIGHT), (f"floor {there}", DIM)]
-    return np.asarray(add_bottom_bar(frame, left, right), dtype=np.uint8)
+    return np.asarray(with_bar_over_bottom(frame, left, right), dtype=np.uint8)
 
 
 def _mark(
@@ -54,7 +54,7 @@ def _mark(
 ) -> None:
     """Draw a pole with a round head at the goal, unless the whole head is hidden."""
     x, y, z = goal
-    foot, head = camera.project(np.array([goal, (x, y, z + _POLE)]))
+    foot, head = camera.project_with_depth(np.array([goal, (x, y, z + _POLE)]))
     width, height = camera.size
     column, row, depth = head.tolist()
     if min(depth, foot[2]) < camera.near:

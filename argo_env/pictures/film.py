@@ -26,7 +26,7 @@ from argo_compiler.base.extras import install_line
 from argo_compiler.files.atomic_write import atomic_draft, check_writable
 from argo_env.files.folders import CHOOSE_ANOTHER_PLACE, reporting_write_errors
 from argo_env.pictures.camera import Camera
-from argo_env.pictures.caption import add_caption, add_verdict
+from argo_env.pictures.caption import with_caption, with_verdict
 from argo_env.pictures.chase import ChaseCamera
 from argo_env.pictures.light import depth_shading, shade_view
 from argo_env.pictures.motion import RecordedMotion, check_record_site
@@ -111,7 +111,7 @@ def write_gif(
 ) -> None:
     """Write RGB frames as a GIF that loops, in the colours of `palette`, a palette image.
 
-    `frame_time` (s) is a whole number of hundredths.
+    `frame_time` (s) has to be a whole number of hundredths, which is not checked.
 
     Raises:
         OSError: The file can't be written.
@@ -168,7 +168,7 @@ class FilmShot:
     """number of frames of the film that show it"""
 
 
-def make_shots(
+def plan_shots(
     motion: RecordedMotion,
     scene: Scene,
     times: list[float],
@@ -189,7 +189,7 @@ def make_shots(
         pose, floor = motion.pose_at(t), motion.floor_at(t)
         scene.show_floors(floor, _DECKS)
         yield FilmShot(
-            t, floor, pose, motion.joints_at(t), camera.next_camera(pose), len(list(same))
+            t, floor, pose, motion.joint_degrees_at(t), camera.next_camera(pose), len(list(same))
         )
 
 
@@ -199,8 +199,8 @@ def draw_frame(record: RunRecord, scene: Scene, shot: FilmShot, end: float) -> I
     scene.place_robot(shot.pose, shot.joints)
     view = scene.render_from(shot.camera)
     brightness = depth_shading(view, shot.camera.size[1] / 50, 0.45)
-    frame = add_caption(Image.fromarray(shade_view(view, brightness)), record, shot.t, shot.floor)
-    return add_verdict(frame, record) if shot.t >= end else frame
+    frame = with_caption(Image.fromarray(shade_view(view, brightness)), record, shot.t, shot.floor)
+    return with_verdict(frame, record) if shot.t >= end else frame
 
 
 def draw_frames(
@@ -319,9 +319,9 @@ def write_film(
         atomic_draft(file) as draft,
     ):
         with Scene(site, robot) as scene:
-            shots = [*make_shots(motion, scene, times, (width, height), frame_time)]
+            shots = [*plan_shots(motion, scene, times, (width, height), frame_time)]
             spread = _spread_times(times) if is_gif else []
-            sampled = make_shots(motion, scene, spread, (width, height), math.inf)
+            sampled = plan_shots(motion, scene, spread, (width, height), math.inf)
             samples = [draw_frame(record, scene, shot, motion.end_time) for shot in sampled]
         frames = _repeat_frames(
             draw_frames(record, site, robot, shots, motion.end_time), shots, progress

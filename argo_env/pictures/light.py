@@ -17,7 +17,7 @@ _SUN_DISTANCE = 120.0  # m, far enough for rays that are nearly parallel
 _BIAS = 0.06  # m that a lit surface may be behind the shadow map, whose pixels are coarse
 
 
-def backdrop(size: tuple[int, int]) -> NDArray[np.float64]:
+def sky_colours(size: tuple[int, int]) -> NDArray[np.float64]:
     """Return colours of a sky that is lighter at the bottom, 0 to 255, shape (height, width, 3)."""
     width, height = size
     share = np.linspace(0.0, 1.0, height)[:, None, None]
@@ -29,7 +29,7 @@ def shade_view(view: CameraView, brightness: NDArray[np.float64]) -> NDArray[np.
     height, width = view.depth.shape
     lit = (view.colours * brightness[:, :, None].astype(np.float32)).astype(np.uint8)
     empty = ~np.isfinite(view.depth)
-    lit[empty] = backdrop((width, height))[empty]
+    lit[empty] = sky_colours((width, height))[empty]
     return lit
 
 
@@ -95,7 +95,7 @@ def shadow_mask(
     row, column = np.nonzero(np.isfinite(within))
     below, right = part[0].start or 0, part[1].start or 0
     points = camera.unproject(column + right, row + below, within[row, column])
-    x, y, away = sun.project(points).T
+    x, y, away = sun.project_with_depth(points).T
     width, height = sun.size
     # Points outside the map are lit.
     inside = (x >= 0) & (x < width) & (y >= 0) & (y < height)

@@ -50,7 +50,7 @@ class RecordedMotion:
         """Return the floor of the last sample up to the time t (s), or of the first one."""
         return self._floors[max(0, int(np.searchsorted(self._times, t, side="right")) - 1)]
 
-    def joints_at(self, t: float) -> dict[str, float]:
+    def joint_degrees_at(self, t: float) -> dict[str, float]:
         """Return the positions of the robot's joints at the time t (s), in degrees, by name.
 
         They are computed from the pitch and the times of the readings: the record has no joints.

@@ -90,7 +90,7 @@ def add_robot(site_only: LitView, robot: Scene, camera: Camera, sun: Camera) -> 
     lit_depth = np.minimum(site_only.lit_depth, lit.depth)
     # The light only changes on the robot, and where its shadow falls on the site.
     row, column = np.nonzero((lit.depth < site_only.lit_depth) & np.isfinite(site_only.lit_depth))
-    behind = camera.project(sun.unproject(column, row, site_only.lit_depth[row, column]))
+    behind = camera.project_with_depth(sun.unproject(column, row, site_only.lit_depth[row, column]))
     part = _part_around(np.vstack([np.argwhere(front)[:, ::-1], behind[:, :2]]), camera.size)
     dark = site_only.dark.copy()
     if part is not None:
@@ -140,7 +140,7 @@ def write_overview(record: RunRecord, site: Site, robot: RobotSpec, file: Path) 
     """Write a PNG of SIZE of the site seen from the south-west, with the driven path.
 
     The path's colour depends on the time, as in the report; it is dashed where something hides it.
-    Measured checkpoints are labelled with their ids, red where the value is not nominal.
+    Checkpoints with a reading are labelled with their ids, red if the last one is not nominal.
 
     Raises:
         ArgoError: The record is of another site or has no path, or the file can't be written.
@@ -151,7 +151,7 @@ def write_overview(record: RunRecord, site: Site, robot: RobotSpec, file: Path) 
     sun = sun_camera(site, _SHADOW_MAP)
     site_only = view_without_robot(site, robot, camera, sun)
     with Scene(None, robot) as scene:
-        scene.place_robot(motion.pose_at(motion.end_time), motion.joints_at(motion.end_time))
+        scene.place_robot(motion.pose_at(motion.end_time), motion.joint_degrees_at(motion.end_time))
         lit = add_robot(site_only, scene, camera, sun)
     view = lit.view
     brightness = shadow_brightness(lit.dark, float(_FINER))
@@ -189,7 +189,7 @@ def _draw_path(
     times = np.array(list(_path_times(record)))
     poses = [motion.pose_at(float(t)) for t in times]
     points = np.array([(p.x, p.y, p.z + _PATH_HEIGHT) for p in poses])
-    pixels = camera.project(points)
+    pixels = camera.project_with_depth(points)
     seen = _visible(pixels, view)
     end = motion.end_time or 1.0
     faint = Image.new("RGBA", image.size, (0, 0, 0, 0))
@@ -265,7 +265,7 @@ def _draw_markers(
     for reading in record.readings:
         position = site.checkpoint(reading.checkpoint).position
         labels[position] = (str(reading.checkpoint), _NORMAL if reading.normal else _ABNORMAL)
-    pixels = camera.project(np.array(list(labels)))
+    pixels = camera.project_with_depth(np.array(list(labels)))
     # The nearest are drawn last, so that they are on top.
     for index in np.argsort(-pixels[:, 2], kind="stable"):
         text, ink = list(labels.values())[index]

@@ -22,7 +22,7 @@ from argo_env.pictures.drawing.label_placement import LabelPlacer, draw_plate
 from argo_env.pictures.drawing.path import (
     PathPoint,
     draw_any_stairs_taken,
-    draw_lines,
+    draw_lines_with_arrows,
     draw_thin_lines,
     path_lines,
 )
@@ -54,7 +54,7 @@ _LEFT = 16.0 * FINER
 _OLD = (120, 132, 145)
 
 
-def picture_names(site: Site) -> tuple[str, ...]:
+def possible_picture_names(site: Site) -> tuple[str, ...]:
     """Return the names of the files that `write_route` may write."""
     return tuple(_name(floor.number) for floor in site.spec.floors)
 
@@ -132,7 +132,10 @@ def _path_points(
 
 
 def _tasks(planned: MissionProblem, route: Tour) -> Iterator[Task]:
-    """Yield the tasks that are always executed, in the order of `route`, then that of the end."""
+    """Yield the tasks that are always executed, in the order of `route`, then the END task.
+
+    It is left out if the mission does not always end with one.
+    """
     visits = planned.visits
     for visit in route.order:
         yield visits.leaf_task(visits.task_units[visit].entry)
@@ -183,7 +186,7 @@ def _draw_floor(
     draw_thin_lines(draw, thin, _OLD)
     for line in bold:
         labels.avoid_path_if_possible(line.points)
-    draw_lines(draw, bold)
+    draw_lines_with_arrows(draw, bold)
     number_of = {visit: k + 1 for k, visit in enumerate(route.order)}
     for x, y, own_floor, _ in stations:
         if own_floor == floor:
@@ -224,7 +227,7 @@ def _stations(
 
 
 def _visit_position(planned: MissionProblem, visit: int, site: Site) -> tuple[float, float, int]:
-    """Return the position of a visit's task: x, y (m) and floor."""
+    """Return x, y (m) and floor of the checkpoint that a visit measures, or else of its pose."""
     task = planned.visits.leaf_task(planned.visits.task_units[visit].entry)
     if task.action is Action.MEASURE:
         checkpoint = site.checkpoint_for(task.object_id)
@@ -234,7 +237,10 @@ def _visit_position(planned: MissionProblem, visit: int, site: Site) -> tuple[fl
 
 
 def _draw_legend(draw: ImageDraw.ImageDraw, old: bool, new: bool, dropped: bool) -> None:
-    """Draw the legend of lines and discs."""
+    """Draw the legend of lines and discs.
+
+    `old` and `new` state if these paths are drawn, `dropped` if visits are left out of the order.
+    """
     y, face, x = (SIZE[1] - FOOT / 2) * FINER, font(12), _LEFT
 
     def draw_entry(text: str, x: float) -> float:

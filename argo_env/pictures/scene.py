@@ -61,13 +61,14 @@ class Scene(Connection):
             self.show_floors(max(self._floors))
         self.hide_robot()
 
-    def show_floors(self, top: int, decks: int | None = None) -> None:
+    def show_floors(self, top: int, floors_with_decks: int | None = None) -> None:
         """Show the floors up to the one numbered `top`, and hide those above it.
 
-        If `decks` is given, decks, stairs and railings are shown for that many of the uppermost of
-        these floors only: the lower ones are hardly visible, and take most of the time.
+        If `floors_with_decks` is given, decks, stairs and railings are shown for that many of the
+        uppermost of these floors only: the lower ones are hardly visible, and take most of the
+        time.
         """
-        lowest = min(self._floors) if decks is None else top - decks + 1
+        lowest = min(self._floors) if floors_with_decks is None else top - floors_with_decks + 1
         if (lowest, top) == self._shown:
             return
         self._shown = lowest, top
@@ -78,9 +79,9 @@ class Scene(Connection):
                     self._place(body, origin if first <= number <= top else _HIDDEN, rpy)
         self._detect()
 
-    def place_robot(self, pose: BodyPose, joints: Mapping[str, float]) -> None:
+    def place_robot(self, pose: BodyPose, joint_degrees: Mapping[str, float]) -> None:
         """Place the robot at the pose, with joints at positions in degrees, by name."""
-        for name, angle in joints.items():
+        for name, angle in joint_degrees.items():
             pybullet.resetJointState(
                 self._robot_body,
                 self._joints[name],

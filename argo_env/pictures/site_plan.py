@@ -49,7 +49,7 @@ _REACHED, _UNREACHED, _RED = (52, 168, 110), (205, 50, 50), (190, 24, 24)
 def draw_site_plan(
     site: Site, flaws: Sequence[Flaw] = (), safe_states: SafeStates | None = None
 ) -> bytes:
-    """Return a PNG of the floors with checkpoints, docking stations, places and stairs.
+    """Return a PNG of the floors with checkpoints, docking stations, named locations and stairs.
 
     Flaws are numbered at their marks, and described below the plans. With `safe_states`, poses and
     moves at which the robot touches nothing, the part of the decks that it can reach is shaded and
@@ -57,7 +57,7 @@ def draw_site_plan(
     """
     sheet = make_sheet(floor_plans(site))
     image = sheet.image.copy()
-    shaded = safe_states is not None and safe_states.lowest_usable_dock is not None
+    shaded = safe_states is not None and safe_states.lowest_usable_dock_number is not None
     if safe_states is not None and shaded:
         for number in sheet.panels:
             _shade(image, sheet, number, safe_states)

@@ -33,7 +33,7 @@ def code_digest() -> str:
 
 
 def _version_of(library: str) -> str:
-    """Return a text that has the version of a library, or its path; "none" if it is not installed.
+    """Return the text of a library's `version.py`, else its path; "none" if it is not installed.
 
     The library is not imported, as that would take longer than everything else.
     """

@@ -34,6 +34,6 @@ def inspection_views_by_object_id(
 
 
 def _some_pose(navigator: Navigator) -> Pose:
-    """Return a pose on the lowest floor that the robot can reach, for a site without docks."""
+    """Return a pose that can be reached on the site's lowest floor, for a site without docks."""
     x, y, z, _ = navigator.turning_poses(navigator.site.spec.floors[0].number)[0].tolist()
     return Pose(x=x, y=y, z=z)

@@ -66,10 +66,10 @@ def mission_travel(
 
     Args:
         mission: Mission whose tasks, without START, are the rows and columns; the pose at which it
-            starts is a row only.
+            starts is a further row, after those of the tasks.
         navigator: Navigator of the site.
         travel: Travel times on the site.
-        chargers: True if the docking stations are rows and columns as well.
+        chargers: True if the docking stations are the last rows and columns.
     """
     tasks = [task for task in mission.tasks if task.action is not Action.START]
     docks = sorted(navigator.site.docks.items()) if chargers else []

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from argo_env.robot.spec import RobotSpec
 
 
-def view_warnings(mission: Mission, site: "OpenedSite") -> Iterator[Diagnostic]:
+def not_seen_from_pose_warnings(mission: Mission, site: "OpenedSite") -> Iterator[Diagnostic]:
     """Yield a warning for each MEASURE task with a pose from which its checkpoint can't be read.
 
     Everything is taken to be where the site's description has it. Tasks whose pose can't be reached

@@ -6,7 +6,7 @@ from argo_compiler.base.model import Pose
 from argo_compiler.il import Action, Mission
 
 
-def start_pose_or_lowest_dock(mission: Mission, docks: Mapping[int, Pose]) -> Pose:
+def start_pose_or_area_dock(mission: Mission, docks: Mapping[int, Pose]) -> Pose:
     """Return the pose of the mission's START task or, without one, the dock of its starting area.
 
     If the mission names no starting area, or one that is not among `docks`, it is the dock with the

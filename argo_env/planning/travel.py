@@ -15,7 +15,7 @@ from argo_compiler.il import MAX_TIME_S, Action, Mission, Task
 from argo_env.drives.timetable import count_steps
 from argo_env.files.parts import Parts
 from argo_env.navigation.path import Motion, Path
-from argo_env.planning.start import start_pose_or_lowest_dock
+from argo_env.planning.start import start_pose_or_area_dock
 from argo_env.robot.spec import MotionKind, RobotSpec
 from argo_env.site import Site
 
@@ -135,7 +135,7 @@ class SiteTravel:
         It is moved to the nearest position at which the robot can stand. Raises Unreachable if none
         is near.
         """
-        pose = start_pose_or_lowest_dock(mission, self._on.site.docks)
+        pose = start_pose_or_area_dock(mission, self._on.site.docks)
         path = cached_path(
             self._parts,
             ["stand", pose_data(pose)],

@@ -55,12 +55,12 @@ class BestEffortRecorder(Observer):
     def on_end(self, record: RunRecord) -> None:
         self._try(lambda: self._recorder.on_end(record))
 
-    def complete_recording(self) -> None:
+    def complete_without_closing(self) -> None:
         """Complete the recording: write what is pending, and the index; do not close the file.
 
         If it can't be written, no error is raised: a warning is given, and `loss` has the reason.
         """
-        self._try(self._recorder.complete_recording)
+        self._try(self._recorder.complete_without_closing)
 
     def _try(self, write: Callable[[], None]) -> None:
         """Call the function, unless the recording has ended; end the recording if it fails."""
@@ -126,4 +126,4 @@ def recording_to(
         try:
             yield recorder
         finally:
-            recorder.complete_recording()
+            recorder.complete_without_closing()

@@ -37,8 +37,8 @@ class LiveWriter(TopicWriter):
         self._lock = Lock()
         self._last: dict[int, tuple[foxglove.Channel, bytes, int]] = {}
 
-    def resend_last(self, channel_id: int) -> None:
-        """Send the last message of a channel again, for a new subscriber."""
+    def resend_last_to_all(self, channel_id: int) -> None:
+        """Send a channel's last message, if any, again to all its subscribers, as one is new."""
         with self._lock:
             last = self._last.get(channel_id)
         if last is not None:
@@ -70,7 +70,7 @@ class _SubscriptionListener:
 
     def on_subscribe(self, client: Any, channel: Any) -> None:  # noqa: ARG002
         if self.writer is not None:
-            self.writer.resend_last(channel.id)
+            self.writer.resend_last_to_all(channel.id)
 
     def on_unsubscribe(self, client: Any, channel: Any) -> None:
         """Do nothing."""

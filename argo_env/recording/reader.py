@@ -45,7 +45,7 @@ class ContentStream(BytesIO):
         return data
 
 
-def read_data_section(content: ContentStream) -> "Iterator[McapRecord]":
+def iter_verified_records(content: ContentStream) -> "Iterator[McapRecord]":
     """Yield the records of the data section, with DataEnd as the last, after verifying checksums.
 
     After the last one, the position of the stream is the end of the section. Raises one of
@@ -158,14 +158,14 @@ class Recording:
         if self.record is None:
             raise Invalid(
                 f"{self.name} has no record of the run, which is written at its end: "
-                f"{self.missing_record_reason}. "
+                f"{self.reason_if_record_missing}. "
                 "No report and no film can be made of it; what is there can be shown",
                 remedies=(Remedy.SHOW_REST,),
             )
         return self.record
 
     @property
-    def missing_record_reason(self) -> str:
+    def reason_if_record_missing(self) -> str:
         """Reason why the record is missing, in words; meaningless if `record` is not None."""
         if self.flaw is None:
             return f"the run broke off after {self.until:g} s"
@@ -262,7 +262,7 @@ def _read_parts(name: str, content: bytes, parts: _Parts) -> str | None:
         _raise_invalid(name, f"is not an .mcap file: {_HINT}", Remedy.RECORD)
     stream = ContentStream(content)
     try:
-        for record in read_data_section(stream):
+        for record in iter_verified_records(stream):
             parts.add(record)
     except decoding_errors() as error:
         until, why = f"after {parts.until / 1e9:g} s", f"({str(error) or type(error).__name__})"

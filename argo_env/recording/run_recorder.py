@@ -74,7 +74,10 @@ class BatteryState(Model):
 
 
 def make_mission_state(machine: Machine, done: int, readings: int, abnormal: int) -> MissionState:
-    """Return the state of the mission, from its machine and counts for the fields so named."""
+    """Return the state of the mission, from its machine and the counts so far.
+
+    The counts are of the tasks done, the readings, and the abnormal ones of these.
+    """
     running = machine.running
     return MissionState(
         task=running.name if running else None,
@@ -171,7 +174,10 @@ class RunRecorder(Observer):
         self._begun = True
 
     def on_step(self, now: float, action: RobotAction | None) -> None:
-        """Write the step's pictures and, every `SAMPLE_PERIOD`, the robot's pose and new path."""
+        """Write the step's pictures and, every `SAMPLE_PERIOD`, the robot's pose.
+
+        The planned path is written with the pose if it is another one than before.
+        """
         self._now = now
         for shot in self._shots:
             write_shot(self._writer, shot, now)
@@ -236,9 +242,9 @@ class RunRecorder(Observer):
         self._log(str(headline), _LEVELS[headline.tone], "verdict", now)
         self._writer.attach("record.json", "application/json", to_json(record), now)
 
-    def complete_recording(self) -> None:
+    def complete_without_closing(self) -> None:
         """Complete the recording: the writer writes what is pending and, in a file, the index."""
-        self._writer.complete_recording()
+        self._writer.complete_without_closing()
 
     @property
     def readable_until(self) -> float | None:

@@ -57,7 +57,7 @@ class TopicWriter:
     def flush(self, t: float) -> None:
         """Store all messages; t (s) is the present time. Without an override, do nothing."""
 
-    def complete_recording(self) -> None:
+    def complete_without_closing(self) -> None:
         """Write what is pending and completes the recording; do nothing without an override."""
 
     @abstractmethod

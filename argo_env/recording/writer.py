@@ -62,7 +62,7 @@ class RecordingWriter(TopicWriter):
         self._writer.flush()  # type: ignore[no-untyped-call]
         self._mark_intact()
 
-    def complete_recording(self) -> None:
+    def complete_without_closing(self) -> None:
         """Write the index, which completes the file."""
         self.flush(self._latest)
         self._writer.finish()  # type: ignore[no-untyped-call]
@@ -88,7 +88,7 @@ class RecordingWriter(TopicWriter):
 
 
 def media_type(path: Path) -> str:
-    """Return the media type of a mission's source, by its suffix."""
+    """Return the media type of a mission's source by its suffix, or that of any bytes."""
     return {".json": "application/json", ".txt": "text/plain"}.get(
         path.suffix.lower(), "application/octet-stream"
     )

@@ -7,7 +7,7 @@ import logging
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any, NoReturn
+from typing import Any, Literal, NoReturn
 
 from pydantic import ValidationError
 
@@ -57,7 +57,7 @@ class RemoteDrive:
     def follow(self, path: Path, velocity: float | None) -> NoReturn:
         raise NotImplementedError("a remote robot plans its own paths")
 
-    def step(self) -> DriveStatus:
+    def step(self) -> Literal[DriveStatus.ARRIVED]:
         return DriveStatus.ARRIVED
 
     def halt(self) -> None:
@@ -320,7 +320,12 @@ class RemoteRobot:
             self.setup, navigator=self.setup.navigator.with_added_blockages(blockages)
         )
 
-    def start(self, command: StartAction, now: float, arrived_by: Path | None) -> RobotAction:  # noqa: ARG002
+    def prepare_action(
+        self,
+        command: StartAction,
+        now: float,
+        arrived_by: Path | None,  # noqa: ARG002
+    ) -> RobotAction:
         """Prepare the order of an action, which the next `advance` sends.
 
         If the robot already executes an action of the same run and id, it continues that action
@@ -338,7 +343,7 @@ class RemoteRobot:
     def advance(self, step: int, now: float, action: RobotAction | None) -> Sensed:  # noqa: ARG002
         """Wait until the clock reaches the run's time `now` (s), and process the robot's reports.
 
-        Before that, it sends the order that `start` has prepared.
+        Before that, it sends the order that `prepare_action` has prepared. `step` is not used.
 
         Returns:
             What the robot has reported: what it found, and if `action` has ended, its end and its
@@ -346,7 +351,8 @@ class RemoteRobot:
         """
         own = self._action if action else None
         if own and self._order:
-            # Not sent in `start`: actions that are replayed from a journal are not ordered again.
+            # `prepare_action` does not send it, as actions replayed from a journal are not ordered
+            # again.
             self._restarts = self._channel.restarts
             self._channel.post(self._order)
             self._order = None

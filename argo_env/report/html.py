@@ -18,7 +18,7 @@ from argo_env.report.rounds import (
     blocks_by_group,
     merge_waits,
     repeat_rules,
-    timed_and_conditional_rounds,
+    rounds_with_condition_values,
 )
 from argo_env.report.svg import Node, drawing, markup, node, replace_non_xml_characters
 from argo_env.report.timeline import draw_charge_curve, draw_timeline, lacks_measuring_times
@@ -48,7 +48,7 @@ def page(record: RunRecord, site: Site) -> str:
         readings=[(reading, markup(_bar(reading))) for reading in record.readings],
         timeline=markup(draw_timeline(record)) if record.tasks or record.waits else None,
         waits=idle_times,
-        rounds=timed_and_conditional_rounds(record),
+        rounds=rounds_with_condition_values(record),
         rules=repeat_rules(record),
         charge=None if (curve := draw_charge_curve(record)) is None else markup(curve),
         plans=[(n, markup(draw_floor(site, record, n))) for n in floors],
@@ -90,8 +90,8 @@ def _template() -> Template:
 def _findings(record: RunRecord) -> list[tuple[int | None, Anomaly]]:
     """Return a row for each finding and a further one for its end, if reported, sorted by time.
 
-    A row is the number in the drawings and the anomaly. The number is None for an abnormal reading
-    without an anomaly, which no drawing shows.
+    A row is the number in the drawings and the anomaly. For an abnormal reading that no anomaly
+    reports, the number is None, as no drawing shows it, and the anomaly is made from the reading.
     """
     findings = {finding.number: finding for finding in record.findings}
     rows: list[tuple[int | None, Anomaly]] = [

@@ -192,7 +192,8 @@ def _are_adjacent(rows: list[_Row], source: int, target: int) -> bool:
 def _lanes(spans: dict[int, tuple[float, float]]) -> dict[int, int]:
     """Return a lane for each transition, by its number; those in the same lane do not meet.
 
-    `spans` gives the y (px) of both ends. Short transitions get the inner lanes.
+    `spans` gives the y (px) of both ends. Short transitions get the inner lanes, which have
+    the lowest numbers.
     """
     lanes: list[list[tuple[float, float]]] = []
     result = {}
@@ -241,9 +242,10 @@ def _boxes(hfsm: Hfsm, rows: list[_Row], index: dict[str, int], left: float) -> 
 
 
 def _is_inside(row: _Row, depth: int) -> bool:
-    """Return True if the row after rows of a composite belongs to the composite as well.
+    """Return True if `row`, which follows rows of a composite, belongs to the composite as well.
 
-    `depth` is that of the composite's head and direct children: 1 for the machine itself.
+    `depth` is that of the composite's head and of its leaves, 1 for the machine itself; another
+    head with this depth begins the next composite.
     """
     return row.depth > depth or (row.depth == depth and row.kind != "head")
 

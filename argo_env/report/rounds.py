@@ -183,7 +183,7 @@ def merge_waits(
     return tuple(result)
 
 
-def timed_and_conditional_rounds(record: RunRecord) -> list[tuple[RoundRun, str]]:
+def rounds_with_condition_values(record: RunRecord) -> list[tuple[RoundRun, str]]:
     """Return the rounds with a due time or an end condition, each with a text of the known values.
 
     The text has the last value up to the end of the round for each checkpoint in the condition that

@@ -38,7 +38,10 @@ def node(
 
 
 def drawing(width: float, height: float, name: str, *children: Node, class_: str = "") -> Node:
-    """Return an `svg` element of this size in px; `name` is its description in words."""
+    """Return an `svg` element of this size in px; `name` is its description in words.
+
+    `class_` is its CSS class; `drawing` if it is empty.
+    """
     return node(
         "svg",
         *children,

@@ -118,7 +118,10 @@ def _waits(record: RunRecord) -> Iterator[tuple[str, float, float, str]]:
 
 
 def _windows(record: RunRecord, rows: dict[str, int], px: float) -> Iterator[Node]:
-    """Yield a bracket over the row of each task with a time window, from its start to its end."""
+    """Yield a bracket over the row of each task with a time window, from its start to its end.
+
+    Of several windows of a task, the last counts. All are cut at the end of the run.
+    """
     end = record.result.duration
     for run in {run.task: run for run in record.windows}.values():
         if run.task not in rows or run.earliest > end:

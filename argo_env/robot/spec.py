@@ -196,7 +196,8 @@ class RobotSpec(Model):
     def motion_time(self, kind: MotionKind, amount: float, target: float | None = None) -> float:
         """Return the time in s of a motion over `amount` (m, or rad for a turn).
 
-        `target` is its target speed (m/s, or rad/s for a turn); None is that of its kind.
+        `target` is its target speed (m/s, or rad/s for a turn), of which the robot reaches the
+        calibrated share; None is that of its kind. The time lost at each motion is included.
         """
         pace = self.calibration.pace_for(kind)
         return amount / ((target or self.target_speed(kind)) * pace.share) + pace.lost
@@ -204,7 +205,10 @@ class RobotSpec(Model):
 
 @lru_cache
 def _joints(urdf: str) -> frozenset[str]:
-    """Return the names of the joints in a URDF file of the robots' folder, or raise ValueError."""
+    """Return the names of the joints in a URDF file of the robots' folder.
+
+    Raises ValueError if the file can't be read or is not XML.
+    """
     from xml.parsers import expat  # faster to import than ElementTree
 
     names: set[str] = set()
@@ -253,7 +257,7 @@ def load_robot(name: str = "tracker") -> RobotSpec:
 
 @lru_cache(maxsize=16)  # it is called whenever a site is opened
 def _parse_description(kind: type[_Description], path: Path, text: str) -> _Description:
-    """Return the model in the text of a file; the cache on disk stores the fields that are set."""
+    """Return the model in the text of a file, from the cache on disk or read and stored there."""
     parts = cache.entry_for([text], cache.ROBOTS)
     cached = parts.load_text("fields")
     try:

@@ -143,7 +143,7 @@ class SimulatedAction:
 
     @property
     def is_driving_without_reading_limit(self) -> bool:
-        """True if the robot drives along its path, and the task's `reading_limit` has not begun."""
+        """True if the robot drives along its path, and no `reading_limit` is running."""
         return self._phase == self._drive and self._give_up_at == math.inf
 
     def count_measuring_steps(self, limit: int) -> int:

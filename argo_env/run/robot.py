@@ -120,8 +120,10 @@ class AnyRobot(Protocol):
     def add_blockages(self, blockages: Sequence[Blockage]) -> None:
         """Make paths planned from now on keep clear of these blockages, besides the known ones."""
 
-    def start(self, command: StartAction, now: float, arrived_by: Path | None) -> RobotAction:
-        """Start an action; no other action may be running.
+    def prepare_action(
+        self, command: StartAction, now: float, arrived_by: Path | None
+    ) -> RobotAction:
+        """Return a new action, which begins with the next `advance`; no other may be running.
 
         `arrived_by` is the path by which the robot reached its pose; None if it is not known.
         """

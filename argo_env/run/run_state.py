@@ -264,7 +264,7 @@ class SimulationState:
         )
 
     def _start_action(self, command: StartAction) -> None:
-        self.action = self._vehicle.start(command, self.now, self._arrival_path)
+        self.action = self._vehicle.prepare_action(command, self.now, self._arrival_path)
 
     def _with_abnormality(self, event: Event) -> Event:
         return mark_abnormal(self.log.site, self._mission, event)

@@ -14,7 +14,7 @@ from argo_compiler.hfsm.events import ReadingGiven
 from argo_compiler.il import Mission, Task
 from argo_env.closing import Closing
 from argo_env.planning.opening import OpenedSite
-from argo_env.planning.start import start_pose_or_lowest_dock
+from argo_env.planning.start import start_pose_or_area_dock
 from argo_env.robot.pose import BodyPose, PoseArray
 from argo_env.run import termination
 from argo_env.run.initial_state import match_progress_to_edited_mission, progress_now
@@ -427,7 +427,7 @@ class Simulation(Closing):
             navigator.snap_keeping_heading(Pose(x=start.x, y=start.y, z=start.z, yaw=start.yaw))
             return start
         pose = navigator.snap_keeping_heading(
-            self._spec.conditions.actual_start_pose(start_pose_or_lowest_dock(mission, docks))
+            self._spec.conditions.actual_start_pose(start_pose_or_area_dock(mission, docks))
         )
         return BodyPose(pose.x, pose.y, pose.z, pose.yaw)
 

@@ -177,8 +177,10 @@ class Vehicle:
         navigator = self.setup.navigator.with_added_blockages(blockages)
         self.setup = replace(self.setup, navigator=navigator)
 
-    def start(self, command: StartAction, now: float, arrived_by: Path | None) -> RobotAction:
-        """Start an action at time `now` (s); the robot came here by the path `arrived_by`."""
+    def prepare_action(
+        self, command: StartAction, now: float, arrived_by: Path | None
+    ) -> RobotAction:
+        """Return an action that begins at `now` (s); the robot came here by `arrived_by`."""
         odometry = self.odometry
         self._action = SimulatedAction(
             command, self.setup, now, odometry.distance, odometry.climbed, arrived_by

@@ -74,7 +74,7 @@ def _show_unfinished(recording: Recording) -> None:
     console.print(
         f"Tasks that have ended: {len(recording.tasks)}; the last: {escape(ended)}.", soft_wrap=True
     )
-    loss = escape(recording.missing_record_reason)
+    loss = escape(recording.reason_if_record_missing)
     console.print(
         f"[bold red]No success[/]: {loss}; there is no record of the run's end.", soft_wrap=True
     )

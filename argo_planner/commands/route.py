@@ -142,9 +142,9 @@ def _read(requirements: Path | None) -> Requirements:
 
 def _check_pictures(folder: Path, site: OpenedSite, force: bool) -> None:
     """Raise ArgoError if pictures of floors can't be written or, without `force`, replace files."""
-    from argo_env.pictures.route import picture_names
+    from argo_env.pictures.route import possible_picture_names
 
-    check_outputs([], folders=[(folder, picture_names(site.site))], force=force)
+    check_outputs([], folders=[(folder, possible_picture_names(site.site))], force=force)
 
 
 def _draw(found: SuggestedOrder, site: OpenedSite, folder: Path, console: Console) -> None:

@@ -20,7 +20,7 @@ from argo_compiler.diagnostics import (
 )
 from argo_compiler.files.loading import FileError
 from argo_env.planning.opening import OpenedSite
-from argo_env.planning.site_warnings import above_own_speed_warnings, view_warnings
+from argo_env.planning.site_warnings import above_own_speed_warnings, not_seen_from_pose_warnings
 from argo_planner.use_cases.importing import (
     SourceKind,
     Upload,
@@ -79,7 +79,7 @@ def check_source(
         with stage("analysing the mission's paths"):
             found += analyse(loaded.mission, catalog, travel).diagnostics
         if site is not None:
-            found += tuple(view_warnings(loaded.mission, site))
+            found += tuple(not_seen_from_pose_warnings(loaded.mission, site))
             found += tuple(above_own_speed_warnings(loaded.mission, site.robot))
     return by_position((*loaded.diagnostics, *loaded.diagnostics_with_positions(found)))
 

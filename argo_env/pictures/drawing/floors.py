@@ -44,17 +44,20 @@ def floor_plans(site: Site) -> tuple[FloorPlan, ...]:
 
 
 @lru_cache(maxsize=8)
-def aisle_plans(width: float, depth: float, floors: int, ends: int = 1) -> tuple[FloorPlan, ...]:
+def rectangular_floor_plans(
+    width: float, depth: float, floors: int, ends_with_stairs: int = 1
+) -> tuple[FloorPlan, ...]:
     """Return the plans of floors numbered from 1, each with a deck from (0, 0) to (width, depth).
 
-    Lengths are in m. Stairs are all along the side x = 0, and along x = width if `ends` is 2.
+    Lengths are in m. Stairs are all along the side x = 0, and along x = width if
+    `ends_with_stairs` is 2.
     """
     deck = _box((-0.6, -0.6, width + 0.6, depth + 0.6))
     edges = [-2.1 + 0.3 * k for k in range(5)]
-    edges += [width + 0.6 + 0.3 * k for k in range(5) if ends > 1]
+    edges += [width + 0.6 + 0.3 * k for k in range(5) if ends_with_stairs > 1]
     treads = tuple(_box((x, -0.6, x + 0.3, depth + 0.6)) for x in edges)
     shapes = ((Role.DECK, (deck,)), (Role.STAIR, treads))
-    bounds = (-2.5, -1.0, width + (2.5 if ends > 1 else 1.0), depth + 1.0)
+    bounds = (-2.5, -1.0, width + (2.5 if ends_with_stairs > 1 else 1.0), depth + 1.0)
     return tuple(FloorPlan(number, bounds, shapes) for number in range(1, floors + 1))
 
 

@@ -31,7 +31,8 @@ class LabelPlacer:
     def occupy(self, position: Pixel, half_width: float, half_height: float) -> None:
         """Mark a rectangle about a position as occupied.
 
-        The rectangle extends `half_width` px to each side, and `half_height` px up and down.
+        The rectangle extends `half_width` to each side, and `half_height` up and down, in px of the
+        enlarged picture, as `position`.
         """
         self._taken[_cells(position, half_width, half_height)] = True
 

@@ -70,7 +70,7 @@ def path_lines(sheet: FloorSheet, path: Sequence[PathPoint]) -> list[PathLine]:
     return made
 
 
-def draw_lines(draw: ImageDraw.ImageDraw, path: Sequence[PathLine]) -> None:
+def draw_lines_with_arrows(draw: ImageDraw.ImageDraw, path: Sequence[PathLine]) -> None:
     """Draw the lines with a white rim, and arrow heads in their direction."""
     wide = round(_WIDTH * FINER)
     for line in path:

@@ -8,7 +8,12 @@ from numpy.typing import NDArray
 from PIL import ImageDraw
 
 from argo_env.pictures.drawing.label_placement import LabelPlacer, draw_plate
-from argo_env.pictures.drawing.path import PathPoint, draw_any_stairs_taken, draw_lines, path_lines
+from argo_env.pictures.drawing.path import (
+    PathPoint,
+    draw_any_stairs_taken,
+    draw_lines_with_arrows,
+    path_lines,
+)
 from argo_env.pictures.drawing.sheet import FINER, FloorSheet, Pixel
 from argo_env.pictures.drawing.style import (
     POINT,
@@ -90,7 +95,7 @@ def draw_plan(sheet: FloorSheet, plan: PlanDrawing) -> NDArray[np.uint8]:
     path = path_lines(sheet, plan.path)
     for line in path:
         labels.avoid_path_if_possible(line.points)
-    draw_lines(draw, path)
+    draw_lines_with_arrows(draw, path)
     for position in stations:
         paint_station(draw, position, _STATION)
     for marker, position in zip(plan.markers, discs, strict=True):

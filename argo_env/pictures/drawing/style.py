@@ -58,7 +58,7 @@ def paint_checkpoint(
 ) -> None:
     """Draw the disc of a checkpoint with its name, in the style of its state (see `STYLES`).
 
-    `radius` is in px of the reduced picture.
+    `radius` is in px of the reduced picture, `position` in px of the enlarged one.
     """
     (x, y), r, style = position, radius * FINER, STYLES[state]
     draw.ellipse((x - r, y - r, x + r, y + r), style.fill, style.rim, round(1.5 * FINER))
@@ -111,7 +111,7 @@ def paint_point_robot(draw: ImageDraw.ImageDraw, position: Pixel) -> None:
 
 
 def paint_stairs(
-    draw: ImageDraw.ImageDraw, position: Pixel, floor: int, up: bool, ink: Ink
+    draw: ImageDraw.ImageDraw, position: Pixel, to_floor: int, up: bool, ink: Ink
 ) -> None:
     """Draw the mark of stairs to the floor with this number, with an arrow up or down."""
     x, y = position
@@ -120,7 +120,7 @@ def paint_stairs(
     rise = -4.5 * FINER if up else 4.5 * FINER
     arrow = [(x - 11 * FINER, y - rise), (x - 1 * FINER, y - rise), (x - 6 * FINER, y + rise)]
     draw.polygon(arrow, fill=PAPER)
-    draw.text((x + 6.5 * FINER, y), str(floor), fill=PAPER, font=font(12), anchor="mm")
+    draw.text((x + 6.5 * FINER, y), str(to_floor), fill=PAPER, font=font(12), anchor="mm")
 
 
 def draw_disc(draw: ImageDraw.ImageDraw, position: Pixel, r: float, ink: Ink) -> None:

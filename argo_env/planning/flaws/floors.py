@@ -61,7 +61,7 @@ def _unreached_flaw(states: SafeStates, floors: Sequence[FloorSpec], number: int
     elif flaw is None:
         flaw = _stairs_flaw(states, floors[number - 2], floor)
     return Flaw(
-        f"floor {number} can't be reached from docking station {states.lowest_usable_dock}: "
+        f"floor {number} can't be reached from docking station {states.lowest_usable_dock_number}: "
         f"{flaw.message}",
         flaw.marks,
     )
@@ -85,7 +85,7 @@ def _entry_flaw(states: SafeStates, floor: FloorSpec) -> Flaw:
     spec, robot = states.site.spec, states.lattice.robot
     step = floor.z - spec.ground_z
     goals = states.positions[states.is_on_floor(floor)]
-    dock = states.positions[states.docks[states.lowest_usable_dock or 1] or 0]
+    dock = states.positions[states.docks[states.lowest_usable_dock_number or 1] or 0]
     goal = goals[np.argmin(np.hypot(*(goals - dock)[:, :2].T))]
     if step > robot.max_step:
         return Flaw(

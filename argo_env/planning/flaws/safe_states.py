@@ -37,16 +37,16 @@ class SafeStates:
         return SafeStates(navigator.site, lattice, label_strong_components(lattice.costs), docks)
 
     @property
-    def lowest_usable_dock(self) -> int | None:
+    def lowest_usable_dock_number(self) -> int | None:
         """Lowest number of a station at which the robot can stand; None if there is none."""
         return next((number for number, state in self.docks.items() if state is not None), None)
 
     @cached_property
     def reached(self) -> NDArray[np.bool_]:
-        """Mask of the states that can be reached from the first usable dock, if any, and back."""
-        if self.lowest_usable_dock is None:
+        """Mask of the states reached from the first usable dock and back; all False without one."""
+        if self.lowest_usable_dock_number is None:
             return np.zeros(self.lattice.size, dtype=bool)
-        return np.asarray(self.part == self.part[self.docks[self.lowest_usable_dock]])
+        return np.asarray(self.part == self.part[self.docks[self.lowest_usable_dock_number]])
 
     @cached_property
     def positions(self) -> NDArray[np.float64]:

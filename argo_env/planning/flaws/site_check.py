@@ -38,8 +38,8 @@ def dock_flaws(states: SafeStates) -> list[Flaw]:
     for number, state in states.docks.items():
         if state is not None and not states.reached[state]:
             flaws.append(_unconnected_dock(states, number))
-    if not flaws and states.lowest_usable_dock is not None and not _can_turn(states):
-        flaws.append(_cramped_dock(states, states.lowest_usable_dock))
+    if not flaws and states.lowest_usable_dock_number is not None and not _can_turn(states):
+        flaws.append(_cramped_dock(states, states.lowest_usable_dock_number))
     return flaws
 
 
@@ -84,7 +84,7 @@ def _unusable_dock(states: SafeStates, number: int) -> Flaw:
 
 def _unconnected_dock(states: SafeStates, number: int) -> Flaw:
     dock = states.site.docks[number]
-    first = states.lowest_usable_dock
+    first = states.lowest_usable_dock_number
     message = f"there is no path from docking station {first} to docking station {number} and back"
     nearest = states.nearest_reached(dock.x, dock.y, dock.z)
     marks = [Mark(1, dock.x, dock.y)]
@@ -108,20 +108,21 @@ _SAMPLED = 100  # camera positions from which hidden faces are checked
 
 
 def checkpoint_flaws(
-    states: SafeStates, navigator: Navigator, merged_floors: Collection[int]
+    states: SafeStates, navigator: Navigator, floors_with_single_flaw: Collection[int]
 ) -> list[Flaw]:
     """Return the flaws of checkpoints that can't be read.
 
-    There is one for each such checkpoint, but only one for all on the same one of `merged_floors`.
+    There is one for each such checkpoint, but only one for all on the same one of
+    `floors_with_single_flaw`.
     """
     site = navigator.site
     unseen = [site.checkpoint(id) for id in unseen_checkpoints(navigator)]
     flaws = [
         _checkpoint_flaw(states, navigator, checkpoint)
         for checkpoint in unseen
-        if checkpoint.floor not in merged_floors
+        if checkpoint.floor not in floors_with_single_flaw
     ]
-    for floor in merged_floors:
+    for floor in floors_with_single_flaw:
         on_floor = [checkpoint for checkpoint in unseen if checkpoint.floor == floor]
         if on_floor:
             noun = "checkpoints" if len(on_floor) > 1 else "checkpoint"
@@ -183,7 +184,7 @@ def _explain_unseen(states: SafeStates, navigator: Navigator, checkpoint: SiteCh
 
 
 def _find_hiding_element(site: Site, cameras: NDArray[np.float64], target: Vector) -> str:
-    """Return the name of the element that hides a point from the greatest number of cameras.
+    """Return the name of the element that hides a point from most cameras; of any if none does.
 
     `cameras` are the positions (m) of the cameras, shape (n, 3), of which a sample is used.
     """
@@ -250,7 +251,7 @@ def _can_use_docks(navigator: Navigator) -> bool:
 
 
 def _place_flaws(navigator: Navigator) -> list[Flaw]:
-    """Return a flaw for each named location that the robot can't reach, not even nearby."""
+    """Return a flaw for each named location that is not within SNAP_DISTANCE of a reachable one."""
     flaws = []
     for name, pose in navigator.site.places.items():
         try:

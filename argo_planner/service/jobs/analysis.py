@@ -14,7 +14,7 @@ from argo_compiler.checks import check
 from argo_compiler.diagnostics import has_errors
 from argo_compiler.il import Mission
 from argo_env.planning.opening import OpenedSite, open_site
-from argo_env.planning.site_warnings import view_warnings
+from argo_env.planning.site_warnings import not_seen_from_pose_warnings
 from argo_env.worker_processes import ignore_sigint_and_end_with_parent
 from argo_planner.service.processes.context import CONTEXT
 from argo_planner.use_cases.checking import MAX_POSES
@@ -80,7 +80,7 @@ def _analyse(reference: str, mission: Mission, revision: int) -> AnalysisFound:
         poses = len({task.pose for task in mission.tasks if task.pose is not None})
         travel = None if poses > MAX_POSES else site.travel
         analysis = analyse(mission, site.catalog, travel)
-        unseen = tuple(view_warnings(mission, site))
+        unseen = tuple(not_seen_from_pose_warnings(mission, site))
     except ArgoError as error:
         return AnalysisFound(revision=revision, problem=str(error))
     without_witnesses = analysis.model_copy(

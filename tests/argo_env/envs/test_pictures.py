@@ -14,9 +14,9 @@ from argo_env.envs.inspection import InspectEnv
 from argo_env.envs.route import RouteEnv
 from argo_env.envs.route_batch import RouteVectorEnv
 from argo_env.envs.route_instance import make_instance
-from argo_env.pictures.drawing.floors import aisle_plans, empty_floor_plans, floor_plans
+from argo_env.pictures.drawing.floors import empty_floor_plans, floor_plans, rectangular_floor_plans
 from argo_env.pictures.drawing.label_placement import LabelPlacer
-from argo_env.pictures.drawing.path import PathPoint, draw_lines, path_lines
+from argo_env.pictures.drawing.path import PathPoint, draw_lines_with_arrows, path_lines
 from argo_env.pictures.drawing.plan import Marker, PlanDrawing, StationMark, draw_plan
 from argo_env.pictures.drawing.sheet import FINER, FOOT, HEAD, SIZE, make_sheet
 from argo_env.pictures.drawing.style import POINT, ROBOT, STYLES
@@ -99,7 +99,7 @@ def test_floors_are_apart_and_in_the_picture(sizes):
 @example([(0.0, 0.0)] * 12)
 @example([(30.0, 20.0)] * 12)
 def test_discs_do_not_cover_one_another(points):
-    labels = LabelPlacer(sheet := make_sheet(aisle_plans(30.0, 20.0, 1)))
+    labels = LabelPlacer(sheet := make_sheet(rectangular_floor_plans(30.0, 20.0, 1)))
     half = 11.0 * FINER
     placed = [labels.reserve_nearest(sheet.pixel_at(x, y, 1), half, half, 1) for x, y in points]
     assert placed[0] == sheet.pixel_at(*points[0], 1)
@@ -143,7 +143,7 @@ def test_upper_floors_have_one_frame(navigator):
 
 
 def test_states_look_different():
-    sheet = make_sheet(aisle_plans(30.0, 20.0, 2))
+    sheet = make_sheet(rectangular_floor_plans(30.0, 20.0, 2))
     pictures = {
         state: near(draw(sheet, markers=[Marker(5.0, 5.0, 2, "7", state)]), sheet, 5, 5, 2)
         for state in STYLES
@@ -158,7 +158,7 @@ def test_states_look_different():
 
 
 def test_the_legend_has_what_is_in_the_picture(navigator):
-    sheet = make_sheet(aisle_plans(30.0, 20.0, 2))
+    sheet = make_sheet(rectangular_floor_plans(30.0, 20.0, 2))
     meanings = {"open": "to be read", "done": "read"}
     one = Marker(5.0, 5.0, 2, "7", "open")
     way = [PathPoint(0.0, 15.0, 15.0, 1), PathPoint(10.0, 20.0, 15.0, 1)]
@@ -182,7 +182,7 @@ def test_the_legend_has_what_is_in_the_picture(navigator):
 
 def test_no_line_crosses_a_disc():
     """Lines that join shifted discs to their positions lie below all discs."""
-    sheet = make_sheet(aisle_plans(30.0, 20.0, 1))
+    sheet = make_sheet(rectangular_floor_plans(30.0, 20.0, 1))
     crowd = [Marker(15.0, 10.0, 1, "", "open") for _ in range(12)]
     picture = draw(sheet, markers=crowd, path=[PathPoint(0.0, 1.0, 1.0, 1)])
     labels = LabelPlacer(sheet)
@@ -196,7 +196,7 @@ def test_no_line_crosses_a_disc():
 
 
 def test_the_footprint_is_drawn_to_scale():
-    sheet = make_sheet(aisle_plans(30.0, 20.0, 1))
+    sheet = make_sheet(rectangular_floor_plans(30.0, 20.0, 1))
     way = [PathPoint(0.0, 15.0, 10.0, 1)]
     robot = Footprint(front=1.0, rear=2.0, half_width=0.5)
     picture = draw(sheet, footprint=robot, path=way)
@@ -210,7 +210,7 @@ def test_the_footprint_is_drawn_to_scale():
 
 def test_the_name_of_a_dock_is_not_covered(navigator):
     """The robot, the path and the checkpoints leave it whole."""
-    sheet = make_sheet(aisle_plans(30.0, 20.0, 1))
+    sheet = make_sheet(rectangular_floor_plans(30.0, 20.0, 1))
     dock = StationMark(15.0, 10.0, 1, "dock")
     crowd = [Marker(15.0 + dx, 10.0 + dy, 1, "9", "open") for dx in (-1, 1, 2) for dy in (-1, 0, 1)]
     way = [
@@ -242,7 +242,7 @@ def test_the_name_of_a_dock_is_not_covered(navigator):
 
 
 def test_the_path_is_drawn_between_floors():
-    sheet = make_sheet(aisle_plans(30.0, 20.0, 2))
+    sheet = make_sheet(rectangular_floor_plans(30.0, 20.0, 2))
     climb = [
         PathPoint(0.0, 20.0, 10.0, 1),
         PathPoint(50.0, 5.0, 10.0, 1),
@@ -259,7 +259,7 @@ def test_the_path_is_drawn_between_floors():
     # There is a mark at the lower end and one at the upper end: around each, more pixels have the
     # colour of its time than in a picture with the line alone.
     picture, bare = draw(sheet, path=climb), sheet.image.copy()
-    draw_lines(ImageDraw.Draw(bare), drawn)
+    draw_lines_with_arrows(ImageDraw.Draw(bare), drawn)
     bare = np.asarray(bare.reduce(FINER))
     for moment in climb[1:3]:
         ink = ImageColor.getrgb(colour(moment.t / 90.0))
@@ -370,7 +370,7 @@ def test_a_picture_shows_the_state_of_a_route(scenario):
 def test_routes_show_the_chosen_floors():
     env = RouteEnv(render_mode="rgb_array")
     env.reset(seed=0, options={"floor": [1, 3]})
-    sheet = make_sheet(aisle_plans(30.0, 20.0, 3))
+    sheet = make_sheet(rectangular_floor_plans(30.0, 20.0, 3))
     x, y, _ = next(p for p in env.instance.positions[1:-1].tolist() if p[2] == 2)
     part = near(env.render(), sheet, x, y, 2)
     assert has(part, STYLES["outside"].rim)

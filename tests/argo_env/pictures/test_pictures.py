@@ -99,7 +99,7 @@ def test_projection_inverts_unprojection(scene):
     view = scene.render_from(camera)
     row, column = np.indices((150, 200)).reshape(2, -1)
     depth = np.where(np.isfinite(view.depth), view.depth, 50.0)[row, column]
-    pixels = camera.project(camera.unproject(column, row, depth)).reshape(150, 200, 3)
+    pixels = camera.project_with_depth(camera.unproject(column, row, depth)).reshape(150, 200, 3)
     assert pixels[40, 70, :2] == pytest.approx([70.5, 40.5])
     assert pixels[120, 30, :2] == pytest.approx([30.5, 120.5])
 
@@ -122,7 +122,7 @@ def test_the_robot_is_in_the_middle_of_the_frame(scene, robot):
 def test_the_arm_is_raised_while_measuring(record, robot):
     motion = RecordedMotion(record, robot)
     raised, stowed = robot.arm_raised["arm_elbow"], robot.arm_stowed["arm_elbow"]
-    angles = [motion.joints_at(t)["arm_elbow"] for t in (3.9, 8.0, 12.1)]
+    angles = [motion.joint_degrees_at(t)["arm_elbow"] for t in (3.9, 8.0, 12.1)]
     assert angles == pytest.approx([stowed, raised, stowed])
     assert motion.pose_at(0.25).x == pytest.approx(3.1)
 
@@ -132,7 +132,8 @@ def test_flippers_lie_flat_on_stairs(record, robot):
         update={"path": tuple(s.model_copy(update={"pitch": -0.5}) for s in record.path)}
     )
     flat, stairs = (
-        RecordedMotion(r, robot).joints_at(1.0)["left_flipper_joint"] for r in (record, tilted)
+        RecordedMotion(r, robot).joint_degrees_at(1.0)["left_flipper_joint"]
+        for r in (record, tilted)
     )
     assert (flat, stairs) == (pytest.approx(30.0), 0.0)
 
@@ -147,7 +148,9 @@ def test_the_overview_shows_the_path_in_its_colours(record, umad, robot, tmp_pat
         pixels = np.asarray(image.convert("RGB")).astype(int)
     camera = overview.site_camera(umad, (800, 600))
     for t in (5.0, 10.0, 16.0):
-        column, row, _ = camera.project(np.array([[3.0 + 0.4 * t, -2.0, -0.03 + 0.25]]))[0]
+        column, row, _ = camera.project_with_depth(np.array([[3.0 + 0.4 * t, -2.0, -0.03 + 0.25]]))[
+            0
+        ]
         red, green, blue = pixels[int(row), int(column)]
         wanted = overview.colour(t / DURATION)
         given = [int(wanted[k : k + 2], 16) for k in (1, 3, 5)]

@@ -5,14 +5,14 @@ import math
 import pytest
 
 from argo_compiler.base.model import Pose
-from argo_env.planning.site_warnings import above_own_speed_warnings, view_warnings
+from argo_env.planning.site_warnings import above_own_speed_warnings, not_seen_from_pose_warnings
 from argo_env.robot.spec import load_robot
 from tests.yard import measure, mission
 
 
 def found(site, **pose):
     plan = mission(measure(1, pose=Pose(z=0.02, **pose)))
-    return list(view_warnings(plan, site))
+    return list(not_seen_from_pose_warnings(plan, site))
 
 
 @pytest.mark.rule("T10")
@@ -33,7 +33,7 @@ def test_one_where_the_robot_can_not_stand_is_not_its_matter(site):
 
 
 def test_without_poses_nothing_is_looked_at(site):
-    assert list(view_warnings(mission(measure(1), measure(2)), site)) == []
+    assert list(not_seen_from_pose_warnings(mission(measure(1), measure(2)), site)) == []
 
 
 @pytest.mark.parametrize("speed", [None, 0.1, 0.4])

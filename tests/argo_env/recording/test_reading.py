@@ -172,7 +172,7 @@ def test_a_damaged_record_is_not_read(recorded, tmp_path: Path) -> None:
     file.write_bytes(damaged[:-9])
     recording = read_recording(file)
     assert recording.record is None
-    assert "record.json is wrong" in recording.missing_record_reason
+    assert "record.json is wrong" in recording.reason_if_record_missing
 
 
 def _read_or_none(path: Path):

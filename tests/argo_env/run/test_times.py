@@ -5,7 +5,7 @@ import pytest
 from argo_compiler.hfsm import ByHand, GiveBack, Occurred, Outcome, Pause, Resume, TakeOver
 from argo_compiler.hfsm.events import ReadingGiven
 from argo_compiler.il import Condition, ConditionType, EventKind, Group, Mode, OnFailure, TimeWindow
-from argo_env.report.rounds import all_waits, timed_and_conditional_rounds
+from argo_env.report.rounds import all_waits, rounds_with_condition_values
 from argo_env.run.journal import open_journal
 from argo_env.run.record import RunRecord, WindowOutcome
 from argo_env.run.spec import logged_events
@@ -144,7 +144,7 @@ class TestRounds:
         )
         plan = mission(first, THERE, groups=(group,))
         record = run(yard, plan, (0.5, ReadingGiven("1", 3.0)), values={1: 3.0})
-        ((_, said),) = timed_and_conditional_rounds(record)
+        ((_, said),) = rounds_with_condition_values(record)
         assert said.startswith("#1: failed at ")
 
     def test_a_run_that_ends_before_a_round_is_due(self, yard):

@@ -414,7 +414,7 @@ class Executor:
         return "the mission was interrupted in the meantime"
 
     def _succeed(self, event: ActionSucceeded) -> None:
-        """Handle the success of the running action: of a task, or of the drive of a reaction."""
+        """Handle the success of the running action: of a task, or of a reaction's drive."""
         control, leaf = self._control, self._running_leaf
         self._running = None
         self._cancelling = False

@@ -87,7 +87,10 @@ class MachineState:
         configuration.update_visit_due()
 
     def queue_tasks_done_by_hand(self, tasks: Iterable[ByHand], now: float) -> None:
-        """Add tasks that a person did or skipped; each stands in for the next visit of its task."""
+        """Add tasks that a person did or skipped; each stands in for the next visit of its task.
+
+        `now` is the time (s) from which their ages count back.
+        """
         for task in tasks:
             self._by_hand_count += 1
             done = DoneByHand(self._by_hand_count, task, now - (task.age or 0.0))

@@ -133,7 +133,7 @@ class _Check:
         return Certificate(tuple(self._decided[claim] for claim in Claim if claim in self._decided))
 
     def check_route(self) -> None:
-        """Check the route itself, and refute the other claims that it contradicts."""
+        """Record whether the route is as claimed, and refute other claims that it contradicts."""
         suggestion = self._suggestion
         if suggestion.infeasible_subset:
             self._decide(Claim.SUBSET, Judgement.OPEN, "requirements in words can't be checked")

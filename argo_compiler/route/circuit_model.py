@@ -281,7 +281,7 @@ class CircuitModel:
                 constraint.only_enforce_if(optional)
 
     def _add_ranks(self) -> list[cp_model.IntVar]:
-        """Add and return variables that increase along the route, one for each step."""
+        """Add and return a variable for each step of the network; along a route they increase."""
         network, model = self._network, self.model
         count = len(network.prize)
         ranks = [model.new_int_var(0, count - 1, "") for _ in range(count)]

@@ -169,7 +169,7 @@ class EvaluationRunner:
         Stored runs are not repeated; in each batch, their rows come first.
         Moves the rows of the store to a Parquet file at the end.
         """
-        for batch in all_runs_in_batches(self._plan, self._rows):
+        for batch in batches_until_stop(self._plan, self._rows):
             yield from self._run_batch(batch)
         if self._store is not None:
             self._store.compact()
@@ -243,24 +243,24 @@ class EvaluationRunner:
         )
 
 
-def all_runs_in_batches(
-    plan: EvaluationPlan, rows: Sequence[RunRow]
+def batches_until_stop(
+    plan: EvaluationPlan, rows_so_far: Sequence[RunRow]
 ) -> Iterator[Iterator[PlannedRun]]:
     """Yield the runs of an evaluation in batches.
 
-    The caller must have added the rows of all previous batches to `rows` when it takes the next
-    batch: they decide whether the evaluation stops. So that does not depend on which run was the
-    quickest.
+    The caller must have added the rows of all previous batches to `rows_so_far` when it takes the
+    next batch: they decide whether the evaluation stops. So that does not depend on which run was
+    the quickest.
     """
     if plan.strata:
-        yield from _by_strata(plan, rows)
+        yield from _by_strata(plan, rows_so_far)
         return
     stopping = plan.stopping
     if stopping.width is None and not stopping.require:
         yield plan.runs()
         return
     for first in range(0, len(plan.seeds), stopping.every):
-        if first and should_stop(plan, rows):
+        if first and should_stop(plan, rows_so_far):
             return
         yield plan.runs(plan.seeds[first : first + stopping.every])
 

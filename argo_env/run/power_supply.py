@@ -142,16 +142,16 @@ class PowerSupply:
             docked[near] = np.array([self._docked(BodyPose(*pose)) for pose in distinct])[indices]
         return docked
 
-    def apply(self, predicted: PredictedSupply, step: int) -> None:
+    def apply(self, predicted: PredictedSupply, step_index: int) -> None:
         """Set the supply to the predicted state after the step of this index, from 0."""
-        self.charging = bool(predicted.charging[step])
+        self.charging = bool(predicted.charging[step_index])
         if self._battery is not None:
             self._battery.energy_and_load = (
-                float(predicted.remaining[step]),
-                float(predicted.watts[step]),
+                float(predicted.remaining[step_index]),
+                float(predicted.watts[step_index]),
             )
 
-    def charge_after(self, predicted: PredictedSupply, step: int) -> float | None:
+    def charge_after(self, predicted: PredictedSupply, step_index: int) -> float | None:
         """Return the predicted charge (0 to 1) after the step of this index, from 0.
 
         It is None without a battery.
@@ -159,7 +159,7 @@ class PowerSupply:
         return (
             None
             if self._battery is None
-            else float(predicted.remaining[step]) / self._battery.capacity
+            else float(predicted.remaining[step_index]) / self._battery.capacity
         )
 
     def charge_range(self, predicted: PredictedSupply) -> tuple[float, float]:

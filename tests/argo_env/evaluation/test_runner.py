@@ -10,7 +10,7 @@ from argo_env.evaluation.rates import Decision, IntervalMethod
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunOutcome, make_empty_row
-from argo_env.evaluation.runner import EvaluationRunner, WorkOrder, all_runs_in_batches, execute_run
+from argo_env.evaluation.runner import EvaluationRunner, WorkOrder, batches_until_stop, execute_run
 from argo_env.evaluation.store import RowStore, read_rows
 from argo_env.evaluation.worlds import Variation
 from argo_env.faults.loading import decode_faults
@@ -203,7 +203,7 @@ def simulated(plan, rng, share):
     (case,) = plan.cases
     empty = make_empty_row("", case, case.spec, RunOutcome.SUCCESS, "")
     rows = []
-    for batch in all_runs_in_batches(plan, rows):
+    for batch in batches_until_stop(plan, rows):
         for run in batch:
             outcome = RunOutcome.SUCCESS if rng.random() < share else RunOutcome.FAILURE
             rows.append(empty.model_copy(update={"seed": run.seed, "outcome": outcome}))

@@ -4,8 +4,8 @@ import math
 from collections.abc import Iterator
 
 from argo_compiler.analysis.bounds import MissionBounds
-from argo_compiler.analysis.quantities import time_words
 from argo_compiler.analysis.study import Study
+from argo_compiler.base.quantity_text import duration_text
 from argo_compiler.diagnostics import Diagnostic
 
 _TOLERANCE = 1e-6  # s, as sums of floats are not exact
@@ -21,11 +21,11 @@ def diagnose_windows(study: Study, bounds: MissionBounds) -> Iterator[Diagnostic
         if window is None or window.latest is None or not study.nominal.is_reached(leaf):
             continue
         end = bounds.task_end_bounds[leaf]
-        name, latest = study.name(leaf), time_words(window.latest)
+        name, latest = study.name(leaf), duration_text(window.latest)
         if end.soonest > window.latest + _TOLERANCE:
             soonest = ""
             if math.isfinite(end.soonest):
-                soonest = f": it ends after {time_words(end.soonest)} at the soonest"
+                soonest = f": it ends after {duration_text(end.soonest)} at the soonest"
             yield study.diagnostic(
                 "window-missed" if window.hard else "window-late",
                 f"if nothing fails, no execution path is in time for task '{name}', whose window "
@@ -53,8 +53,8 @@ def diagnose_task_time_limits(study: Study) -> Iterator[Diagnostic]:
             continue  # each attempt continues from where the previous one stopped
         yield study.diagnostic(
             "time-limit",
-            f"task '{study.name(leaf)}' takes at least {time_words(taken)} as planned, longer than "
-            f"its time limit of {time_words(limit)}, so it fails",
+            f"task '{study.name(leaf)}' takes at least {duration_text(taken)} as planned, longer "
+            f"than its time limit of {duration_text(limit)}, so it fails",
             "give it more time",
             leaf,
         )

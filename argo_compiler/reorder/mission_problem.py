@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from argo_compiler.analysis.quantities import time_words
 from argo_compiler.base.errors import Invalid, NotFound
+from argo_compiler.base.quantity_text import duration_text
 from argo_compiler.il import Mission, Order
 from argo_compiler.reorder.assumptions import assumption_notes, assumption_phrases
 from argo_compiler.reorder.branch_costs import BranchCosts
@@ -134,8 +134,8 @@ def late_visit_texts(planned: MissionProblem, route: Tour) -> Iterator[str]:
         end = (start + planned.work[entry]) * planned.problem.unit
         if end > window.latest + _ROUNDING:
             yield (
-                f"{visits.names[k]} is done at {time_words(end)}, after its soft time window: "
-                f"{time_words(window.latest)}"
+                f"{visits.names[k]} is done at {duration_text(end)}, after its soft time window: "
+                f"{duration_text(window.latest)}"
             )
 
 
@@ -146,10 +146,10 @@ def _duration_limit(mission: Mission, requirements: Requirements) -> tuple[float
     """
     limits = []
     if mission.max_duration is not None:
-        words = f"maximum duration {time_words(mission.max_duration)}"
+        words = f"maximum duration {duration_text(mission.max_duration)}"
         limits.append((mission.max_duration, words))
     if requirements.budget is not None:
-        limits.append((requirements.budget, f"budget {time_words(requirements.budget)}"))
+        limits.append((requirements.budget, f"budget {duration_text(requirements.budget)}"))
     return min(limits, default=None)
 
 

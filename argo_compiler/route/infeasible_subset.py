@@ -14,6 +14,7 @@ from itertools import chain
 import numpy as np
 from ortools.sat.python import cp_model
 
+from argo_compiler.base.quantity_text import duration_text
 from argo_compiler.route.cp_solver import new_solver, run_solver
 from argo_compiler.route.problem import RouteProblem
 
@@ -51,16 +52,16 @@ def requirements(problem: RouteProblem) -> list[Requirement]:
         if visit.mandatory:
             collected.append(Requirement(f"{visit.name} is visited", "visit", number))
         if visit.latest is not None:
-            words = f"{visit.name} by {_clock(visit.latest * problem.unit)}"
+            words = f"{visit.name} by {duration_text(visit.latest * problem.unit)}"
             if visit.earliest:
                 begin, end = (
-                    _clock(time * problem.unit) for time in (visit.earliest, visit.latest)
+                    duration_text(time * problem.unit) for time in (visit.earliest, visit.latest)
                 )
                 words = f"{visit.name} between {begin} and {end}"
             words = problem.words.get(f"window {number}", words)
             collected.append(Requirement(words, "window", number))
     if problem.max_duration is not None:
-        words = f"within {_clock(problem.max_duration * problem.unit)}"
+        words = f"within {duration_text(problem.max_duration * problem.unit)}"
         collected.append(Requirement(problem.words.get("max_duration", words), "limit"))
     if problem.battery is not None:
         words = problem.words.get("battery", "within the battery's capacity")
@@ -70,11 +71,6 @@ def requirements(problem: RouteProblem) -> list[Requirement]:
         for number, round_ in enumerate(problem.rounds)
     ]
     return collected
-
-
-def _clock(seconds: float) -> str:
-    minutes, rest = divmod(max(0, round(seconds)), 60)
-    return f"{minutes}:{rest:02d}"
 
 
 def with_only_requirements(problem: RouteProblem, subset: list[Requirement]) -> RouteProblem:

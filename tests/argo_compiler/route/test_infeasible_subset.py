@@ -46,7 +46,7 @@ def test_too_little_time_names_as_few_visits_as_do_not_fit() -> None:
     # Three visits take 55 units, two 40.
     made = suggest_route(problem)
     assert len(made.infeasible_subset) == 4
-    assert made.infeasible_subset[-1] == "within 50:00"
+    assert made.infeasible_subset[-1] == "within 50 min"
     assert all(words.endswith("is visited") for words in made.infeasible_subset[:3])
     assert "fewer requirements" in made.reasons[-1]
 
@@ -62,7 +62,7 @@ def test_a_window_against_a_precedence() -> None:
     )
     assert suggest_route(problem).infeasible_subset == (
         "checkpoint 2 before checkpoint 1",
-        "checkpoint 1 by 0:20",
+        "checkpoint 1 by 20 s",
     )
 
 

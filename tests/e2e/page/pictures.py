@@ -88,6 +88,8 @@ def picture_run(browsers: Browsers, service: Served, folder: Path) -> None:
     ann.page.locator("argo-run").get_by_role("button", name="Take over", exact=True).click()
     give_back = ann.page.locator("argo-run").get_by_role("button", name="Give back", exact=True)
     expect(give_back).to_be_enabled()
+    ann.page.wait_for_timeout(5000)  # the robot stands still, and the scene is drawn finely
+    ann.wait_for_scene()
     take_picture(ann, folder, "taken-over")
     browsers.close_windows()
 

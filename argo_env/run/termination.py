@@ -42,7 +42,8 @@ def standstill_reason(
         return None
     why = "held by its emergency stop" if is_stopped else "waiting for an event"
     why = "paused" if machine.paused else why
-    reason = f"the robot stands still since {min_sec_text(since)}, {why}, and nothing more occurs"
+    since_text = f"the robot has stood still since {min_sec_text(since)}"
+    reason = f"{since_text}, {why}, and nothing more occurs"
     if machine.paused and machine.hfsm.supervised and not log.tasks:
         reason += ": a supervisory mission begins when a person resumes it (the event `resume`)"
     return reason

@@ -217,7 +217,7 @@ def _may_fail_mission(record: RunRecord) -> bool:
         if "emergency stop" in verdict:
             now = record.result.duration
             return any(isinstance(f, EmergencyStop) and _is_present(f, now) for f in record.faults)
-        return "stands still" in verdict and any(a.kind in handled for a in record.anomalies)
+        return "stood still" in verdict and any(a.kind in handled for a in record.anomalies)
     aborted = record.result.outcome is not Outcome.COMPLETED
     return aborted and any(a.kind in handled for a in record.anomalies)
 

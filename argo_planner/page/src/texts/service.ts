@@ -40,6 +40,18 @@ const SENTENCES: Phrases = [
   [/^the mission has not ended after (.+)$/, "die Mission war nach $1 noch nicht beendet"],
   [/^it was stopped after (.+), Argo's limit for a run$/, "die Fahrt wurde nach $1 beendet: Länger darf keine Fahrt dauern"],
   [/^it was stopped after (.+)$/, "die Fahrt wurde nach $1 beendet"],
+  [
+    /^the robot has stood still since (.+), waiting for an event, and nothing more occurs$/,
+    "der Roboter steht seit $1 und wartet auf ein Ereignis, aber es geschieht nichts mehr",
+  ],
+  [
+    /^the robot has stood still since (.+), paused, and nothing more occurs$/,
+    "der Roboter steht seit $1, die Mission ist angehalten, und es geschieht nichts mehr",
+  ],
+  [
+    /^the robot has stood still since (.+), held by its emergency stop, and nothing more occurs$/,
+    "der Roboter steht seit $1, durch seinen Not-Halt, und es geschieht nichts mehr",
+  ],
   [/^the battery was empty after (.+)$/, "die Batterie war nach $1 leer"],
   [/^it took (.+) of at most (.+)$/, "die Fahrt dauerte $1, erlaubt sind höchstens $2"],
   [/^the robot is not docked in starting area (\d+)$/, "der Roboter steht nicht an der Ladestation von Bereich $1"],

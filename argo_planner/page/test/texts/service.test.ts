@@ -10,6 +10,9 @@ test("known parts of a verdict are German, and the rest is unchanged", () => {
   expect(verdict("the mission was aborted; failed: A, B; something else")).toBe(
     "die Mission wurde vorzeitig beendet; fehlgeschlagen: A, B; something else",
   );
+  expect(verdict("the robot has stood still since 00:40, paused, and nothing more occurs")).toBe(
+    "der Roboter steht seit 00:40, die Mission ist angehalten, und es geschieht nichts mehr",
+  );
   expect(verdict("failed: the mission was aborted")).toBe("fehlgeschlagen: the mission was aborted");
 });
 

@@ -4,12 +4,28 @@ import errno
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 import time
 from collections.abc import Callable
 from functools import partial
 from multiprocessing.connection import wait
-from multiprocessing.context import ForkServerContext, ForkServerProcess
+
+from argo_compiler.base.operating_system import wait_for_parent_end
+
+if sys.platform == "win32":
+    from multiprocessing.context import SpawnContext as WorkerContext
+else:
+    from multiprocessing.context import ForkServerContext as WorkerContext
+    from multiprocessing.context import ForkServerProcess
+
+__all__ = [
+    "NEEDED_TO_DRIVE",
+    "WorkerContext",
+    "context_with",
+    "ignore_sigint_and_end_with_parent",
+    "usable_processors",
+]
 
 NEEDED_TO_DRIVE = (
     "argo_env.site.build",
@@ -21,7 +37,6 @@ NEEDED_TO_DRIVE = (
 _ATTEMPTS = 5
 """maximum number of attempts to start a process"""
 _PAUSE = 0.1  # s between two attempts
-_PERIOD = 1.0  # s between two checks that the parent exists
 
 
 def usable_processors() -> int:
@@ -37,36 +52,43 @@ def usable_processors() -> int:
     return os.cpu_count() or 1
 
 
-class _Process(ForkServerProcess):
-    """Process that starts even if the fork server is killed meanwhile: that one is restarted."""
+if sys.platform == "win32":
 
-    def start(self) -> None:
-        """Start the process. Raises OSError if that fails."""
-        for attempts_left in reversed(range(_ATTEMPTS)):
-            try:
-                super().start()
-                return
-            except (EOFError, ConnectionError) as error:
-                if not attempts_left:
-                    why = "the process that it would be forked from has ended"
-                    raise ChildProcessError(errno.ECHILD, why) from error
-                time.sleep(_PAUSE)  # the end of the fork server may not be known yet
+    def context_with(*modules: str) -> WorkerContext:  # noqa: ARG001
+        """Return a `multiprocessing` context; each process loads what it needs itself."""
+        return WorkerContext()
 
+else:
 
-class _Context(ForkServerContext):
-    Process = _Process
+    class _Process(ForkServerProcess):
+        """Process that starts even if the fork server is killed meanwhile; it is restarted."""
 
+        def start(self) -> None:
+            """Start the process. Raises OSError if that fails."""
+            for attempts_left in reversed(range(_ATTEMPTS)):
+                try:
+                    super().start()
+                    return
+                except (EOFError, ConnectionError) as error:
+                    if not attempts_left:
+                        why = "the process that it would be forked from has ended"
+                        raise ChildProcessError(errno.ECHILD, why) from error
+                    time.sleep(_PAUSE)  # the end of the fork server may not be known yet
 
-def context_with(*modules: str) -> ForkServerContext:
-    """Return a `multiprocessing` context whose processes have loaded `modules` when they start.
+    class _Context(WorkerContext):
+        Process = _Process
 
-    Each process is forked from a fork server that has loaded `modules` and those that driving
-    needs. The fork server starts with the first process, does nothing else, and ends with this
-    process. There is only one: after it has started, it does not load the modules of other calls.
-    """
-    context = _Context()
-    context.set_forkserver_preload([*modules, *NEEDED_TO_DRIVE])
-    return context
+    def context_with(*modules: str) -> WorkerContext:
+        """Return a `multiprocessing` context whose processes have loaded `modules` at their start.
+
+        Each process is forked from a fork server that has loaded `modules` and those that driving
+        needs. The fork server starts with the first process, does nothing else, and ends with this
+        process. There is only one: after it has started, it does not load the modules of other
+        calls.
+        """
+        context = _Context()
+        context.set_forkserver_preload([*modules, *NEEDED_TO_DRIVE])
+        return context
 
 
 def ignore_sigint_and_end_with_parent(parent_outside_multiprocessing: int | None = None) -> None:
@@ -82,15 +104,10 @@ def ignore_sigint_and_end_with_parent(parent_outside_multiprocessing: int | None
     if known_parent is not None and known_parent.sentinel is not None:
         end: Callable[[], object] = partial(wait, [known_parent.sentinel])
     elif parent_outside_multiprocessing is not None:
-        end = partial(_wait_for, parent_outside_multiprocessing)
+        end = partial(wait_for_parent_end, parent_outside_multiprocessing)
     else:
         return
     threading.Thread(target=_end_after, args=(end,), daemon=True).start()
-
-
-def _wait_for(parent: int) -> None:
-    while os.getppid() == parent:
-        time.sleep(_PERIOD)
 
 
 def _end_after(end: Callable[[], object]) -> None:

@@ -45,7 +45,7 @@ class Workers(NonCopyable):
         try:
             for size in sizes:
                 ours, theirs = context.Pipe()
-                self._pipes.append(ours)
+                self._pipes.append(ours)  # type: ignore[arg-type, unused-ignore]
                 process = context.Process(
                     target=_run_worker, args=(make, size, theirs, ours), daemon=True
                 )

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from argo_compiler.base.errors import Unavailable
 from argo_compiler.base.extras import install_line
+from argo_compiler.base.operating_system import sync_folder
 from argo_env.evaluation.row import RunRow
-from argo_env.files.checked_lines import sync_folder
 
 if TYPE_CHECKING:
     import pyarrow

@@ -6,7 +6,6 @@ is killed leaves at most an incomplete last line, which is cut off. If it is kil
 rows, the rows are in both; their keys identify the duplicates.
 """
 
-import fcntl
 import os
 import time
 from collections.abc import Callable
@@ -16,6 +15,7 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from argo_compiler.base.errors import Conflict, NotFound, Unavailable
+from argo_compiler.base.operating_system import OPEN_FLAGS, sync_folder, try_lock
 from argo_env.closing import Closing
 from argo_env.evaluation.parquet_files import (
     PARTS,
@@ -29,7 +29,6 @@ from argo_env.evaluation.row import RunRow
 from argo_env.files.checked_lines import (
     checked_line,
     checked_object,
-    sync_folder,
     truncate_if_possible,
     write_all,
 )
@@ -58,7 +57,7 @@ class RowStore(Closing):
         self._lock = _acquire_lock(folder)
         try:
             logged = read_log(folder)
-            self._file = os.open(folder / LOG, os.O_RDWR | os.O_CREAT, 0o644)
+            self._file = os.open(folder / LOG, os.O_RDWR | os.O_CREAT | OPEN_FLAGS, 0o644)
             os.ftruncate(self._file, logged.size)
             self._size = os.lseek(self._file, logged.size, os.SEEK_SET)
             sync_folder(folder)
@@ -135,7 +134,7 @@ class RowStore(Closing):
             os.replace(draft, self.folder / LOG)
             sync_folder(self.folder)
             os.close(self._file)
-            self._file = os.open(self.folder / LOG, os.O_RDWR)
+            self._file = os.open(self.folder / LOG, os.O_RDWR | OPEN_FLAGS)
             self._size = os.lseek(self._file, 0, os.SEEK_END)
         except OSError as error:
             raise _not_writable(self.folder, error) from error
@@ -204,15 +203,18 @@ def _not_writable(folder: Path, error: OSError) -> Unavailable:
 
 def _acquire_lock(folder: Path) -> int:
     try:
-        file = os.open(folder / _LOCK, os.O_RDWR | os.O_CREAT, 0o644)
+        file = os.open(folder / _LOCK, os.O_RDWR | os.O_CREAT | OPEN_FLAGS, 0o644)
     except OSError as error:
         raise _not_writable(folder, error) from error
     try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:
+        locked = try_lock(file)
+    except OSError as error:
+        os.close(file)
+        raise _not_writable(folder, error) from error
+    if not locked:
         os.close(file)
         raise Conflict(
             f"{folder}: another process evaluates into it: wait until it ends, or choose another "
             "folder"
-        ) from None
+        )
     return file

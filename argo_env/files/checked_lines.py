@@ -8,7 +8,6 @@ import json
 import os
 import zlib
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 
@@ -48,15 +47,3 @@ def truncate_if_possible(file: int, size: int) -> None:
         os.ftruncate(file, size)
     except OSError:
         return
-
-
-def sync_folder(folder: Path) -> None:
-    """Sync the folder, so that the names of its files are on disk as well.
-
-    Raises OSError if that fails.
-    """
-    file = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(file)
-    finally:
-        os.close(file)

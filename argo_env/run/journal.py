@@ -5,7 +5,6 @@ run; the file is never without a complete header. Each further line is an entry;
 can be incomplete, and is cut off then. One process at a time can open a journal.
 """
 
-import fcntl
 import hashlib
 import json
 import os
@@ -17,12 +16,12 @@ from pydantic import ValidationError
 
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid, NotFound, Remedy, Unavailable
 from argo_compiler.base.model import Model
+from argo_compiler.base.operating_system import OPEN_FLAGS, sync_folder, try_lock
 from argo_compiler.base.version import __version__
 from argo_env.closing import Closing
 from argo_env.files.checked_lines import (
     checked_line,
     checked_object,
-    sync_folder,
     truncate_if_possible,
     write_all,
 )
@@ -36,7 +35,7 @@ VERSION = 4
 """version of the journal's format"""
 MAX_BYTES = 1_000_000_000  # size of a journal; the longest run takes some 20 MB
 _MARK = "argo journal"
-_FLAGS = os.O_RDWR | os.O_APPEND | os.O_CLOEXEC
+_FLAGS = os.O_RDWR | os.O_APPEND | OPEN_FLAGS
 
 ModelT = TypeVar("ModelT", bound=Model)
 
@@ -307,9 +306,7 @@ def _open(path: Path) -> int:
 
 
 def _lock(file: int, path: Path) -> None:
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
+    if not try_lock(file):
         _refuse(
             path,
             "is in use: another process continues this run; wait until it has ended",

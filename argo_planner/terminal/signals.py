@@ -1,4 +1,4 @@
-"""Signals that ask the process to end: Ctrl-C (SIGINT), SIGTERM, and a closed terminal (SIGHUP).
+"""Handling of the signals that ask the process to end (END_SIGNALS).
 
 This module is imported before anything else, so it imports very little. A signal that is ignored
 when the process starts, as with `nohup`, stays ignored.
@@ -7,15 +7,18 @@ when the process starts, as with `nohup`, stays ignored.
 import os
 import signal
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from types import FrameType
 
-_NUMBERS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+from argo_compiler.base.operating_system import (
+    END_SIGNALS,
+    SignalHandler,
+    call_in_main_thread_later,
+)
+
 _AGAIN = 0.01
 """s until an interruption that could not be raised is raised again"""
-
-_Handler = Callable[[int, FrameType | None], object]
 
 
 class Interrupted(BaseException):
@@ -49,7 +52,7 @@ def exit_on_signals() -> None:
 
 def ignore_signals() -> None:
     """Ignore signals from now on, as all work is done and the process is ending."""
-    for number in _NUMBERS:
+    for number in END_SIGNALS:
         signal.signal(number, signal.SIG_IGN)
 
 
@@ -70,8 +73,7 @@ def raise_on_signals(watch: SignalWatch) -> None:
             sys.__unraisablehook__(unraisable)
         elif isinstance(unraisable.exc_value, Interrupted):
             number = unraisable.exc_value.status - 128
-            signal.signal(signal.SIGALRM, lambda _, frame: interrupt(number, frame))
-            signal.setitimer(signal.ITIMER_REAL, _AGAIN)
+            call_in_main_thread_later(_AGAIN, lambda _, frame: interrupt(number, frame))
 
     sys.unraisablehook = raise_later
     _set_handler(interrupt)
@@ -84,7 +86,7 @@ def defer_first_signal() -> Iterator[SignalWatch]:
     In another thread than the main one, no signal is received.
     """
     deferred = SignalWatch()
-    before = {number: signal.getsignal(number) for number in _NUMBERS}
+    before = {number: signal.getsignal(number) for number in END_SIGNALS}
 
     def restore_handlers() -> None:
         for number, handler in before.items():
@@ -105,9 +107,9 @@ def defer_first_signal() -> Iterator[SignalWatch]:
         restore_handlers()
 
 
-def _set_handler(handler: _Handler) -> None:
+def _set_handler(handler: SignalHandler) -> None:
     """Set a handler for signals that are not ignored; raise ValueError outside the main thread."""
-    for number in _NUMBERS:
+    for number in END_SIGNALS:
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, handler)
 

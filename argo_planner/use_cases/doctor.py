@@ -1,6 +1,7 @@
 """Examination of an installation of Argo: its optional parts and its cache."""
 
 import platform
+import sys
 from importlib.util import find_spec
 
 from argo_compiler.base.errors import ArgoError
@@ -9,6 +10,7 @@ from argo_compiler.base.model import Model
 from argo_compiler.base.version import __version__
 from argo_env.files import cache
 
+_UVLOOP = () if sys.platform == "win32" else ("uvloop",)
 _EXTRAS: dict[str, tuple[str, tuple[str, ...]]] = {
     "cluster": ("evaluations on Ray or Dask", ("ray", "dask", "distributed")),
     "results": ("rows of evaluations in Parquet files", ("pyarrow",)),
@@ -23,7 +25,7 @@ _EXTRAS: dict[str, tuple[str, tuple[str, ...]]] = {
     ),
     "planner": (
         "the planning service",
-        ("fastapi", "uvicorn", "uvloop", "httptools", "websockets"),
+        ("fastapi", "uvicorn", *_UVLOOP, "httptools", "websockets"),
     ),
     "foxglove": ("live view of runs in Foxglove", ("foxglove",)),
     "ros": ("missions in ROS bags", ("rosbags",)),

@@ -2,18 +2,17 @@
 
 from collections.abc import Callable
 from importlib.util import find_spec
-from multiprocessing.context import ForkServerContext
 
 from argo_compiler.base.errors import Invalid, Unavailable
 from argo_compiler.base.extras import install_line
 from argo_env.evaluation.pool.backend import WorkerBackend
-from argo_env.worker_processes import usable_processors
+from argo_env.worker_processes import WorkerContext, usable_processors
 
 PROCESSES = "processes"
 
 
 def _processes(
-    workers: int | None, address: str | None, context: ForkServerContext | None
+    workers: int | None, address: str | None, context: WorkerContext | None
 ) -> WorkerBackend:
     if address is not None:
         raise Invalid(
@@ -38,7 +37,7 @@ def _dask(workers: int | None, address: str | None, _: object) -> WorkerBackend:
     return DaskBackend(workers or (None if address else usable_processors()), address)
 
 
-BACKENDS: dict[str, Callable[[int | None, str | None, ForkServerContext | None], WorkerBackend]] = {
+BACKENDS: dict[str, Callable[[int | None, str | None, WorkerContext | None], WorkerBackend]] = {
     PROCESSES: _processes,
     "ray": _ray,
     "dask": _dask,
@@ -55,7 +54,7 @@ def make_backend(
     name: str = PROCESSES,
     workers: int | None = None,
     address: str | None = None,
-    context: ForkServerContext | None = None,
+    context: WorkerContext | None = None,
 ) -> WorkerBackend:
     """Return the back end with this name, with its workers started.
 

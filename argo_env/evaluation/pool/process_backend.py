@@ -4,7 +4,6 @@ import os
 import re
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
-from multiprocessing.context import ForkServerContext
 from typing import Any
 
 from loky import ProcessPoolExecutor
@@ -12,8 +11,9 @@ from loky.backend.context import LokyContext
 from loky.process_executor import BrokenProcessPool
 
 from argo_compiler.base.errors import Unavailable
+from argo_compiler.base.operating_system import niceness, set_niceness
 from argo_env.evaluation.pool.backend import WorkerDiedError
-from argo_env.worker_processes import ignore_sigint_and_end_with_parent
+from argo_env.worker_processes import WorkerContext, ignore_sigint_and_end_with_parent
 
 
 class ProcessBackend:
@@ -25,7 +25,7 @@ class ProcessBackend:
     name = "processes"
     isolates_deaths = False
 
-    def __init__(self, workers: int, context: ForkServerContext | None = None) -> None:
+    def __init__(self, workers: int, context: WorkerContext | None = None) -> None:
         """Start the workers; without a `context`, each worker imports all modules itself.
 
         A `context` is a fork server that has imported them.
@@ -71,18 +71,17 @@ class ProcessBackend:
         self._executor.shutdown(wait=True, kill_workers=True)
 
     def _start(self) -> ProcessPoolExecutor:
-        niceness = os.getpriority(os.PRIO_PROCESS, 0)
         return ProcessPoolExecutor(
             self.workers,
             context=self._context,
             initializer=_initialize,
-            initargs=(os.getpid(), niceness),
+            initargs=(os.getpid(), niceness()),
         )
 
 
-def _initialize(parent: int, niceness: int) -> None:
+def _initialize(parent: int, niceness_of_parent: int) -> None:
     ignore_sigint_and_end_with_parent(parent)
-    os.setpriority(os.PRIO_PROCESS, 0, niceness)
+    set_niceness(niceness_of_parent)
 
 
 def _death(broken: BrokenProcessPool) -> WorkerDiedError:

@@ -12,6 +12,7 @@ from pydantic import Field, field_validator, model_validator
 
 from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.base.model import Model
+from argo_compiler.base.operating_system import niceness, set_niceness
 from argo_compiler.il import Mission
 from argo_env.evaluation.case import NO_FAULTS
 from argo_env.evaluation.evaluation import Evaluation
@@ -40,7 +41,7 @@ from argo_planner.service.world.obstacles import Obstacle, with_obstacles
 MOST_WORLDS = 10_000
 MOST_RUNS = 100_000
 _PERIOD = 0.25  # s between two reports of the progress
-_NICE = 10  # the service and the robot's run have priority
+_NICENESS = 10  # the service and the robot's run have priority
 _LONGEST_RUN = 600.0  # s of wall time; a longer run counts as one whose process has died
 
 
@@ -143,7 +144,7 @@ def evaluate_mission(
     """
     from argo_env.evaluation.report.page import write_evaluation_report  # matplotlib
 
-    os.nice(_NICE)
+    set_niceness(max(niceness(), _NICENESS))
     # If this process is killed, its semaphores remain: loky's helper removes them. Its warning
     # about them is not needed.
     os.environ["PYTHONWARNINGS"] = "ignore:resource_tracker:UserWarning"

@@ -18,11 +18,11 @@ from pydantic import ValidationError
 
 from argo_compiler.base.errors import NotFound, Unavailable
 from argo_compiler.base.model import Model
+from argo_compiler.base.operating_system import OPEN_FLAGS, sync_folder
 from argo_compiler.files.atomic_write import write_atomically
 from argo_env.files.checked_lines import (
     checked_line,
     checked_object,
-    sync_folder,
     truncate_if_possible,
     write_all,
 )
@@ -37,7 +37,7 @@ RUN_ID = r"[0-9]{8}-[0-9]{6}-[0-9a-f]{4}"
 """regular expression for the id of a run: its start in UTC, and a random part"""
 _RUN_FILE = "run.json"
 _REQUEST_FILE = "requests"
-_FLAGS = os.O_RDWR | os.O_APPEND | os.O_CREAT | os.O_CLOEXEC
+_FLAGS = os.O_RDWR | os.O_APPEND | os.O_CREAT | OPEN_FLAGS
 
 
 class StoredRun(Model):
@@ -63,7 +63,8 @@ class RequestFile:
             file = os.open(self._path, _FLAGS, 0o644)
             try:
                 size = os.fstat(file).st_size
-                if size > 0 and os.pread(file, 1, size - 1) != b"\n":
+                os.lseek(file, max(0, size - 1), os.SEEK_SET)
+                if os.read(file, 1) not in (b"", b"\n"):
                     lines = b"\n" + lines  # a process was killed before the end of its line
                 try:
                     write_all(file, lines)

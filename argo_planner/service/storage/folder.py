@@ -1,6 +1,5 @@
 """Folder with the mission plans of a service, and a bin for deleted ones."""
 
-import fcntl
 import os
 import re
 import stat
@@ -10,9 +9,9 @@ from datetime import datetime
 from pathlib import Path
 
 from argo_compiler.base.errors import Conflict, NotFound, Unavailable
+from argo_compiler.base.operating_system import NO_LINK_FLAGS, sync_folder, try_lock
 from argo_compiler.il import Mission
 from argo_env.closing import Closing
-from argo_env.files.checked_lines import sync_folder
 from argo_planner.service.core.document import PlanDocument
 from argo_planner.service.core.plan import MissionPlan
 from argo_planner.service.core.plan_limits import require_displayable_name
@@ -52,20 +51,16 @@ class PlanFolder(Closing):
         self._cache: dict[Path, _CachedSummary] = {}
         try:
             (path / _BIN).mkdir(parents=True, exist_ok=True)
-            self._lock = os.open(
-                path / ".lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW, 0o600
-            )
+            self._lock = os.open(path / ".lock", os.O_RDWR | os.O_CREAT | NO_LINK_FLAGS, 0o600)
         except OSError as error:
             raise Unavailable(
                 f"{path} can't be used as a folder of missions: {error.strerror}; choose another"
             ) from error
-        try:
-            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
+        if not try_lock(self._lock):
             os.close(self._lock)
             raise Conflict(
                 f"{path}: another service uses this folder: stop it, or choose another folder"
-            ) from None
+            )
 
     def close(self) -> None:
         os.close(self._lock)

@@ -14,13 +14,13 @@ from pydantic import TypeAdapter, ValidationError
 
 from argo_compiler.base.errors import Invalid, NotFound, Unavailable
 from argo_compiler.base.model import Model
+from argo_compiler.base.operating_system import NO_LINK_FLAGS, sync_content, sync_folder
 from argo_compiler.base.version import __version__
 from argo_compiler.il import Mission
 from argo_env.closing import Closing
 from argo_env.files.checked_lines import (
     checked_line,
     checked_object,
-    sync_folder,
     truncate_if_possible,
     write_all,
 )
@@ -42,7 +42,7 @@ MAX_GROWTH = 16_000_000
 """bytes of records after which the file is rewritten; the size of the first line, if larger"""
 KEPT_RECORDS = 100
 """revisions that a rewritten file has; fewer if they exceed half of `MAX_GROWTH`"""
-_FLAGS = os.O_RDWR | os.O_APPEND | os.O_CLOEXEC | os.O_NOFOLLOW
+_FLAGS = os.O_RDWR | os.O_APPEND | NO_LINK_FLAGS
 _RECORD: TypeAdapter[PlanRecord] = TypeAdapter(PlanRecord)
 
 
@@ -120,7 +120,7 @@ class PlanFile(Closing):
             )
         try:
             write_all(self._file, line)
-            os.fdatasync(self._file)
+            sync_content(self._file)
         except OSError as error:
             truncate_if_possible(self._file, extent.size)
             raise _write_error(self.path, error) from error
@@ -351,7 +351,7 @@ def read_plan_bytes_or_raise(path: Path) -> bytes:
     Raises NotFound if there is no such file, Unavailable if it can't be read, Invalid if it is too
     large.
     """
-    file = _open(path, os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW)
+    file = _open(path, os.O_RDONLY | NO_LINK_FLAGS)
     try:
         if os.fstat(file).st_size > MAX_BYTES:
             raise Invalid(

@@ -12,6 +12,7 @@ from pathlib import Path
 from urllib.parse import unquote
 
 from argo_compiler.base.errors import ArgoError, Invalid, Unavailable
+from argo_compiler.base.operating_system import NO_LINK_FLAGS
 from argo_planner.service.core.plan_limits import require_displayable_name
 
 MIN_TOKEN_LENGTH = 16
@@ -183,11 +184,11 @@ def load_or_make_secret(folder: Path) -> str:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with suppress(FileExistsError):
-            flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
+            flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | NO_LINK_FLAGS
             file = os.open(path, flags, 0o600)
             with open(file, "w", encoding="ascii") as new:
                 new.write(make_secret())
-        file = os.open(path, os.O_RDONLY | os.O_NOFOLLOW)
+        file = os.open(path, os.O_RDONLY | NO_LINK_FLAGS)
         with open(file, encoding="ascii") as stored:
             return validate_secret(stored.read().strip(), str(path))
     except (OSError, UnicodeDecodeError) as error:

@@ -1,12 +1,12 @@
 """Limits on the number of connections, and on the time until their first request."""
 
 import asyncio
-import resource
 from collections import OrderedDict
 from typing import Any, ClassVar
 
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 
+from argo_compiler.base.operating_system import raise_open_file_limit
 from argo_planner.service.web.upload_limits import MAX_MESSAGE_BYTES
 
 MAX_CONNECTIONS = 2_000
@@ -81,11 +81,7 @@ class LimitedProtocol(HttpToolsProtocol):
 
 def raise_file_limit_for_connections() -> None:
     """Raise the limit of open files to four per connection, as far as the hard limit allows."""
-    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-    wanted = 4 * MAX_CONNECTIONS
-    limit = wanted if hard == resource.RLIM_INFINITY else min(wanted, hard)
-    if soft != resource.RLIM_INFINITY and soft < limit:
-        resource.setrlimit(resource.RLIMIT_NOFILE, (limit, hard))
+    raise_open_file_limit(4 * MAX_CONNECTIONS)
 
 
 def server_options() -> dict[str, Any]:

@@ -7,7 +7,7 @@ from pydantic import Field, ValidationError
 
 from argo_compiler.base.errors import Unavailable
 from argo_compiler.base.model import Model
-from argo_env.files.checked_lines import sync_folder
+from argo_compiler.base.operating_system import NO_LINK_FLAGS, sync_folder
 from argo_planner.service.core.refusals import StaleRevision
 from argo_planner.service.world.obstacles import Obstacle
 
@@ -32,7 +32,7 @@ class ObstacleStore:
         if not os.path.lexists(self._path):
             return
         try:
-            file = os.open(self._path, os.O_RDONLY | os.O_NOFOLLOW)
+            file = os.open(self._path, os.O_RDONLY | NO_LINK_FLAGS)
             with open(file, "rb") as stored:
                 self.present = ObstacleList.model_validate_json(stored.read())
         except (OSError, ValidationError) as error:
@@ -57,7 +57,7 @@ class ObstacleStore:
         draft = self._path.with_name(f"{_FILE}.new")
         try:
             draft.unlink(missing_ok=True)
-            file = os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o600)
+            file = os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_EXCL | NO_LINK_FLAGS, 0o600)
             with open(file, "wb") as new:
                 new.write(changed.model_dump_json(indent=1).encode())
                 new.flush()

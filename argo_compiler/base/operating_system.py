@@ -1,0 +1,138 @@
+"""Functions that differ between POSIX systems (Linux, macOS) and Windows.
+
+The start of worker processes differs too; see `argo_env.worker_processes`.
+"""
+
+import os
+import signal
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from types import FrameType
+
+if sys.platform == "win32":
+    import _winapi
+    import msvcrt
+else:
+    import fcntl
+    import resource
+
+SignalHandler = Callable[[int, FrameType | None], object]
+
+if sys.platform == "win32":
+    END_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGBREAK)
+    OPEN_FLAGS = os.O_BINARY | os.O_NOINHERIT
+    NO_LINK_FLAGS = OPEN_FLAGS
+else:
+    END_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    """signals that ask a process to end: Ctrl-C, `kill`, and a closed terminal"""
+    OPEN_FLAGS = os.O_CLOEXEC
+    """flags for `os.open` with which other programs don't inherit the file, and bytes stay as is"""
+    NO_LINK_FLAGS = OPEN_FLAGS | os.O_NOFOLLOW
+    """the same, and where the system has that, opening a symbolic link raises OSError"""
+
+_LOCKED_BYTE = 0x7FFF_FFFE
+"""position of the byte that Windows locks: other processes can't read or write locked bytes"""
+_PERIOD = 1.0  # s between two checks that the parent exists
+
+
+def try_lock(file: int) -> bool:
+    """Lock an open file for this process, and return True; return False if another one locked it.
+
+    The lock ends when the file is closed. Raises OSError if files can't be locked there.
+    """
+    if sys.platform == "win32":
+        position = os.lseek(file, 0, os.SEEK_CUR)
+        os.lseek(file, _LOCKED_BYTE, os.SEEK_SET)
+        try:
+            msvcrt.locking(file, msvcrt.LK_NBLCK, 1)
+        except PermissionError:
+            return False
+        finally:
+            os.lseek(file, position, os.SEEK_SET)
+    else:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return False
+    return True
+
+
+def sync_content(file: int) -> None:
+    """Sync an open file's content and size, but no other properties where the system allows that.
+
+    Raises OSError if that fails.
+    """
+    if sys.platform == "linux":
+        os.fdatasync(file)
+    else:
+        os.fsync(file)
+
+
+def sync_folder(folder: Path) -> None:
+    """Sync the folder, so that the names of its files are on disk as well.
+
+    No-op on Windows, which can't sync folders. Raises OSError if that fails.
+    """
+    if sys.platform == "win32":
+        return
+    file = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(file)
+    finally:
+        os.close(file)
+
+
+def raise_open_file_limit(wanted: int) -> None:
+    """Raise the limit of open files to `wanted`, as far as the hard limit allows.
+
+    No-op on Windows, which limits sockets by memory only.
+    """
+    if sys.platform != "win32":
+        soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+        limit = wanted if hard == resource.RLIM_INFINITY else min(wanted, hard)
+        if soft != resource.RLIM_INFINITY and soft < limit:
+            resource.setrlimit(resource.RLIMIT_NOFILE, (limit, hard))
+
+
+def niceness() -> int:
+    """Return the niceness of this process: 0 is the usual one, 19 the lowest priority.
+
+    Always 0 on Windows, which has none.
+    """
+    if sys.platform != "win32":
+        return os.getpriority(os.PRIO_PROCESS, 0)
+    return 0
+
+
+def set_niceness(value: int) -> None:
+    """Set the niceness of this process; no-op on Windows."""
+    if sys.platform != "win32":
+        os.setpriority(os.PRIO_PROCESS, 0, value)
+
+
+def call_in_main_thread_later(seconds: float, function: SignalHandler) -> None:
+    """Call a function in the main thread after some seconds, as the handler of a signal."""
+    if sys.platform == "win32":
+        from threading import Timer
+
+        signal.signal(signal.SIGABRT, function)
+        Timer(seconds, signal.raise_signal, (signal.SIGABRT,)).start()
+        return
+    signal.signal(signal.SIGALRM, function)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+
+
+def wait_for_parent_end(parent: int) -> None:
+    """Return when the process that started this one has ended; `parent` is that one's id."""
+    if sys.platform == "win32":
+        try:
+            handle = _winapi.OpenProcess(_winapi.SYNCHRONIZE, False, parent)
+        except OSError:  # it has ended already
+            return
+        _winapi.WaitForSingleObject(handle, _winapi.INFINITE)
+        return
+    import time
+
+    while os.getppid() == parent:
+        time.sleep(_PERIOD)

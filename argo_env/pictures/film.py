@@ -36,6 +36,7 @@ from argo_env.robot.spec import RobotSpec
 from argo_env.run.record import RunRecord
 from argo_env.site import Site
 from argo_env.worker_processes import ignore_sigint_and_end_with_parent, usable_processors
+from argo_env.world.pybullet_client import require_pybullet
 
 GIF_COLOURS = 128
 
@@ -261,10 +262,11 @@ def check_film(file: Path) -> None:
     Call this before a long run.
 
     Raises:
-        ArgoError: The suffix or the folder is wrong, or an extra isn't installed.
+        ArgoError: The suffix or the folder is wrong, or something that it needs isn't installed.
     """
     if file.suffix.lower() not in {".mp4", ".gif"}:
         raise Invalid(f"{file}: a film is an .mp4 or a .gif; name the file so")
+    require_pybullet()
     check_writable(file)
     if file.suffix.lower() == ".mp4":
         find_ffmpeg()

@@ -28,6 +28,7 @@ from argo_env.sensing.watch import Watch
 from argo_env.site import Site, SiteCheckpoint
 from argo_env.surroundings import Surroundings
 from argo_env.surroundings.surroundings import RadioNetwork
+from argo_env.world.pybullet_client import require_pybullet
 from argo_env.world.without_physics import AnyWorld, WorldWithoutPhysics
 from argo_env.world.world import World
 
@@ -188,6 +189,8 @@ def check_spec(spec: RunSpec, site: Site, fault_text: FaultText | None = None) -
             f"the drive `{spec.drive}` has no world that the sensor `{spec.sensor}` could "
             f"look at; choose the sensor `{IDEAL}` or another drive"
         )
+    if spec.drive != ROUTE:
+        require_pybullet()
     true_values(site, spec.seed, spec.values)
     for id in spec.conditions.values:
         site.checkpoint(id)

@@ -1,6 +1,10 @@
-"""Connections to PyBullet, without its messages on the console; only this module imports it."""
+"""Connections to PyBullet, without its messages on the console; only this module imports it.
+
+This module can be imported where PyBullet is not installed: then each use of it raises Unavailable.
+"""
 
 import ctypes
+import importlib
 import os
 import sys
 import threading
@@ -8,6 +12,7 @@ import weakref
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,13 +55,45 @@ def _silenced_native_output() -> Iterator[None]:
                 stream.value = value
 
 
-with _silenced_native_output():
-    import pybullet
+class _MissingPyBullet:
+    """Stand-in for PyBullet where it can't be imported: each use of it raises Unavailable."""
 
-__all__ = ["SUN", "Connection", "pybullet"]
+    def __init__(self, reason: ImportError) -> None:
+        self._reason = reason
+
+    def __getattr__(self, name: str) -> NoReturn:
+        if name.startswith("__"):  # what Python itself looks for
+            raise AttributeError(name)
+        raise Unavailable(
+            f"this needs the physics engine PyBullet, which can't be imported ({self._reason}); "
+            "without it, choose the drive `route`, and neither camera pictures nor films"
+        )
+
+
+def _import_pybullet() -> Any:
+    with _silenced_native_output():
+        try:
+            return importlib.import_module("pybullet")
+        except ImportError as error:
+            return _MissingPyBullet(error)
+
+
+pybullet = _import_pybullet()
+
+__all__ = ["SUN", "Connection", "has_pybullet", "pybullet", "require_pybullet"]
 
 SUN: Vector = (0.55, -0.75, 1.25)
 """direction towards the light in all pictures"""
+
+
+def has_pybullet() -> bool:
+    """Return True if PyBullet can be used."""
+    return not isinstance(pybullet, _MissingPyBullet)
+
+
+def require_pybullet() -> None:
+    """Raise Unavailable if PyBullet can't be used; call it before long work that needs it."""
+    _ = pybullet.connect
 
 
 class Connection(Closing):

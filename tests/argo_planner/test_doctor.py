@@ -1,5 +1,6 @@
 """`argo doctor`: its output about the installation, and the option `--empty-cache`."""
 
+import platform
 import tomllib
 from importlib.util import find_spec
 from pathlib import Path
@@ -25,7 +26,7 @@ def test_what_it_shows(tmp_path, monkeypatch):
     assert f"cache: {tmp_path}, 0 sites, 0.0 MB" in doctor()
     assert open_site("darmstadt").catalog
     said = doctor()
-    assert said.startswith(f"argo {__version__}, Python 3.11")
+    assert said.startswith(f"argo {__version__}, Python {platform.python_version()}")
     size = sum(path.stat().st_size for path in tmp_path.rglob("*") if path.is_file())
     assert f"cache: {tmp_path}, 1 sites, {size / 1e6:.1f} MB of at most" in said
     assert "PyBullet: works" in said

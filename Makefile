@@ -25,7 +25,7 @@ TESTED := $(VENV)/$(if $(LEARNED),learned,test).stamp
 PAGE := argo_planner/page
 TYPES := $(PAGE)/src/api/schema.d.ts
 NPM := npm --prefix $(PAGE)
-export PATH := $(PATH):$(CURDIR)/$(BIN)
+export PATH := $(PATH):$(abspath $(BIN))
 
 .PHONY: constraints demo page test test-all test-campaigns speed lint lint-python lint-page format generated help clean
 

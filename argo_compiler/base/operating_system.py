@@ -1,14 +1,13 @@
 """Functions that differ between POSIX systems (Linux, macOS) and Windows.
 
-The start of worker processes differs too; see `argo_env.worker_processes`.
+Signals and the start of worker processes differ too; see `argo_planner.terminal.signals`, which
+must not import this package, and `argo_env.worker_processes`.
 """
 
 import os
-import signal
 import sys
-from collections.abc import Callable
+import time
 from pathlib import Path
-from types import FrameType
 
 if sys.platform == "win32":
     import _winapi
@@ -17,15 +16,10 @@ else:
     import fcntl
     import resource
 
-SignalHandler = Callable[[int, FrameType | None], object]
-
 if sys.platform == "win32":
-    END_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGBREAK)
     OPEN_FLAGS = os.O_BINARY | os.O_NOINHERIT
     NO_LINK_FLAGS = OPEN_FLAGS
 else:
-    END_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-    """signals that ask a process to end: Ctrl-C, `kill`, and a closed terminal"""
     OPEN_FLAGS = os.O_CLOEXEC
     """flags for `os.open` with which other programs don't inherit the file, and bytes stay as is"""
     NO_LINK_FLAGS = OPEN_FLAGS | os.O_NOFOLLOW
@@ -106,21 +100,9 @@ def niceness() -> int:
 
 
 def set_niceness(value: int) -> None:
-    """Set the niceness of this process; no-op on Windows."""
+    """Set the niceness of this process, 19 if `value` is above that; no-op on Windows."""
     if sys.platform != "win32":
-        os.setpriority(os.PRIO_PROCESS, 0, value)
-
-
-def call_in_main_thread_later(seconds: float, function: SignalHandler) -> None:
-    """Call a function in the main thread after some seconds, as the handler of a signal."""
-    if sys.platform == "win32":
-        from threading import Timer
-
-        signal.signal(signal.SIGABRT, function)
-        Timer(seconds, signal.raise_signal, (signal.SIGABRT,)).start()
-        return
-    signal.signal(signal.SIGALRM, function)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
+        os.setpriority(os.PRIO_PROCESS, 0, min(value, 19))
 
 
 def wait_for_parent_end(parent: int) -> None:
@@ -132,7 +114,5 @@ def wait_for_parent_end(parent: int) -> None:
             return
         _winapi.WaitForSingleObject(handle, _winapi.INFINITE)
         return
-    import time
-
     while os.getppid() == parent:
         time.sleep(_PERIOD)

@@ -1,4 +1,4 @@
-"""Handling of the signals that ask the process to end (END_SIGNALS).
+"""Signals that ask the process to end: Ctrl-C (SIGINT), SIGTERM, and a closed terminal (SIGHUP).
 
 This module is imported before anything else, so it imports very little. A signal that is ignored
 when the process starts, as with `nohup`, stays ignored.
@@ -7,18 +7,18 @@ when the process starts, as with `nohup`, stays ignored.
 import os
 import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from types import FrameType
 
-from argo_compiler.base.operating_system import (
-    END_SIGNALS,
-    SignalHandler,
-    call_in_main_thread_later,
-)
-
+if sys.platform == "win32":
+    _NUMBERS = (signal.SIGINT, signal.SIGTERM, signal.SIGBREAK)
+else:
+    _NUMBERS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 _AGAIN = 0.01
 """s until an interruption that could not be raised is raised again"""
+
+_Handler = Callable[[int, FrameType | None], object]
 
 
 class Interrupted(BaseException):
@@ -52,7 +52,7 @@ def exit_on_signals() -> None:
 
 def ignore_signals() -> None:
     """Ignore signals from now on, as all work is done and the process is ending."""
-    for number in END_SIGNALS:
+    for number in _NUMBERS:
         signal.signal(number, signal.SIG_IGN)
 
 
@@ -73,7 +73,7 @@ def raise_on_signals(watch: SignalWatch) -> None:
             sys.__unraisablehook__(unraisable)
         elif isinstance(unraisable.exc_value, Interrupted):
             number = unraisable.exc_value.status - 128
-            call_in_main_thread_later(_AGAIN, lambda _, frame: interrupt(number, frame))
+            _call_in_main_thread_later(_AGAIN, lambda _, frame: interrupt(number, frame))
 
     sys.unraisablehook = raise_later
     _set_handler(interrupt)
@@ -86,7 +86,7 @@ def defer_first_signal() -> Iterator[SignalWatch]:
     In another thread than the main one, no signal is received.
     """
     deferred = SignalWatch()
-    before = {number: signal.getsignal(number) for number in END_SIGNALS}
+    before = {number: signal.getsignal(number) for number in _NUMBERS}
 
     def restore_handlers() -> None:
         for number, handler in before.items():
@@ -107,11 +107,23 @@ def defer_first_signal() -> Iterator[SignalWatch]:
         restore_handlers()
 
 
-def _set_handler(handler: SignalHandler) -> None:
+def _set_handler(handler: _Handler) -> None:
     """Set a handler for signals that are not ignored; raise ValueError outside the main thread."""
-    for number in END_SIGNALS:
+    for number in _NUMBERS:
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, handler)
+
+
+def _call_in_main_thread_later(seconds: float, handler: _Handler) -> None:
+    """Call a function in the main thread after some seconds, as the handler of a signal."""
+    if sys.platform == "win32":
+        from threading import Timer
+
+        signal.signal(signal.SIGABRT, handler)
+        Timer(seconds, signal.raise_signal, (signal.SIGABRT,)).start()
+    else:
+        signal.signal(signal.SIGALRM, handler)
+        signal.setitimer(signal.ITIMER_REAL, seconds)
 
 
 def _end(number: int, _: FrameType | None) -> None:

@@ -41,7 +41,7 @@ from argo_planner.service.world.obstacles import Obstacle, with_obstacles
 MOST_WORLDS = 10_000
 MOST_RUNS = 100_000
 _PERIOD = 0.25  # s between two reports of the progress
-_NICENESS = 10  # the service and the robot's run have priority
+_MORE_NICENESS = 10  # the service and the robot's run have priority
 _LONGEST_RUN = 600.0  # s of wall time; a longer run counts as one whose process has died
 
 
@@ -144,7 +144,7 @@ def evaluate_mission(
     """
     from argo_env.evaluation.report.page import write_evaluation_report  # matplotlib
 
-    set_niceness(max(niceness(), _NICENESS))
+    set_niceness(niceness() + _MORE_NICENESS)
     # If this process is killed, its semaphores remain: loky's helper removes them. Its warning
     # about them is not needed.
     os.environ["PYTHONWARNINGS"] = "ignore:resource_tracker:UserWarning"

@@ -1,8 +1,6 @@
 import os
-import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -40,19 +38,6 @@ def test_links_are_not_followed(tmp_path: Path) -> None:
     (tmp_path / "link").symlink_to(tmp_path / "file")
     with pytest.raises(OSError, match="link"):
         os.open(tmp_path / "link", os.O_RDONLY | system.NO_LINK_FLAGS)
-
-
-def test_a_function_is_called_later_in_the_main_thread() -> None:
-    calls: list[int] = []
-    before = signal.getsignal(signal.SIGALRM)
-    try:
-        system.call_in_main_thread_later(0.01, lambda number, _: calls.append(number))
-        limit = time.monotonic() + 10.0
-        while not calls and time.monotonic() < limit:
-            time.sleep(0.001)
-    finally:
-        signal.signal(signal.SIGALRM, before)
-    assert len(calls) == 1
 
 
 def test_the_end_of_the_parent_is_noticed() -> None:

@@ -64,6 +64,14 @@ _COMMANDS = {
         "sites.sites_command",
         "List the sites, or check one; exits with status 2 if parts can't be reached.",
     ),
+    "examples": (
+        "examples.examples_command",
+        "List the shipped missions, faults, evaluations and sites, or copy one of them.",
+    ),
+    "new": (
+        "new.new_command",
+        "Write a commented skeleton of a mission, a site, an evaluation or a file of faults.",
+    ),
     "plan": (
         "plan.plan_command",
         "Plan a mission in the browser, on a 3D model of the site, and watch it run.",

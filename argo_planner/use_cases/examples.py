@@ -1,0 +1,66 @@
+"""Shipped examples: missions, faults, evaluations, sites and scoring rules, with their files."""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import yaml
+
+from argo_compiler.base.errors import NotFound
+from argo_compiler.base.model import Model
+from argo_compiler.base.nearest_name import nearest_name
+from argo_env.files.resources import scenarios_folder
+
+INDEX = "examples.yaml"
+"""file in the folder of scenarios that lists the examples"""
+SITES = "sites"
+"""the kind of examples that are sites"""
+
+
+class Example(Model):
+    """Example: a file, and those that it needs."""
+
+    about: str
+    """line about the example"""
+    files: tuple[str, ...]
+    """paths from the folder of scenarios; the first one is the example itself"""
+
+
+def list_examples() -> dict[str, dict[str, Example]]:
+    """Return the examples by their kind, such as `missions`, and name."""
+    kinds = yaml.safe_load((scenarios_folder() / INDEX).read_text(encoding="utf-8"))
+    return {
+        kind: {name: Example.model_validate(content) for name, content in examples.items()}
+        for kind, examples in kinds.items()
+    }
+
+
+def example_files(name: str) -> dict[str, bytes]:
+    """Return the files of an example, by their paths in the folder to which they are copied.
+
+    A copied site has the name `my_NAME`, since NAME stands for the shipped site. Raises NotFound.
+    """
+    kinds = list_examples()
+    kind = next((kind for kind, examples in kinds.items() if name in examples), None)
+    if kind is None:
+        known = [name for examples in kinds.values() for name in examples]
+        near = nearest_name(name, known)
+        hint = f"did you mean {near}?" if near else "`argo examples` lists them"
+        raise NotFound(f"there is no example {name}: {hint}")
+    first, *others = kinds[kind][name].files
+    if kind == SITES:
+        text = (scenarios_folder() / first).read_text(encoding="utf-8")
+        text = re.sub(rf"(?m)^name: {name}$", f"name: my_{name}", text, count=1)
+        return {f"my_{name}.yaml": text.encode()}
+    return dict(_paths_and_contents(Path(first).parent, [first, *others]))
+
+
+def _paths_and_contents(folder: Path, files: list[str]) -> Iterator[tuple[str, bytes]]:
+    """Yield the path and the content of each file; the path is relative to `folder`.
+
+    Files that are not in the folder are put directly into it.
+    """
+    for file in files:
+        path = Path(file)
+        inside = path.relative_to(folder) if path.is_relative_to(folder) else Path(path.name)
+        yield inside.as_posix(), (scenarios_folder() / file).read_bytes()

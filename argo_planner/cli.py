@@ -72,6 +72,10 @@ _COMMANDS = {
         "new.new_command",
         "Write a commented skeleton of a mission, a site, an evaluation or a file of faults.",
     ),
+    "docs": (
+        "docs.docs_command",
+        "List the pages of the documentation, or print one as Markdown.",
+    ),
     "plan": (
         "plan.plan_command",
         "Plan a mission in the browser, on a 3D model of the site, and watch it run.",

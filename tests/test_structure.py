@@ -263,6 +263,22 @@ def test_use_cases_know_no_terminal():
             assert not {n for n in names if n.split(".")[0] in {"typer", "rich", "click"}}, module
 
 
+def texts_of(module):
+    """Return the texts in a module but docstrings."""
+    docstrings = {
+        id(node.value)
+        for node in nodes_of(module)
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+    }
+    return [
+        node.value
+        for node in nodes_of(module)
+        if isinstance(node, ast.Constant)
+        and isinstance(node.value, str)
+        and id(node) not in docstrings
+    ]
+
+
 OPTION = re.compile(r"(^|[\s(`])--[a-z]|`argo ")
 
 
@@ -272,20 +288,19 @@ def test_messages_of_the_libraries_name_the_thing_and_no_option():
         library = module.startswith(("argo_compiler", "argo_env", "argo_planner.use_cases"))
         if not library or is_script(module):
             continue
-        docstrings = {
-            id(node.value)
-            for node in nodes_of(module)
-            if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
-        }
-        said = [
-            node.value
-            for node in nodes_of(module)
-            if isinstance(node, ast.Constant)
-            and isinstance(node.value, str)
-            and id(node) not in docstrings
-            and OPTION.search(node.value)
-        ]
+        said = [text for text in texts_of(module) if OPTION.search(text)]
         assert not said, module
+
+
+FOLDER = re.compile(r"^(?!<!--).*(?<![\w/])(?:benchmarks|docs|scenarios|tests|urdf)/\w")
+
+
+def test_messages_name_no_folder_that_only_a_checkout_has():
+    """The pages of `docs/` are read with `argo docs`, and the scenarios with `argo examples`."""
+    for module in trees():
+        if not is_script(module):
+            said = [text for text in texts_of(module) if FOLDER.search(text)]
+            assert not said, module
 
 
 @pytest.mark.parametrize("package", KNOWS)

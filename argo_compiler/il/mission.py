@@ -328,7 +328,8 @@ class Reaction(Model):
     """Reaction to an event. A mission has at most one for each kind of event.
 
     The response is executed; then the robot holds until `until`, if it is given; then `afterwards`
-    follows. A reaction of higher rank interrupts one of lower rank; see `docs/language.md`.
+    follows. A reaction of higher rank interrupts one of lower rank; see the page `language`
+    of the documentation.
     """
 
     event: EventKind

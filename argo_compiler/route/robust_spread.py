@@ -32,8 +32,8 @@ SIMULATED = TravelSpread(
     way=0.007,
     source=(
         "the simulator with the tracked drive and no faults: missions on UMAD take 0.05 % more or "
-        "less than planned in the median and 0.22 % at most (docs/drives.md), single motions of "
-        "5.6 s on average 0.2 s (urdf/robot/tracker.calibration.yaml); a way is some 30 motions"
+        "less than planned in the median and 0.22 % at most (documentation, page `drives`), single "
+        "motions of 5.6 s on average 0.2 s (calibration of the drive); a way is some 30 motions"
     ),
 )
 

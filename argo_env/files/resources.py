@@ -16,6 +16,11 @@ def scenarios_folder() -> Path:
     return _root("scenarios")
 
 
+def docs_folder() -> Path:
+    """Return the folder of the documentation's pages."""
+    return _root("docs")
+
+
 def urdf_folder() -> Path:
     """Return the folder with the models of robots and checkpoints."""
     return _root("urdf")

@@ -144,7 +144,7 @@ def evaluate_command(
     scoring: Annotated[
         Path | None,
         typer.Option(
-            "--scoring", metavar="FILE.yaml", help="scoring rules; see scenarios/scoring.yaml"
+            "--scoring", metavar="FILE.yaml", help="scoring rules, such as the example `scoring`"
         ),
     ] = None,
     report: Annotated[

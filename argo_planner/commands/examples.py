@@ -30,9 +30,7 @@ def examples_command(
     name: Annotated[
         str | None, typer.Argument(help="name of the example", autocompletion=_offer_examples)
     ] = None,
-    folder: Annotated[
-        Path, typer.Argument(metavar="DIR", help="folder to copy to")
-    ] = Path(),
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="folder to copy to")] = Path(),
     force: Force = False,
 ) -> None:
     """List the shipped missions, faults, evaluations and sites, or copy one of them."""

@@ -68,7 +68,7 @@ def route_command(
     ] = None,
     requirements: Annotated[
         Path | None,
-        typer.Option(metavar="FILE.yaml", help="file with requirements; see docs/routes.md"),
+        typer.Option(metavar="FILE.yaml", help="file with requirements; see `argo docs routes`"),
     ] = None,
     time_limit: Annotated[
         float, typer.Option(help="longest time of the search in s", min=0.01)

@@ -150,7 +150,9 @@ def run_command(
     ] = None,
     faults: Annotated[
         Path | None,
-        typer.Option("--faults", metavar="FILE.yaml", help="file of faults; see docs/faults.md"),
+        typer.Option(
+            "--faults", metavar="FILE.yaml", help="file of faults; see `argo docs faults`"
+        ),
     ] = None,
     journal: Annotated[
         Path | None,

@@ -11,6 +11,6 @@ EVALUATION = {
     ),
     "evaluation.wrong-field": error(
         "A field of the evaluation is unknown, missing, or has an invalid value.",
-        "Correct the field; docs/evaluating.md lists them.",
+        "Correct the field; the page `evaluating` of the documentation lists them.",
     ),
 }

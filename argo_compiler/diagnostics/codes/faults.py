@@ -10,6 +10,6 @@ FAULTS = {
     "faults.wrong-field": error(
         "A fault is of an unknown kind, or a field of it is unknown, missing, or has an invalid "
         "value.",
-        "Correct the field; docs/faults.md lists the kinds and their fields.",
+        "Correct the field; the page `faults` of the documentation lists kinds and fields.",
     ),
 }

@@ -13,6 +13,6 @@ ROUTE = {
     ),
     "route.wrong-field": error(
         "A field of a file of requirements is missing, unknown or has an invalid value.",
-        "Correct the field; docs/routes.md lists them.",
+        "Correct the field; the page `routes` of the documentation lists them.",
     ),
 }

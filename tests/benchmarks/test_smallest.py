@@ -5,12 +5,14 @@ The test of published route problems is in `test_routes.py`.
 
 import os
 import re
+import sys
 from importlib import import_module
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parents[2]
+PYTHON = f"{sys.version_info.major}.{sys.version_info.minor}"
 SMALL = "generated:floors=1,size=12x12,checkpoints=2,seed=1"
 
 pytestmark = pytest.mark.long
@@ -21,6 +23,7 @@ COMMANDS = {
     "env drive inspect --window 0.005": r"Drive-v0 +[\d,]+ steps/s(.|\n)* s simulated in a step",
     "evaluate --power --comparisons 20": r"a plan and itself: a difference in 0 of 20 ",
     "hfsm --events 50 --repeats 1": r"Argo +[\d,]+ +",
+    f"install_sizes --python-version {PYTHON} --only": r"\| plain \| \d{3} \| ",
     "hfsm --states": r"Argo: 4 states",
     "route_parts --problems plain --count 1 --size 4 --time-limit 0.1 --only PyVRP --alone": (
         r"\nPyVRP (.|\n)*\nall but PyVRP "

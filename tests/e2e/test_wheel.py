@@ -94,7 +94,8 @@ def test_a_wheel_from_the_source_distribution_equals_one_from_the_checkout(
 def test_the_source_distribution_holds_what_a_reader_needs(built: Distributions) -> None:
     with tarfile.open(built.source) as archive:
         names = {member.name.partition("/")[2] for member in archive.getmembers()}
-    needed = {"README.md", "CHANGELOG.md", "LICENSE", "Makefile", "constraints.txt"}
+    needed = {"README.md", "CHANGELOG.md", "CITATION.cff", "SECURITY.md", "LICENSE", "Makefile"}
+    needed.add("constraints.txt")
     needed |= {f"docs/{name}" for name in files_of(ROOT / "docs")}
     assert needed <= names
 

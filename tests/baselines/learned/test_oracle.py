@@ -3,8 +3,11 @@
 from itertools import permutations
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+pytest.importorskip("torch")
 
 from argo_env.envs.route_instance import RouteInstance, score_route
 from argo_env.envs.route_sources import RandomRoutes

@@ -37,6 +37,8 @@ def test_no_docstring_begins_with_a_riddle():
 
 
 PACKAGES = ("argo_compiler", "argo_env", "argo_planner", "baselines", "benchmarks")
+PROPERTIES = {"property", "cached_property", "thread_safe_cached_property"}
+"""decorators of properties"""
 OTHER_ROOMS = {
     "argo_compiler/export/flexbe_states": "templates, which run in another program",
     "argo_planner/commands": "a command may be named after the operation that it offers",
@@ -87,7 +89,12 @@ def public_functions(path: Path) -> Iterator[tuple[str, str]]:
                 bodies.append(node.body)
             if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
                 decorators = {ast.unparse(decorator) for decorator in node.decorator_list}
-                is_attribute = decorators & {"property", "cached_property", f"{node.name}.setter"}
+                is_attribute = decorators & {
+                    "property",
+                    "cached_property",
+                    "thread_safe_cached_property",
+                    f"{node.name}.setter",
+                }
                 if not node.name.startswith("_") and not is_attribute:
                     returned = ast.unparse(node.returns) if node.returns else ""
                     yield node.name, returned.strip("'")

@@ -1,9 +1,10 @@
-"""Memoization of functions of one frozen object."""
+"""Memoization of functions and properties of one frozen object."""
 
 from collections import deque
 from collections.abc import Callable
-from functools import wraps
-from typing import TypeVar
+from functools import cached_property, wraps
+from threading import RLock
+from typing import Any, TypeVar
 from weakref import ref
 
 Key = TypeVar("Key")
@@ -29,3 +30,24 @@ def cache_last_results_by_identity(function: Callable[[Key], Value]) -> Callable
         return value
 
     return wrapper
+
+
+def thread_safe_cached_property(function: Callable[[Any], Value]) -> cached_property[Value]:
+    """Return a cached property that is computed only once even if several threads need it.
+
+    Since CPython 3.12, threads that need a `functools.cached_property` at the same time each
+    compute it.
+    """
+    name = function.__name__
+    lock = RLock()
+
+    @wraps(function)
+    def compute(instance: Any) -> Value:
+        with lock:
+            values = vars(instance)
+            if name not in values:
+                values[name] = function(instance)
+            value: Value = values[name]
+            return value
+
+    return cached_property(compute)

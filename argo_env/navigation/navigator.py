@@ -3,13 +3,14 @@
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Invalid, Unreachable
+from argo_compiler.base.memoization import thread_safe_cached_property
 from argo_compiler.base.model import Pose
 from argo_env.files.parts import NO_CACHE, Parts
 from argo_env.navigation.closed_areas import (
@@ -150,7 +151,7 @@ class Navigator:
         """Compute now what all queries share, so that no later call takes the time for it."""
         self._path_search.prepare()
 
-    @cached_property
+    @thread_safe_cached_property
     def surface(self) -> Surface:
         """All cells of the site that the robot can traverse."""
         grid = Grid.covering(self.site.spec.ground)
@@ -164,7 +165,7 @@ class Navigator:
         )
         return Surface(grid, **arrays)
 
-    @cached_property
+    @thread_safe_cached_property
     def lattice(self) -> Lattice:
         """States that can be reached from the docking stations and lead back to them.
 
@@ -316,11 +317,11 @@ class Navigator:
             return self._states_to_view(self._first_dock, checkpoint_id)[-1]
         return int(states[int(np.argmin(total))])
 
-    @cached_property
+    @thread_safe_cached_property
     def _first_dock(self) -> Pose:
         return self.site.docks[min(self.site.docks)]
 
-    @cached_property
+    @thread_safe_cached_property
     def _from_first_dock(self) -> NDArray[np.float64]:
         arrays = self.parts.load_or_make(
             "first-dock",
@@ -341,7 +342,7 @@ class Navigator:
         poses = self._turning_poses
         return poses[np.abs(poses[:, 2] - floor_z) <= 0.01]
 
-    @cached_property
+    @thread_safe_cached_property
     def _turning_poses(self) -> NDArray[np.float64]:
         """Poses at which the robot can turn all round, on all floors."""
         source, target = self.lattice.costs.tocoo().coords
@@ -379,7 +380,7 @@ class Navigator:
             raise self._no_path_error(start, f"a view of checkpoint {checkpoint_id}")
         return states
 
-    @cached_property
+    @thread_safe_cached_property
     def _path_search(self) -> PathSearch:
         cuts = find_cut_heights(self.lattice, [f.z for f in self.site.spec.floors])
         return PathSearch(self.lattice, make_partition(self.lattice, cuts, self.parts), self.parts)

@@ -4,12 +4,12 @@ Paths change from region to region at portals. Within a region A* finds them.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_compiler.base.memoization import thread_safe_cached_property
 from argo_compiler.base.stages import stage, stage_items
 from argo_env.files.parts import NO_CACHE, Arrays, Parts
 from argo_env.navigation.graphs import (
@@ -373,7 +373,7 @@ class PathSearch:
         steps = [*walk_tree(area.trees_from_entries[1][tree], int(part.local[b]))][::-1]
         return [int(s) for s in area.members[steps[1:]]]
 
-    @cached_property
+    @thread_safe_cached_property
     def _portals(self) -> Portals:
         return Portals(
             **self._parts.load_or_make(

@@ -12,12 +12,12 @@ search meets graph theory", 2005).
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_compiler.base.memoization import thread_safe_cached_property
 from argo_env.files.parts import NO_CACHE, Arrays, Parts
 from argo_env.navigation.graphs import (
     Graph,
@@ -99,7 +99,7 @@ class Landmarks:
         if len(self.positions) >= _MIN_STATES:
             _ = self._distances
 
-    @cached_property
+    @thread_safe_cached_property
     def _distances(self) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         """Costs (s) from all states to each landmark, and from each landmark to all states.
 
@@ -159,17 +159,17 @@ class Region:
     name: str = ""
     """beginning of the names of the region's parts in the disk cache"""
 
-    @cached_property
+    @thread_safe_cached_property
     def move_targets(self) -> NDArray[np.intp]:
         """State that each forward move leads to, in the type that NumPy indexes fastest with."""
         return self.forward.indices.astype(np.intp)
 
-    @cached_property
+    @thread_safe_cached_property
     def trees_from_entries(self) -> Trees:
         """Cheapest paths from each entry, the root: the next state is the one before on a path."""
         return self._trees("entries", self.forward, self.entries)
 
-    @cached_property
+    @thread_safe_cached_property
     def trees_to_exits(self) -> Trees:
         """Cheapest paths to each exit: their costs, and each state's next one towards the exit."""
         return self._trees("exits", self.backward, self.exits)

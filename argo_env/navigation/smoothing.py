@@ -3,12 +3,12 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_compiler.base.memoization import thread_safe_cached_property
 from argo_compiler.base.model import Pose
 from argo_env.navigation.lattice import DRIVING_LEVEL, MARGIN, TURNING_LEVEL
 from argo_env.navigation.path import Motion, Path, merge, wrap
@@ -54,17 +54,17 @@ class FlatMap:
             rims |= np.abs(np.roll(height, (di, dj), axis=(0, 1)) - height) > TURNING_LEVEL
         return FlatMap(surface.grid, free, rims[1:-1, 1:-1])
 
-    @cached_property
+    @thread_safe_cached_property
     def _border(self) -> Centers:
         """Centres of the cells that are not free and touch free ones."""
         return self._centers(self._beside_free)
 
-    @cached_property
+    @thread_safe_cached_property
     def _turning_border(self) -> Centers:
         """Centres of the cells of the border, which are not free, and of the rims, which are."""
         return self._centers(self._beside_free | np.pad(self.rims, 2))
 
-    @cached_property
+    @thread_safe_cached_property
     def _beside_free(self) -> NDArray[np.bool_]:
         """Mask of the border's cells, on the grid with two more cells on each side."""
         free = np.pad(self.free, 2)
@@ -78,7 +78,7 @@ class FlatMap:
         i, j = np.nonzero(cells)
         return self.grid.centers(i - 2, j - 2)
 
-    @cached_property
+    @thread_safe_cached_property
     def _border_distance(self) -> NDArray[np.float64]:
         """Distance (m) of each cell's centre to that of the nearest cell of the border.
 
@@ -86,7 +86,7 @@ class FlatMap:
         """
         return np.where(np.pad(self.free, 2), _distances(self._beside_free), 0.0)
 
-    @cached_property
+    @thread_safe_cached_property
     def _turning_border_distance(self) -> NDArray[np.float64]:
         """Distance (m) as `_border_distance`, to the nearest cell of the border or of `rims`."""
         near = self._beside_free | np.pad(self.rims, 2)

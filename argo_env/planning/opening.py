@@ -6,13 +6,14 @@ import os
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import partial
 from pathlib import Path
 from threading import Lock
 from typing import TYPE_CHECKING, Any
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.errors import Conflict, Invalid
+from argo_compiler.base.memoization import thread_safe_cached_property
 from argo_compiler.base.stages import stage
 from argo_compiler.files.loading import read_text
 from argo_env.files import cache
@@ -91,26 +92,26 @@ class OpenedSite:
 
     # A mission that was checked before is checked without these modules: imported when needed.
 
-    @cached_property
+    @thread_safe_cached_property
     def navigator(self) -> "Navigator":
         """Path planner of the site; it keeps the paths that it planned last."""
         from argo_env.navigation import Navigator
 
         return Navigator(self.site, self.robot, self.parts, cached_paths=_MAX_PATHS)
 
-    @cached_property
+    @thread_safe_cached_property
     def catalog(self) -> Catalog:
         """Catalogue of the site, for the compiler."""
         return load_catalog(self.site, self.parts) or make_catalog(self.navigator)
 
-    @cached_property
+    @thread_safe_cached_property
     def travel(self) -> "SiteTravel":
         """Travel times and energy on the site, for the analysis and for routes."""
         from argo_env.planning.travel import SiteTravel
 
         return SiteTravel(self)
 
-    @cached_property
+    @thread_safe_cached_property
     def digest(self) -> str:
         """Digest of the descriptions of the site and the robot."""
         text = self.site.spec.model_dump_json() + self.robot.model_dump_json()

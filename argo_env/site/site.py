@@ -3,12 +3,12 @@
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from argo_compiler.base.catalog import CheckpointKind, Interval
 from argo_compiler.base.errors import Invalid, NotFound
+from argo_compiler.base.memoization import thread_safe_cached_property
 from argo_compiler.base.model import Pose
 from argo_env.files import resources
 from argo_env.site.family import PREFIX, is_generated_name
@@ -66,21 +66,21 @@ class Site:
 
     # The check of a mission does not need its site's solids, so their modules are imported late.
 
-    @cached_property
+    @thread_safe_cached_property
     def elements(self) -> "tuple[Element, ...]":
         """Named parts of the site, with their solids."""
         from argo_env.site.build import build_site
 
         return build_site(self.spec) if self.altered is None else self.altered
 
-    @cached_property
+    @thread_safe_cached_property
     def solids(self) -> "SolidIndex":
         """Index that finds the solids of the site whose bounding boxes touch a box."""
         from argo_env.site.index import SolidIndex
 
         return SolidIndex(self.elements)
 
-    @cached_property
+    @thread_safe_cached_property
     def rays(self) -> "SolidRays":
         """Ray casting against all solids of the site."""
         from argo_env.site.index import SolidRays

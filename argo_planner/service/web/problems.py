@@ -179,8 +179,16 @@ def _invalid(error: ValidationException) -> Problem:
     return plain_problem(HTTPStatus.UNPROCESSABLE_ENTITY, "invalid", detail)
 
 
+_NEW_PHRASES = {413: "Content Too Large", 422: "Unprocessable Content"}
+"""phrases that Python has only since 3.13"""
+
+
 def problem_responses(*statuses: int) -> dict[int | str, dict[str, Any]]:
     """Return the descriptions of the error responses with these statuses, for OpenAPI."""
     return {
-        status: {"model": Problem, "description": HTTPStatus(status).phrase} for status in statuses
+        status: {
+            "model": Problem,
+            "description": _NEW_PHRASES.get(status) or HTTPStatus(status).phrase,
+        }
+        for status in statuses
     }

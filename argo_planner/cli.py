@@ -2,6 +2,7 @@
 
 import errno
 import gc
+import logging
 import sys
 from typing import Annotated
 
@@ -14,6 +15,8 @@ from argo_planner.lazy_group import LazyCommand, LazyGroup
 from argo_planner.terminal.output import guard_stdout_and_stderr
 from argo_planner.terminal.signals import SignalWatch, ignore_signals, raise_on_signals
 from argo_planner.terminal.verbosity import set_verbosity
+
+_log = logging.getLogger(__name__)
 
 _COMMANDS = {
     "import": (
@@ -90,7 +93,7 @@ _COMMANDS = {
     ),
     "doctor": (
         "doctor.doctor_command",
-        "Show Argo's version, its cache on disk, and which optional parts are installed.",
+        "Show Argo's version, its cache on disk, its optional parts, and what extends it.",
     ),
 }
 """commands by name: module and function of each, and its line in `argo --help`"""
@@ -194,6 +197,12 @@ def _report_error(error: BaseException) -> int:
         from argo_planner.terminal.words import error_text
 
         print(error_text(error, "argo: "), file=sys.stderr)
+        return 2
+    from argo_compiler.base.extensions import failure_text, package_at_fault
+
+    if isinstance(error, Exception) and (package := package_at_fault(error)) is not None:
+        _log.debug("the error of %s", package, exc_info=error)
+        print(f"argo: {failure_text(package, error)}; see more with argo -vv", file=sys.stderr)
         return 2
     raise error
 

@@ -24,11 +24,12 @@ from rich.table import Table
 from argo_compiler.base.errors import ArgoError, Invalid
 from argo_compiler.base.stages import listen_to_stages, stage
 from argo_env.files.folders import make_folder
+from argo_env.policies import POLICIES
 from baselines.comparison import BetterRoute, PolicyComparison, compare_policies
 from baselines.episodes import play
 from baselines.families import TEST_SETS, find_test_set
 from baselines.intervals import ConfidenceInterval
-from baselines.policy import POLICIES, make_policy
+from baselines.policy import OWN_POLICIES, make_policy
 from baselines.references import load_references
 from baselines.stage_lines import StageLines
 
@@ -159,9 +160,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument(
         "--policy",
         nargs="+",
-        default=list(POLICIES),
+        default=list(OWN_POLICIES),
         metavar="NAME",
-        help=f"policies, from {', '.join(POLICIES)}, or module:class; default all",
+        help=f"policies, from {', '.join(POLICIES)}, or module:class; default all of Argo's",
     )
     parser.add_argument(
         "--instances",

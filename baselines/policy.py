@@ -1,12 +1,13 @@
-"""Protocol of policies, and the policies that can be chosen by name."""
+"""Protocol of policies, the names of Argo's own, and the choice of one by name."""
 
 from collections.abc import Callable
 from importlib import import_module
 from operator import attrgetter
-from typing import Protocol, cast
+from typing import Any, Protocol, cast
 
 from argo_compiler.base.errors import NotFound
 from argo_env.envs.observations import Observation
+from argo_env.policies import POLICIES
 
 
 class Policy(Protocol):
@@ -35,37 +36,38 @@ class Policy(Protocol):
         ...
 
 
-POLICIES: dict[str, str | Callable[[], Policy]] = {
-    "given-order": "baselines.heuristics.greedy:GivenOrder",
-    "nearest-neighbour": "baselines.heuristics.greedy:NearestNeighbour",
-    "prize-over-time": "baselines.heuristics.greedy:PrizeOverTime",
-    "insertion": "baselines.heuristics.insertion:Insertion",
-    "portfolio": "baselines.portfolio:Portfolio",
-    "portfolio-1s": "baselines.portfolio:QuickPortfolio",
-    "portfolio-resolved": "baselines.portfolio:ResolvedPortfolio",
-    "learned": "baselines.learned.agent:LearnedPolicy.from_file",
-    "learned-sampled": "baselines.learned.agent:SampledPolicy.from_file",
-}
-"""Factory of each policy, by name: a class, a function, or `module:name` of one. A new policy needs
-one line here, or `POLICIES["mine"] = Mine` in the program that uses it."""
+OWN_POLICIES = (
+    "given-order",
+    "nearest-neighbour",
+    "prize-over-time",
+    "insertion",
+    "portfolio",
+    "portfolio-1s",
+    "portfolio-resolved",
+    "learned",
+    "learned-sampled",
+)
+"""names of Argo's policies, in the order in which they are compared. A new one needs a line here,
+and one in `pyproject.toml`, which has the class or function of each"""
 
 
 def make_policy(name: str) -> Policy:
     """Return a new policy, by its name or by `module:name` of its factory.
 
-    Raises ArgoError if there is none.
+    Raises ArgoError if there is none, or if it can't be used.
     """
-    maker = POLICIES.get(name, name)
-    if not isinstance(maker, str):
-        return maker()
-    module, _, attribute = maker.partition(":")
-    if not attribute:
-        raise NotFound(
-            f"no policy `{name}`; choose one of: {', '.join(POLICIES)}; name a policy of your own "
-            "as `module:class`"
-        )
+    if ":" not in name:
+        return cast("Policy", _find_factory(name)())
+    module, _, attribute = name.partition(":")
     try:
         factory = attrgetter(attribute)(import_module(module))
-    except (ImportError, AttributeError) as error:
-        raise NotFound(f"policy `{name}`: `{maker}` can't be loaded ({error})") from None
+    except (ImportError, AttributeError, ValueError) as error:
+        raise NotFound(f"policy `{name}` can't be loaded ({error})") from None
     return cast("Policy", factory())
+
+
+def _find_factory(name: str) -> Callable[..., Any]:
+    try:
+        return POLICIES[name]
+    except NotFound as error:
+        raise NotFound(f"{error}; name a policy of your own as `module:class`") from None

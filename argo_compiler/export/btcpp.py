@@ -10,7 +10,12 @@ from collections.abc import Iterable, Iterator
 from argo_compiler.base.model import Pose
 from argo_compiler.base.number_text import number_text
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.export.exporter import battery_level_report_refusals, raise_refusals, refusal
+from argo_compiler.export.exporter import (
+    Exporter,
+    battery_level_report_refusals,
+    raise_refusals,
+    refusal,
+)
 from argo_compiler.export.xml import Attributes, XmlWriter
 from argo_compiler.il import (
     Action,
@@ -70,6 +75,9 @@ def to_btcpp(mission: Mission) -> str:
         DiagnosticError: The mission has parts that a behaviour tree can't express.
     """
     return _Tree(mission).text()
+
+
+EXPORTER = Exporter("BehaviorTree.CPP 4 tree", (".xml",), lambda given: to_btcpp(given.mission))
 
 
 class _Tree:

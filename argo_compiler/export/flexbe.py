@@ -12,7 +12,12 @@ from collections.abc import Iterable, Iterator, Mapping
 from importlib.resources import files
 
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.export.exporter import battery_level_report_refusals, raise_refusals, refusal
+from argo_compiler.export.exporter import (
+    Exporter,
+    battery_level_report_refusals,
+    raise_refusals,
+    refusal,
+)
 from argo_compiler.export.xml import XmlWriter
 from argo_compiler.hfsm import Composite, Hfsm, Leaf, StateTransition, TransitionKind
 from argo_compiler.hfsm.model import DONE, MISSION, RETURN
@@ -42,6 +47,13 @@ def to_flexbe(mission: Mission, hfsm: Hfsm) -> Mapping[str, bytes]:
     contents[f"{BEHAVIORS}/{name}_sm.py"] = _Behavior(hfsm, name).source().encode()
     contents[f"manifest/{name}.xml"] = _manifest(hfsm, name).encode()
     return contents
+
+
+EXPORTER = Exporter(
+    "FlexBE behaviour, its states and its manifest",
+    (),
+    lambda given: to_flexbe(given.mission, given.machine),
+)
 
 
 def _refusals(hfsm: Hfsm) -> Iterator[Diagnostic]:

@@ -7,16 +7,16 @@ from argo_compiler.export.exporter import Exporter
 from argo_compiler.ros import Storage, message_package, to_ros1_bag, to_ros2_bag
 
 ROS_EXPORTERS: dict[str, Exporter] = {
-    "ros1-bag": Exporter("ROS 1 bag", (".bag",), lambda mission, _: to_ros1_bag(mission)),
+    "ros1-bag": Exporter("ROS 1 bag", (".bag",), lambda given: to_ros1_bag(given.mission)),
     "ros2-bag": Exporter(
-        "ROS 2 bag, SQLite storage", (), lambda mission, _: to_ros2_bag(mission, Storage.SQLITE3)
+        "ROS 2 bag, SQLite storage", (), lambda given: to_ros2_bag(given.mission, Storage.SQLITE3)
     ),
     "ros2-mcap": Exporter(
-        "ROS 2 bag, MCAP storage", (), lambda mission, _: to_ros2_bag(mission, Storage.MCAP)
+        "ROS 2 bag, MCAP storage", (), lambda given: to_ros2_bag(given.mission, Storage.MCAP)
     ),
     "ros-package": Exporter(
         "ROS package of the messages, the same for every mission",
         (),
-        lambda _mission, _hfsm: message_package(),
+        lambda _: message_package(),
     ),
 }

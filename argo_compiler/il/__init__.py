@@ -1,7 +1,7 @@
 """Intermediate language: missions, their tasks, groups and reactions, as data."""
 
+from argo_compiler.il.events import DEFAULT_PRIORITIES, EventKind
 from argo_compiler.il.mission import (
-    DEFAULT_PRIORITIES,
     MAX_COUNT,
     MAX_RETRIES,
     MAX_TIME_S,
@@ -9,7 +9,6 @@ from argo_compiler.il.mission import (
     Afterwards,
     Condition,
     ConditionType,
-    EventKind,
     Group,
     JointState,
     Mission,
@@ -17,13 +16,13 @@ from argo_compiler.il.mission import (
     OnFailure,
     Order,
     Reaction,
-    Response,
     Stop,
     Task,
     TimeWindow,
     Transition,
     WaitRule,
 )
+from argo_compiler.il.responses import Response
 
 __all__ = [
     "DEFAULT_PRIORITIES",

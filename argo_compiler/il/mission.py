@@ -7,12 +7,14 @@ it makes sense.
 """
 
 from enum import StrEnum
-from typing import Literal
+from typing import Any, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from argo_compiler.base.model import Model, Pose
 from argo_compiler.diagnostics import Span
+from argo_compiler.il.events import DEFAULT_PRIORITIES, EventKind
+from argo_compiler.il.responses import Response, expand_response
 
 MAX_TIME_S = 1e12
 """limit of each time in a mission, and of its clock: some 30,000 years; up to this, a clock in s
@@ -93,58 +95,6 @@ class OnFailure(StrEnum):
     """continue with the task's `failure_target`"""
 
 
-class EventKind(StrEnum):
-    """Kind of event that may occur, other than the end of an action.
-
-    These are the competition's events (thesis 1.2), and events that report that one of them is
-    over.
-    """
-
-    GAS_LEAK = "gas_leak"
-    HOT_SPOT = "hot_spot"
-    ABNORMAL_SOUND = "abnormal_sound"
-    """of a pump"""
-    PLATFORM_ALARM = "platform_alarm"
-    """the general platform alarm, GPA"""
-    POSITIVE_OBSTACLE = "positive_obstacle"
-    """an object blocks the path"""
-    NEGATIVE_OBSTACLE = "negative_obstacle"
-    """a part of the ground is missing on the path"""
-    LOW_BATTERY = "low_battery"
-    CONNECTION_LOST = "connection_lost"
-    EMERGENCY_STOP = "emergency_stop"
-    DYSFUNCTION = "dysfunction"
-    """of the robot itself"""
-    ABNORMAL_READING = "abnormal_reading"
-    """a measured value outside the checkpoint's nominal range"""
-    TIME_UP = "time_up"
-    """the mission's maximum duration is over; the executor raises it by itself"""
-    ALL_CLEAR = "all_clear"
-    """a danger is over"""
-    BATTERY_CHARGED = "battery_charged"
-    CONNECTION_RESTORED = "connection_restored"
-
-
-class Response(StrEnum):
-    """Response of a reaction. Each of them reports the event first."""
-
-    REPORT = "report"
-    """nothing else; the mission is not affected"""
-    PAUSE = "pause"
-    """stop and stand still"""
-    RETURN = "return"
-    """drive to the mission's `dock`"""
-    SAFE_AREA = "safe_area"
-    """drive to the reaction's `pose`"""
-    ABORT = "abort"
-    """end the mission where the robot stands"""
-
-    @property
-    def drives(self) -> bool:
-        """True if the robot drives to a pose."""
-        return self in (Response.RETURN, Response.SAFE_AREA)
-
-
 class Afterwards(StrEnum):
     """Continuation of the mission after the drive and the hold of a reaction."""
 
@@ -154,27 +104,6 @@ class Afterwards(StrEnum):
     """stand still until a person resumes or ends the mission"""
     END = "end"
     """end the mission"""
-
-
-DEFAULT_PRIORITIES = {
-    EventKind.EMERGENCY_STOP: 100,
-    EventKind.GAS_LEAK: 95,
-    EventKind.PLATFORM_ALARM: 90,
-    EventKind.HOT_SPOT: 80,
-    EventKind.DYSFUNCTION: 70,
-    EventKind.LOW_BATTERY: 60,
-    EventKind.TIME_UP: 50,
-    EventKind.CONNECTION_LOST: 40,
-    EventKind.NEGATIVE_OBSTACLE: 30,
-    EventKind.POSITIVE_OBSTACLE: 25,
-    EventKind.ABNORMAL_SOUND: 20,
-    EventKind.ABNORMAL_READING: 10,
-    EventKind.ALL_CLEAR: 3,
-    EventKind.BATTERY_CHARGED: 2,
-    EventKind.CONNECTION_RESTORED: 1,
-}
-"""priority of a reaction that has none of its own, by how bad its event is: dangers to people
-first, then to the robot, then to the mission"""
 
 
 class Condition(Model):
@@ -354,6 +283,12 @@ class Reaction(Model):
     """LOW_BATTERY: the share of the battery's charge, 0 to 1, below which the robot raises the
     event in this mission; None: the robot's own level"""
     source: Span | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _expand_response(cls, data: Any) -> Any:
+        """Replace a response of an installed package by one of Argo's own; see `il.responses`."""
+        return expand_response(data) if isinstance(data, dict) else data
 
     @property
     def holds(self) -> bool:

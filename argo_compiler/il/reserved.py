@@ -1,6 +1,6 @@
 """Names of tasks that the machine adds; no task of a mission may have one of them."""
 
-from argo_compiler.il.mission import EventKind
+from argo_compiler.il.events import EventKind
 
 RETURN_TASK = "return to dock"
 """the drive back to the dock after a failure"""

@@ -11,7 +11,8 @@ from argo_compiler.base.lazy_names import lazy_names
 __all__ = ["Imported", "InspectionView", "find_isar_data", "from_isar", "read_isar", "to_isar"]
 
 if TYPE_CHECKING:
-    from argo_compiler.isar.exporter import InspectionView, to_isar
+    from argo_compiler.export.exporter import InspectionView
+    from argo_compiler.isar.exporter import to_isar
     from argo_compiler.isar.importer import Imported, from_isar, read_isar
     from argo_compiler.isar.recognition import find_isar_data
 else:

@@ -5,10 +5,10 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 from uuid import NAMESPACE_URL, uuid5
 
-from argo_compiler.base.model import Model, Pose
+from argo_compiler.base.model import Pose
 from argo_compiler.base.quaternions import to_quaternion
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.export.exporter import raise_refusals, refusal
+from argo_compiler.export.exporter import Exporter, InspectionView, raise_refusals, refusal
 from argo_compiler.hfsm import ActionSucceeded, Executor, Hfsm, StartAction
 from argo_compiler.il import Action, Mission, Mode, OnFailure, Task
 from argo_compiler.isar.definition import FRAME, IMAGE
@@ -16,15 +16,6 @@ from argo_compiler.isar.recognition import INSPECTION, RETURN_TO_HOME
 
 MAX_TASKS = 10_000
 """Largest number of tasks in a definition, after the rounds of groups are unrolled."""
-
-
-class InspectionView(Model):
-    """View of a checkpoint: the robot's pose, the target point, and the checkpoint's name."""
-
-    pose: Pose
-    target: tuple[float, float, float]
-    """point in m, in the site's frame"""
-    name: str = ""
 
 
 def to_isar(mission: Mission, hfsm: Hfsm, views: Mapping[str, InspectionView]) -> str:
@@ -49,6 +40,13 @@ def to_isar(mission: Mission, hfsm: Hfsm, views: Mapping[str, InspectionView]) -
     if start:
         definition["start_pose"] = _pose(start)
     return json.dumps(definition, indent=2, ensure_ascii=False) + "\n"
+
+
+EXPORTER = Exporter(
+    "isar mission definition",
+    (".json",),
+    lambda given: to_isar(given.mission, given.machine, given.find_views()),
+)
 
 
 def _feature_refusals(mission: Mission) -> Iterator[Diagnostic]:

@@ -3,8 +3,6 @@
 import threading
 from collections.abc import Callable, Sequence
 
-from argo_compiler.base.errors import NotFound
-from argo_compiler.base.nearest_name import nearest_name
 from argo_compiler.route.ruin_recreate import RuinRecreate
 from argo_compiler.route.search import Search
 from argo_compiler.route.solvers import (
@@ -12,9 +10,9 @@ from argo_compiler.route.solvers import (
     IMPROVING,
     PROVING,
     SMALL,
+    SOLVERS,
     RouteSolver,
-    all_solver_names,
-    registered_solvers,
+    find_solver,
 )
 
 _FIRST_IMPROVING_SHARE = 0.35
@@ -28,27 +26,22 @@ _PROVING_SHARE = 0.7
 def solve(search: Search, workers: int, chosen: Sequence[str | RouteSolver] | None = None) -> None:
     """Search until the best route is proven or the time has passed.
 
-    `chosen`: the only solvers that take part, as names or objects; None: all. Raises NotFound if no
-    solver has a name.
+    `chosen`: the only solvers that take part, as names or objects; None: all of Argo and all that
+    are registered. Raises NotFound or Unavailable if there is no usable solver of a name.
     """
-    objects = [solver for solver in chosen or () if not isinstance(solver, str)]
-    names = [solver for solver in chosen or () if isinstance(solver, str)]
-    for name in names:
-        if name not in all_solver_names():
-            near = nearest_name(name, all_solver_names())
-            remedy = (
-                f"did you mean {near!r}?" if near else f"there are {', '.join(all_solver_names())}"
-            )
-            raise NotFound(f"no route solver is named {name!r}; {remedy}")
+    own: list[RouteSolver] = [*FIRST, *SMALL, *IMPROVING, *PROVING]
+    wanted = [
+        find_solver(solver) if isinstance(solver, str) else solver
+        for solver in ([*own, *SOLVERS.registered()] if chosen is None else chosen)
+    ]
 
     def usable(group: Sequence[RouteSolver]) -> list[RouteSolver]:
-        wanted = [solver for solver in group if chosen is None or solver.name in names]
-        return [solver for solver in wanted if solver.supports(search.problem)]
+        return [s for s in group if s in wanted and s.supports(search.problem)]
 
     for solver in [*usable(FIRST), *usable(SMALL)]:
         _run(solver, search)
-    custom = [solver for solver in objects if solver.supports(search.problem)]
-    improving = [*custom, *usable(registered_solvers()), *_ranked(search, usable(IMPROVING))]
+    custom = usable([solver for solver in wanted if solver not in own])
+    improving = [*custom, *_ranked(search, usable(IMPROVING))]
     proving = usable(PROVING)
     if workers > 1 and search.timed and improving and proving:
         _run_in_parallel(

@@ -105,6 +105,7 @@ class Search:
         limit = limits.seconds if limits.work is None else limits.work
         self._deadline = inf if limit is None else limit
         self._method = ""
+        self._may_prove = True
 
     @property
     def problem(self) -> RouteProblem:
@@ -158,6 +159,12 @@ class Search:
         begin = shared.clock() - shared.begun
         yield view
         shared.turns.append(SolverTurn(solver, begin, shared.clock() - shared.begun))
+
+    def without_proofs(self) -> "Search":
+        """Return a view of this search that ignores reports of bounds and proofs."""
+        view = self.with_deadline(inf)
+        view._may_prove = False
+        return view
 
     def spend(self, work: float, iterations: int = 0) -> None:
         """Add a solver's work, in nominal s by its own count, and how many routes it has tried."""
@@ -285,10 +292,11 @@ class Search:
         """Report proven bounds on all routes of the network.
 
         No route wins more than `prize_bound`; no route that wins at least `least_prize` costs less
-        than `bound`. No-op if the network does not have all routes that may be optimal.
+        than `bound`. No-op if the network does not have all routes that may be optimal, or this
+        is a view `without_proofs`.
         """
         shared = self._shared
-        if not self.network.exact:
+        if not (self.network.exact and self._may_prove):
             return
         with shared.lock:
             previous = shared.prize_bound, self.bound
@@ -305,9 +313,10 @@ class Search:
     def report_infeasible(self) -> None:
         """Report the proof that the network has no route.
 
-        No-op if the network does not have all routes that may be optimal.
+        No-op if the network does not have all routes that may be optimal, or this is a view
+        `without_proofs`.
         """
-        if not self.network.exact:
+        if not (self.network.exact and self._may_prove):
             return
         with self._shared.lock:
             self._shared.impossible = True

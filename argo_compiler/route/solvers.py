@@ -1,11 +1,14 @@
-"""Solvers of route problems: their protocol, Argo's own solvers, and a register for others.
+"""Solvers of route problems: their protocol, Argo's own solvers, and those of others.
 
 A new solver of Argo is listed here; `portfolio.py` decides when it takes part.
 """
 
+import logging
+from dataclasses import dataclass
+from itertools import chain
 from typing import Protocol
 
-from argo_compiler.base.errors import Conflict
+from argo_compiler.base.extensions import ExtensionPoint
 from argo_compiler.route.cp_sat import CpSat
 from argo_compiler.route.exchange_search import ExchangeSearch
 from argo_compiler.route.first_rules import FirstRules
@@ -46,30 +49,87 @@ SMALL: tuple[RouteSolver, ...] = (HeldKarp(), Labels())
 IMPROVING: tuple[RouteSolver, ...] = (PyvrpSearch(), ExchangeSearch(), RuinRecreate())
 PROVING: tuple[RouteSolver, ...] = (LinearProof(), LabelBeams(), CpSat())
 
-_registered: dict[str, RouteSolver] = {}
+
+def _find_problem(name: str, item: object) -> str | None:
+    if isinstance(item, type):
+        return "is a class: offer an object of it"
+    if getattr(item, "name", None) != name:
+        return f"has another `name` than `{name}`"
+    lacking = [method for method in ("supports", "solve") if not hasattr(item, method)]
+    return f"has no `{lacking[0]}`" if lacking else None
+
+
+SOLVERS: ExtensionPoint[RouteSolver] = ExtensionPoint(
+    "argo.solvers",
+    "route solver",
+    {solver.name: solver for solver in chain(FIRST, SMALL, IMPROVING, PROVING)},
+    _find_problem,
+)
+"""All solvers by name. Those of installed packages take part only in searches that name them."""
+
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class InstalledSolver:
+    """Solver of an installed package, of which only the routes count.
+
+    What it reports as proven is ignored, as nothing could check that. If it fails, the search goes
+    on without it.
+    """
+
+    inner: RouteSolver
+    package: str
+
+    @property
+    def name(self) -> str:
+        return self.inner.name
+
+    def supports(self, problem: RouteProblem, /) -> bool:
+        try:
+            return self.inner.supports(problem)
+        except Exception as error:  # another package may raise anything
+            self._log_failure(error)
+            return False
+
+    def solve(self, search: Search, /) -> None:
+        try:
+            self.inner.solve(search.without_proofs())
+        except Exception as error:  # another package may raise anything
+            search.add_reason(self._log_failure(error))
+
+    def _log_failure(self, error: Exception) -> str:
+        message = (
+            f"the solver `{self.name}` of {self.package} has failed "
+            f"({type(error).__name__}: {error}); the search went on without it"
+        )
+        _log.warning("%s", message)
+        return message
 
 
 def register_solver(solver: RouteSolver) -> None:
     """Register a solver: in this process it takes part in each search that it supports.
 
-    Raises Conflict if a solver of that name is registered already.
+    Raises Conflict if there is a solver of that name already.
     """
-    if solver.name in _registered:
-        raise Conflict(f"a route solver {solver.name!r} is registered already; choose another name")
-    _registered[solver.name] = solver
+    SOLVERS.register(solver.name, solver)
 
 
 def discard_solver(name: str) -> None:
     """Remove a registered solver; no-op if there is none of that name."""
-    _registered.pop(name, None)
-
-
-def registered_solvers() -> tuple[RouteSolver, ...]:
-    """Return the registered solvers, in the order of their registration."""
-    return tuple(_registered.values())
+    SOLVERS.discard(name)
 
 
 def all_solver_names() -> tuple[str, ...]:
-    """Return the names of all solvers: Argo's own, then the registered ones."""
-    groups = FIRST, SMALL, IMPROVING, PROVING, registered_solvers()
+    """Return the names of the solvers that take part by default: Argo's, then the registered."""
+    groups = FIRST, SMALL, IMPROVING, PROVING, SOLVERS.registered()
     return tuple(solver.name for group in groups for solver in group)
+
+
+def find_solver(name: str) -> RouteSolver:
+    """Return a solver by its name.
+
+    Raises NotFound if there is none, Unavailable if an installed package's can't be used.
+    """
+    package = SOLVERS.package_of(name)
+    return SOLVERS[name] if package is None else InstalledSolver(SOLVERS[name], package)

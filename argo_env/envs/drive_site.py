@@ -19,12 +19,13 @@ from argo_env.planning import open_site
 from argo_env.robot.pose import BodyPose
 from argo_env.world.world import World
 
-SITE_FAULTS = tuple(
-    k
-    for k, fault in KINDS.items()
-    if fault.site_elements_with_fault is not Fault.site_elements_with_fault
-)
-"""kinds of faults that change the site"""
+
+def _changes_site(fault: type[Fault]) -> bool:
+    return fault.site_elements_with_fault is not Fault.site_elements_with_fault
+
+
+SITE_FAULTS = tuple(kind for kind, fault in KINDS.items() if _changes_site(fault))
+"""Argo's kinds of faults that change the site"""
 DRIVE_FAULT = "drive_dysfunction"
 _PICTURE = (640, 360)  # px
 
@@ -42,7 +43,7 @@ class DriveSite(Closing):
         there is no such site, or if the environment does not support a fault.
         """
         for fault in faults:
-            if fault.kind not in (*SITE_FAULTS, DRIVE_FAULT):
+            if not _changes_site(type(fault)) and fault.kind != DRIVE_FAULT:
                 raise NotFound(
                     f"argo/Drive-v0 does not support the fault `{fault.kind}`; "
                     f"it supports: {', '.join((*SITE_FAULTS, DRIVE_FAULT))}"

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Annotated, Any, cast
+from typing import Annotated, Any
 
 import gymnasium as gym
 import numpy as np
@@ -44,7 +44,7 @@ from argo_env.envs.options import (
 from argo_env.faults.kinds import KINDS, AnyFault, resolve_faults
 from argo_env.faults.robot import EmergencyStop
 from argo_env.planning import open_site
-from argo_env.run.drives_and_sensors import DRIVES, ROUTE
+from argo_env.run.drives_and_sensors import ROUTE, drive_names
 from argo_env.run.record import RunRecord
 from argo_env.run.run_setup import check_spec
 from argo_env.run.spec import RunSpec
@@ -89,7 +89,7 @@ def draw_faults(
 def _suits_site(kind: str, site: Site) -> bool:
     """Return True if the site has what such a fault needs, such as a pump or stairs."""
     try:
-        resolve_faults([cast("AnyFault", KINDS[kind].model_validate({}))], site, 0)
+        resolve_faults([KINDS[kind].model_validate({})], site, 0)
     except ArgoError:
         return False
     return True
@@ -103,7 +103,7 @@ def _draw_fault(kind: str, rng: np.random.Generator) -> AnyFault:
     if kind == "emergency_stop":
         at = draw(rng, 0.0, 600.0, 1)
         return EmergencyStop(at=at, until=at + 60.0)
-    return cast("AnyFault", KINDS[kind].model_validate({}))
+    return KINDS[kind].model_validate({})
 
 
 READING, ABNORMAL, FINDING, CONTACT, DOCKED, DEAD = 10.0, 10.0, 5.0, -1.0, 20.0, -20.0
@@ -217,8 +217,10 @@ class InspectEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
         mode.
         """
         check_render_mode(render_mode, self.metadata["render_modes"])
-        if drive not in DRIVES:
-            raise NotFound(f"there is no drive `{drive}`; choose one of: {', '.join(DRIVES)}")
+        if drive not in drive_names():
+            raise NotFound(
+                f"there is no drive `{drive}`; choose one of: {', '.join(drive_names())}"
+            )
         check_scenario_is_string(self._title, scenario)
         check_positive(self._title, MAX_DURATION, time_limit=time_limit)
         check_integer(self._title, 0, MAX_FAULTS, faults=faults)

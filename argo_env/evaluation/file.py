@@ -10,7 +10,7 @@ from argo_env.evaluation.plan import parse_seeds
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.worlds import NO_VARIATION, Variation
 from argo_env.files.yaml_file import parse_yaml
-from argo_env.run.drives_and_sensors import DRIVES, IDEAL, SENSORS
+from argo_env.run.drives_and_sensors import IDEAL, SENSORS, drive_names
 
 MAX_BYTES = 1_000_000
 """largest size of an evaluation file; a usual one has some hundred bytes"""
@@ -78,12 +78,12 @@ class EvaluationFile(Model):
     @field_validator("drives")
     @classmethod
     def _check_drives(cls, names: tuple[str, ...]) -> tuple[str, ...]:
-        return _require_known(names, DRIVES, "drive")
+        return _require_known(names, drive_names(), "drive")
 
     @field_validator("control")
     @classmethod
     def _check_control(cls, name: str | None) -> str | None:
-        return name if name is None else _require_known((name,), DRIVES, "drive")[0]
+        return name if name is None else _require_known((name,), drive_names(), "drive")[0]
 
     @field_validator("sensors")
     @classmethod

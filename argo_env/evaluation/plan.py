@@ -15,6 +15,7 @@ from argo_env.evaluation.case import EvaluationCase, PlanName
 from argo_env.evaluation.requirement import RateRequirement
 from argo_env.evaluation.worlds import NO_VARIATION, Variation
 from argo_env.faults.loading import NOTHING
+from argo_env.run.extensions import packages_of_run
 from argo_env.run.spec import RunSpec
 
 if TYPE_CHECKING:
@@ -82,10 +83,12 @@ class EvaluationPlan(Model):
     def key(self, run: "PlannedRun") -> str:
         """Return a run's key, by which its row is found: a hash of all that the run depends on.
 
-        The names of its case and Argo's version are part of the hash.
+        The names of its case, and the versions of Argo and of the packages that the run uses are
+        part of the hash.
         """
         case = self.cases[run.case]
-        parts = (__version__, case.digest, case.mission, case.policy, case.faults)
+        names = case.digest, case.mission, case.policy, case.faults
+        parts = (__version__, *names, *packages_of_run(run.spec))
         text = "\n".join((*parts, run.spec.model_dump_json()))
         return hashlib.sha256(text.encode()).hexdigest()[:24]
 

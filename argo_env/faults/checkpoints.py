@@ -103,7 +103,7 @@ class DisplacedCheckpoint(CheckpointFault):
         x, y, z = (math.trunc(v * 1e4) / 1e4 for v in drawn.offset)
         turn, roll = (round(math.degrees(angle), 1) for angle in (drawn.turn, drawn.roll))
         resolved = super().resolve_for(site, rng)._copy_with(checkpoint=checkpoint.id)
-        return resolved._fill_unset(offset=(x, y, z), turn=turn, roll=roll)
+        return resolved.fill_unset(offset=(x, y, z), turn=turn, roll=roll)
 
     def apply(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.checkpoint is not None

@@ -94,7 +94,7 @@ class Fault(Model):
     def _copy_with(self, **fields: Any) -> Self:
         return self.model_copy(update=fields)
 
-    def _fill_unset(self, **drawn: Any) -> Self:
+    def fill_unset(self, **drawn: Any) -> Self:
         """Return the fault with the `drawn` values in those fields that are None."""
         return self._copy_with(
             **{name: v for name, v in drawn.items() if getattr(self, name) is None}
@@ -128,4 +128,4 @@ class TimedFault(Fault):
     def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
         latest = LATEST if self.until is None else min(LATEST, self.until)
         drawn = draw(rng, 0.0, latest, 1)
-        return self._fill_unset(at=max(0.0, min(drawn, latest - 0.1)))
+        return self.fill_unset(at=max(0.0, min(drawn, latest - 0.1)))

@@ -1,15 +1,16 @@
 """All kinds of faults, the model of a file of faults, and functions that resolve lists of faults.
 
-A new kind is a class in another module of this package, and is listed here; its names for the page
-are in `argo_planner/page/src/texts/run.ts`.
+A new kind of Argo is a class in another module of this package, and is listed here; its names for
+the page are in `argo_planner/page/src/texts/run.ts`. Installed packages offer further kinds.
 """
 
 from collections.abc import Sequence
-from typing import Annotated, get_args
+from typing import TYPE_CHECKING, Annotated, Any, get_args
 
-from pydantic import Field
+from pydantic import Field, SerializeAsAny, ValidatorFunctionWrapHandler, WrapValidator
 
 from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.extensions import ExtensionPoint
 from argo_compiler.base.model import Model
 from argo_env.faults.checkpoints import AbnormalValue, DisplacedCheckpoint
 from argo_env.faults.fault import Fault
@@ -26,7 +27,7 @@ from argo_env.faults.walkway import BlockedStairs, Brick, MissingPlate
 from argo_env.seeding import generator
 from argo_env.site import Site
 
-AnyFault = Annotated[
+_OwnFault = Annotated[
     AbnormalValue
     | DisplacedCheckpoint
     | GasLeakFault
@@ -44,12 +45,46 @@ AnyFault = Annotated[
     | DriveDysfunction,
     Field(discriminator="kind"),
 ]
-"""Any fault; this union is the list of all kinds."""
+"""Any fault of Argo; this union is the list of its kinds."""
 
 KINDS: dict[str, type[Fault]] = {
-    str(model.model_fields["kind"].default): model for model in get_args(get_args(AnyFault)[0])
+    str(model.model_fields["kind"].default): model for model in get_args(get_args(_OwnFault)[0])
 }
-"""The kinds of faults by name."""
+"""Argo's kinds of faults by name."""
+
+
+def _find_problem(name: str, item: object) -> str | None:
+    if not (isinstance(item, type) and issubclass(item, Fault)):
+        return "is no subclass of `argo_env.faults.fault.Fault`"
+    if item.model_fields["kind"].default != name:
+        return f'has no field `kind: Literal["{name}"] = "{name}"`'
+    return None if hasattr(item, "sign") else "does not define `sign`"
+
+
+FAULTS: ExtensionPoint[type[Fault]] = ExtensionPoint("argo.faults", "fault", KINDS, _find_problem)
+"""All kinds of faults by name."""
+
+
+def _validate(value: Any, validate_own: ValidatorFunctionWrapHandler) -> Fault:
+    """Return the fault in `value`, of Argo's kinds or of an installed package's."""
+    kind = value.kind if isinstance(value, Fault) else None
+    if isinstance(value, dict):
+        kind = value.get("kind")
+    if not isinstance(kind, str) or kind in KINDS or kind not in FAULTS:
+        fault: Fault = validate_own(value)
+        return fault
+    try:
+        model = FAULTS[kind]
+    except ArgoError as error:
+        raise ValueError(str(error)) from None
+    return model.model_validate(value)
+
+
+if TYPE_CHECKING:
+    AnyFault = Fault
+else:  # so that JSON Schemas have the fields of all of Argo's kinds
+    AnyFault = Annotated[_OwnFault, WrapValidator(_validate), SerializeAsAny()]
+"""Any fault, also one of a kind that an installed package offers."""
 
 
 class FaultFile(Model):

@@ -56,7 +56,7 @@ class GasLeakFault(ProcessFault):
     def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:
         _check_place(site, self.place)
         place, rate = _near_equipment(site, rng, 0.0), draw(rng, 0.01, 0.04, 4)
-        return super().resolve_for(site, rng)._fill_unset(place=place, rate=rate)
+        return super().resolve_for(site, rng).fill_unset(place=place, rate=rate)
 
     def can_explain(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
         return _is_within(_GAS_REACH, self.place, noticed_from)
@@ -83,7 +83,7 @@ class HotSpotFault(ProcessFault):
         _check_place(site, self.place)
         place = _near_equipment(site, rng, 0.3)
         temperature = draw(rng, 80.0, 150.0, 1)
-        return super().resolve_for(site, rng)._fill_unset(place=place, temperature=temperature)
+        return super().resolve_for(site, rng).fill_unset(place=place, temperature=temperature)
 
     def can_explain(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
         return _is_within(_SPOT_ERROR, self.place, place)
@@ -113,7 +113,7 @@ class AbnormalPump(ProcessFault):
             raise NotFound(
                 f"site {site.name} has no pump `{self.pump}`; there are: {', '.join(known)}"
             )
-        return super().resolve_for(site, rng)._fill_unset(pump=pump, defect=defect)
+        return super().resolve_for(site, rng).fill_unset(pump=pump, defect=defect)
 
     def can_explain(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
         # The watch reports the position of the pump that it hears.

@@ -25,7 +25,7 @@ class LowBattery(Fault):
     """share of the capacity at the start, unless the charge is lower anyway"""
 
     def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
-        return self._fill_unset(charge=draw(rng, 0.1, 0.25, 3))
+        return self.fill_unset(charge=draw(rng, 0.1, 0.25, 3))
 
     def apply(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.charge is not None
@@ -41,7 +41,7 @@ class WornBattery(Fault):
     """share of the capacity that remains"""
 
     def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
-        return self._fill_unset(capacity=draw(rng, 0.2, 0.6, 3))
+        return self.fill_unset(capacity=draw(rng, 0.2, 0.6, 3))
 
     def apply(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.capacity is not None
@@ -96,7 +96,7 @@ class SensorDysfunction(TimedFault):
 
     def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:
         drawn = "fails" if rng.uniform() < 0.5 else "noise"
-        return super().resolve_for(site, rng)._fill_unset(effect=drawn)
+        return super().resolve_for(site, rng).fill_unset(effect=drawn)
 
     def apply(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         if self.effect == "fails":
@@ -119,7 +119,7 @@ class DriveDysfunction(TimedFault):
 
     def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:
         drawn = draw(rng, 0.0, 0.5, 2)
-        return super().resolve_for(site, rng)._fill_unset(speed=drawn)
+        return super().resolve_for(site, rng).fill_unset(speed=drawn)
 
     def apply(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002
         assert self.speed is not None

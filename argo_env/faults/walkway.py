@@ -56,7 +56,7 @@ class Brick(Fault):
                 raise Invalid(f"there is no walkway at ({place[0]:g}, {place[1]:g}) of floor "
                                 f"{floor.number}")  # fmt: skip
             yaw = draw(rng, -90.0, 90.0, 1)
-            resolved = self._copy_with(floor=floor.number, place=place)._fill_unset(yaw=yaw)
+            resolved = self._copy_with(floor=floor.number, place=place).fill_unset(yaw=yaw)
             area = resolved._covered_dock(site, floor)
             if area is None:
                 return resolved
@@ -172,7 +172,7 @@ class BlockedStairs(Fault):
             )
         if self.floor is not None and self.floor not in [f.number for f in floors]:
             raise NotFound(f"site {site.name} has no stairs up from floor {self.floor}")
-        return self._fill_unset(tower=tower, floor=floor)
+        return self.fill_unset(tower=tower, floor=floor)
 
     def site_elements_with_fault(self, site: Site) -> tuple[Element, ...]:
         assert self.floor is not None

@@ -1,8 +1,8 @@
 """Poses from which the robot reads the checkpoints of a mission, for the export to isar."""
 
 from argo_compiler.base.model import Pose
+from argo_compiler.export import InspectionView
 from argo_compiler.il import Action, Mission
-from argo_compiler.isar import InspectionView
 from argo_env.navigation import Navigator
 
 

@@ -1,7 +1,12 @@
-"""Drives and sensors by name; the modules that one of them needs are imported when it is made."""
+"""Extension points of drives and sensors.
+
+The modules that one of Argo's own needs are imported when it is made.
+"""
 
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
+
+from argo_compiler.base.extensions import ExtensionPoint, function_problem
 
 if TYPE_CHECKING:
     from argo_env.drives.drive import Drive
@@ -11,6 +16,8 @@ if TYPE_CHECKING:
 
 ROUTE = "route"
 """Name of the drive that uses travel times alone and has no world."""
+REMOTE = "remote"
+"""Name of the drive of a robot that connects to the planning service."""
 
 
 def _kinematic(world: "World", robot: "RobotSpec", friction: float) -> "Drive":  # noqa: ARG001
@@ -26,15 +33,21 @@ def _tracked(world: "World", robot: "RobotSpec", friction: float) -> "Drive":
     return TrackedDrive(world, robot, traction=Traction().with_scaled_grip(friction))
 
 
-WORLD_DRIVES: dict[str, Callable[["World", "RobotSpec", float], "Drive"]] = {
-    "kinematic": _kinematic,
-    "tracked": _tracked,
-}
+WORLD_DRIVES: ExtensionPoint[Callable[["World", "RobotSpec", float], "Drive"]] = ExtensionPoint(
+    "argo.drives",
+    "drive",
+    {"kinematic": _kinematic, "tracked": _tracked},
+    function_problem,
+    reserved=(ROUTE, REMOTE),
+)
 """Factories of the drives that move the robot in PyBullet's world; their last argument is the
 friction as a factor of the calibrated one."""
 
-DRIVES = (ROUTE, *WORLD_DRIVES)
-"""Names of all drives."""
+
+def drive_names() -> tuple[str, ...]:
+    """Return the names of all drives that a simulated run can have."""
+    return (ROUTE, *WORLD_DRIVES)
+
 
 IDEAL = "ideal"
 """Name of the sensor that knows the true values; the only one that needs no simulated world."""
@@ -52,8 +65,7 @@ def _camera(world: "World", truth: Mapping[int, float], seed: int) -> "Sensor": 
     return CameraSensor(world, seed)
 
 
-SENSORS: dict[str, Callable[["World", Mapping[int, float], int], "Sensor"]] = {
-    IDEAL: _ideal,
-    "camera": _camera,
-}
+SENSORS: ExtensionPoint[Callable[["World", Mapping[int, float], int], "Sensor"]] = ExtensionPoint(
+    "argo.sensors", "sensor", {IDEAL: _ideal, "camera": _camera}, function_problem
+)
 """Factories of the sensors, from the world, the true values of the checkpoints, and a seed."""

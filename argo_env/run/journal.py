@@ -27,6 +27,7 @@ from argo_env.files.checked_lines import (
 )
 from argo_env.files.yaml_messages import error_message
 from argo_env.planning.opening import OpenedSite
+from argo_env.run.extensions import packages_of_run
 from argo_env.run.log import Entry
 from argo_env.run.observer import Observer
 from argo_env.run.spec import RunSpec
@@ -139,6 +140,7 @@ class Journal(Observer, Closing):
 def fingerprints(site: OpenedSite, spec: RunSpec) -> dict[str, str]:
     """Return short digests of all that a run depends on, by names such as `mission`."""
     digests = {"Argo": __version__, "mission": _digest(spec.mission.model_dump_json())}
+    digests |= dict.fromkeys(packages_of_run(spec), "used")
     for name, model in (("site", site.site.spec), ("robot", site.robot)):
         for field, value in model.model_dump(mode="json").items():
             digests[f"{name}'s {field}"] = _digest(json.dumps(value))

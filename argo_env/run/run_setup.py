@@ -17,7 +17,7 @@ from argo_env.faults.loading import FaultText
 from argo_env.faults.schedule import FaultSchedule
 from argo_env.faults.targets import FaultTargets
 from argo_env.navigation import Navigator
-from argo_env.run.drives_and_sensors import DRIVES, IDEAL, ROUTE, SENSORS, WORLD_DRIVES
+from argo_env.run.drives_and_sensors import IDEAL, ROUTE, SENSORS, WORLD_DRIVES, drive_names
 from argo_env.run.spec import RunSpec, ValueProfile
 from argo_env.seeding import generator
 from argo_env.sensing.ideal import IdealSensor, draw_nominal_values
@@ -180,8 +180,8 @@ def check_spec(spec: RunSpec, site: Site, fault_text: FaultText | None = None) -
     """
     if fault_text:
         fault_text.require_fit(site, spec.seed)
-    if spec.drive not in DRIVES:
-        raise Invalid(f"no drive `{spec.drive}`; there are: {', '.join(DRIVES)}")
+    if spec.drive not in drive_names():
+        raise Invalid(f"no drive `{spec.drive}`; there are: {', '.join(drive_names())}")
     if spec.sensor not in SENSORS:
         raise Invalid(f"no sensor `{spec.sensor}`; there are: {', '.join(SENSORS)}")
     if spec.drive == ROUTE and spec.sensor != IDEAL:
@@ -191,6 +191,8 @@ def check_spec(spec: RunSpec, site: Site, fault_text: FaultText | None = None) -
         )
     if spec.drive != ROUTE:
         require_pybullet()
+        WORLD_DRIVES.require(spec.drive)
+        SENSORS.require(spec.sensor)
     true_values(site, spec.seed, spec.values)
     for id in spec.conditions.values:
         site.checkpoint(id)

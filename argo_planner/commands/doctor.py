@@ -15,7 +15,7 @@ def doctor_command(
         typer.Option("--empty-cache", help="delete the cached data, which is computed again"),
     ] = False,
 ) -> None:
-    """Show Argo's version, its cache on disk, and which optional parts are installed."""
+    """Show Argo's version, its cache on disk, its optional parts, and what extends it."""
     if empty_cache:
         _empty_cache()
     found = examine_installation()
@@ -37,6 +37,8 @@ def doctor_command(
         else:
             print(f"{extra.name} ({extra.purpose}): installed")
     print(f"PyBullet: {'works' if found.physics is None else f'does not work: {found.physics}'}")
+    for one in found.extensions:
+        print(f"{one.kind} `{one.name}` of {one.package}: {one.problem or 'works'}")
 
 
 def _empty_cache() -> None:

@@ -36,7 +36,7 @@ from argo_env.evaluation.runner import EvaluationRunner
 from argo_env.evaluation.score import read_scoring
 from argo_env.evaluation.store import RowStore
 from argo_env.files.folders import require_folder_or_creatable
-from argo_env.run.drives_and_sensors import DRIVES, IDEAL, SENSORS
+from argo_env.run.drives_and_sensors import IDEAL, SENSORS, drive_names
 from argo_planner.terminal.completion import offer_names
 from argo_planner.terminal.evaluation_display import EvaluationDisplay
 from argo_planner.terminal.evaluation_request import (
@@ -72,8 +72,8 @@ def evaluate_command(
     drive: Annotated[
         str,
         typer.Option(
-            help=f"model of the robot's motion: {', '.join(DRIVES)}",
-            autocompletion=offer_names(DRIVES),
+            help=f"model of the robot's motion: {', '.join(drive_names())}",
+            autocompletion=offer_names(drive_names()),
         ),
     ] = "route",
     sensor: Annotated[
@@ -118,7 +118,7 @@ def evaluate_command(
             metavar="DRIVE",
             help="fast drive, such as route; many runs with it make the estimates for --drive more "
             "precise, if that saves time",
-            autocompletion=offer_names(DRIVES),
+            autocompletion=offer_names(drive_names()),
         ),
     ] = None,
     start_area: StartArea = None,

@@ -12,8 +12,8 @@ from argo_planner.terminal.options import Force
 from argo_planner.use_cases.examples import example_files, list_examples
 
 
-class Action(StrEnum):
-    """What to do with an example."""
+class ExampleAction(StrEnum):
+    """Use of an example."""
 
     COPY = "copy"
 
@@ -25,7 +25,8 @@ def _offer_examples(incomplete: str) -> list[str]:
 
 def examples_command(
     action: Annotated[
-        Action | None, typer.Argument(help="copy: copy an example with the files that it needs")
+        ExampleAction | None,
+        typer.Argument(help="copy: copy an example with the files that it needs"),
     ] = None,
     name: Annotated[
         str | None, typer.Argument(help="name of the example", autocompletion=_offer_examples)

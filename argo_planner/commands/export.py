@@ -6,7 +6,8 @@ from typing import Annotated
 
 import typer
 
-from argo_compiler.base.errors import Invalid, NotFound
+from argo_compiler.base.errors import ArgoError, Invalid, with_message_prefix
+from argo_compiler.export import EXPORTERS
 from argo_env.planning.opening import open_site
 from argo_planner.terminal.completion import offer_names
 from argo_planner.terminal.files import (
@@ -18,12 +19,7 @@ from argo_planner.terminal.files import (
 )
 from argo_planner.terminal.importing import import_and_warn
 from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea
-from argo_planner.use_cases.exporting import (
-    FORMATS,
-    export_mission,
-    is_folder_format,
-    require_format,
-)
+from argo_planner.use_cases.exporting import export_mission
 
 
 def export_command(
@@ -33,8 +29,8 @@ def export_command(
         typer.Option(
             "--to",
             metavar="FORMAT",
-            help=f"format: {', '.join(FORMATS)}",
-            autocompletion=offer_names(FORMATS),
+            help=f"format: {', '.join(EXPORTERS)}",
+            autocompletion=offer_names(EXPORTERS),
         ),
     ],
     output: Annotated[
@@ -48,10 +44,10 @@ def export_command(
 ) -> None:
     """Write a mission in the format of another tool."""
     try:
-        require_format(to)
-    except NotFound as error:
-        raise NotFound(f"--to {error}") from None
-    if is_folder_format(to):
+        exporter = EXPORTERS[to]
+    except ArgoError as error:
+        raise with_message_prefix(error, f"--to {to}") from None
+    if not exporter.suffixes:
         if output == STANDARD_OUTPUT:
             raise Invalid(f"--to {to} writes a folder, not standard output: name a folder with -o")
         check_outputs([source, site], folders=[(output, ())])

@@ -1,5 +1,6 @@
 """`argo new`: write a commented skeleton of a file."""
 
+import os
 from pathlib import Path
 from typing import Annotated
 
@@ -57,5 +58,5 @@ def new_command(
     values["mission"] = mission or f"{name}.txt"
     write_content(file, fill_skeleton(kind, name, values))
     print_written(file, f"skeleton; next: {_NEXT[kind].format(file=file, site=site)}")
-    if kind is SkeletonKind.EVALUATION and not Path(values["mission"]).exists():
+    if kind is SkeletonKind.EVALUATION and not os.path.exists(values["mission"]):
         print(f"{values['mission']} does not exist yet: argo new mission {name} --site {site}")

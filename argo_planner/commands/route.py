@@ -9,6 +9,7 @@ from pydantic import ValidationError
 from rich.console import Console
 
 from argo_compiler.base.errors import Conflict, Invalid
+from argo_compiler.base.extensions import installed_names
 from argo_compiler.base.stages import stage
 from argo_compiler.files.loading import read_bytes
 from argo_compiler.files.mission_file import write_mission
@@ -18,6 +19,7 @@ from argo_env.files.folders import make_folder
 from argo_env.files.yaml_messages import error_message
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_planner.terminal.certificate_lines import show_certificate
+from argo_planner.terminal.completion import offer_names
 from argo_planner.terminal.files import check_outputs, read_upload, require_mission_output
 from argo_planner.terminal.importing import import_and_warn
 from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea
@@ -49,6 +51,10 @@ class Spread(StrEnum):
 SPREADS = {Spread.SIMULATED: SIMULATED, Spread.CAUTIOUS: CAUTIOUS}
 
 
+def _offer_solvers(incomplete: str) -> list[str]:
+    return offer_names(installed_names("argo.solvers"))(incomplete)
+
+
 def route_command(
     source: Source,
     site: SiteOption = "umad",
@@ -74,6 +80,14 @@ def route_command(
         float, typer.Option(help="longest time of the search in s", min=0.01)
     ] = TIME_LIMIT,
     seed: Annotated[int, typer.Option(help="seed of the search", min=0)] = 0,
+    solver: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="solver of an installed package, which takes part besides Argo's own; "
+            "can be given several times; `argo doctor` lists them",
+            autocompletion=_offer_solvers,
+        ),
+    ] = None,
     risk: Annotated[
         Spread | None,
         typer.Option(
@@ -111,7 +125,9 @@ def route_command(
     imported = import_and_warn(upload, opened, start_area, end_area)
     if robust:
         require_any_time_limit(imported.mission, wanted)
-    found = suggest_order(imported, opened, wanted, time_limit=time_limit, seed=seed)
+    found = suggest_order(
+        imported, opened, wanted, time_limit=time_limit, seed=seed, solvers=solver or ()
+    )
     console = Console(highlight=False)
     spread = SPREADS[risk or Spread.CAUTIOUS]
     _require_order(source, found, console, verify)

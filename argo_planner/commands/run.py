@@ -14,7 +14,7 @@ from argo_compiler.files.loading import read_bytes
 from argo_env.faults.loading import MAX_BYTES, decode_faults
 from argo_env.files.folders import make_folder
 from argo_env.planning.opening import open_site
-from argo_env.run.drives_and_sensors import DRIVES, SENSORS
+from argo_env.run.drives_and_sensors import SENSORS, drive_names
 from argo_env.run.journal import check_journal_path
 from argo_env.run.record import RunRecord
 from argo_env.run.run_setup import check_spec
@@ -120,8 +120,8 @@ def run_command(
     drive: Annotated[
         str,
         typer.Option(
-            help=f"model of the robot's motion: {', '.join(DRIVES)}",
-            autocompletion=offer_names(DRIVES),
+            help=f"model of the robot's motion: {', '.join(drive_names())}",
+            autocompletion=offer_names(drive_names()),
         ),
     ] = "kinematic",
     sensor: Annotated[

@@ -9,6 +9,7 @@ from argo_compiler.base.extras import install_line
 from argo_compiler.base.model import Model
 from argo_compiler.base.version import __version__
 from argo_env.files import cache
+from argo_planner.use_cases.extensions import InstalledExtension, find_extensions
 
 _UVLOOP = () if sys.platform == "win32" else ("uvloop",)
 _EXTRAS: dict[str, tuple[str, tuple[str, ...]]] = {
@@ -73,6 +74,7 @@ class Examination(Model):
     extras: tuple[Extra, ...]
     physics: str | None
     """reason why PyBullet does not work; None: it works"""
+    extensions: tuple[InstalledExtension, ...]
 
 
 def examine_installation() -> Examination:
@@ -98,6 +100,7 @@ def examine_installation() -> Examination:
             for name, (purpose, modules) in _EXTRAS.items()
         ),
         physics=_physics_problem(),
+        extensions=tuple(find_extensions()),
     )
 
 

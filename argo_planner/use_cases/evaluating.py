@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import cast
 
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid, NotFound, with_message_prefix
+from argo_compiler.base.extensions import installed_names, installed_packages
 from argo_compiler.base.version import __version__
 from argo_compiler.files.loading import read_bytes
 from argo_compiler.il import Mission
@@ -27,6 +28,7 @@ from argo_env.faults.loading import (
     decode_faults,
 )
 from argo_env.planning.opening import OpenedSite, open_site
+from argo_env.policies import OPTIMISED, POLICIES
 from argo_env.robot.spec import load_robot
 from argo_env.run.run_setup import check_spec
 from argo_env.run.spec import RunSpec
@@ -35,8 +37,6 @@ from argo_planner.use_cases.importing import ImportedMission, Upload, import_mis
 from argo_planner.use_cases.no_order import require_order
 from argo_planner.use_cases.routing import suggest_order
 
-OPTIMISED = "optimised"
-"""policy that uses the best order, as `argo route` finds it"""
 _YAML = (".yaml", ".yml")
 
 
@@ -94,13 +94,13 @@ def plan_evaluation(
 def contents_for_digest(file: EvaluationFile, folder: Path) -> Iterator[bytes]:
     """Yield the contents of all that an evaluation depends on, from which a digest is computed.
 
-    Equal contents mean equal evaluations: the version of Argo, the evaluation file, and the files
-    that it names.
+    Equal contents mean equal evaluations: the versions of Argo and of the packages that extend it,
+    the evaluation file, and the files that it names.
 
     A policy that is a function is not in a file; random bytes stand for it, so that evaluations
     with it are never equal.
     """
-    yield __version__.encode()
+    yield "\n".join((__version__, *installed_packages())).encode()
     yield file.model_dump_json().encode()
     if any(policy not in (AS_WRITTEN, OPTIMISED) for policy in file.policies):
         yield os.urandom(16)
@@ -192,8 +192,8 @@ def reorder_by_policy(imported: ImportedMission, site: OpenedSite, policy: str) 
     Args:
         imported: the mission
         site: its site
-        policy: `as written`, `optimised`, or `module:function`: a function that takes mission and
-            site, and returns a mission
+        policy: `as written`, `optimised`, the name of an installed package's policy, or
+            `module:function`: a function that takes mission and site, and returns a mission
 
     Raises:
         ArgoError: There is no such policy, or it fails, or no order is possible.
@@ -204,23 +204,40 @@ def reorder_by_policy(imported: ImportedMission, site: OpenedSite, policy: str) 
         found = suggest_order(imported, site)
         require_order(found, imported.source_name)
         return found.mission
-    module, colon, name = policy.partition(":")
-    if not colon:
-        raise NotFound(
-            f"no policy `{policy}`; there are: {AS_WRITTEN}, {OPTIMISED}, and functions of your "
-            "own as module:function"
-        )
+    function = _find_order_function(policy)
     try:
-        function = getattr(import_module(module), name)
-    except (ImportError, AttributeError) as error:
-        raise NotFound(f"policy `{policy}`: {error}") from None
-    try:
-        mission = cast("object", function(imported.mission, site))
+        mission = function(imported.mission, site)
     except Exception as error:  # a user's function may raise anything
         raise Invalid(f"policy `{policy}`: {type(error).__name__}: {error}") from error
     if not isinstance(mission, Mission):
         raise Invalid(f"policy `{policy}`: returned {type(mission).__name__} instead of a mission")
     return mission
+
+
+def _find_order_function(policy: str) -> Callable[[Mission, OpenedSite], object]:
+    """Return the function that orders the tasks by a policy, neither as written nor optimised.
+
+    Raises NotFound if there is none, Unavailable if an installed package's can't be used.
+    """
+    module, colon, name = policy.partition(":")
+    if colon:
+        try:
+            return cast("Callable[..., object]", getattr(import_module(module), name))
+        except (ImportError, AttributeError, ValueError) as error:
+            raise NotFound(f"policy `{policy}`: {error}") from None
+    if policy not in POLICIES:
+        others = "".join(f", {name}" for name in installed_names(POLICIES.group))
+        raise NotFound(
+            f"no policy `{policy}`; there are: {AS_WRITTEN}, {OPTIMISED}{others}, and functions of "
+            "your own as module:function"
+        )
+    function = getattr(POLICIES[policy], "order_tasks", None)
+    if function is None:
+        raise NotFound(
+            f"the policy `{policy}` plays episodes of argo/Route-v0, but does not order the tasks "
+            "of missions: it has no `order_tasks`"
+        )
+    return cast("Callable[..., object]", function)
 
 
 def _fault_sets(file: EvaluationFile, folder: Path) -> Iterator[FaultSet]:

@@ -45,7 +45,7 @@ def example_files(name: str) -> dict[str, bytes]:
     if kind is None:
         known = [name for examples in kinds.values() for name in examples]
         near = nearest_name(name, known)
-        hint = f"did you mean {near}?" if near else "`argo examples` lists them"
+        hint = f"did you mean {near}?" if near else f"choose one of: {', '.join(known)}"
         raise NotFound(f"there is no example {name}: {hint}")
     first, *others = kinds[kind][name].files
     if kind == SITES:

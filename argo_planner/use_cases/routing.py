@@ -4,7 +4,7 @@ The best order wins the highest prize with its optional tasks, and of such order
 time.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from argo_compiler.analysis import analyse
@@ -120,6 +120,7 @@ def suggest_order(
     *,
     time_limit: float = TIME_LIMIT,
     seed: int = 0,
+    solvers: Sequence[str] = (),
     on_progress: Callable[[SearchProgress, float], None] | None = None,
 ) -> SuggestedOrder:
     """Search for the best order of a mission; the result may be that there is none.
@@ -130,14 +131,18 @@ def suggest_order(
         requirements: further requirements; None: there are none
         time_limit: longest wall-clock time of the search in s
         seed: seed of the search
+        solvers: names of solvers of installed packages that take part besides Argo's own
         on_progress: function that is called with the progress and its unit of time in s
 
     Raises:
         DiagnosticError: `check` finds errors in the mission.
         ArgoError: The order can't be changed, or a requirement does not fit the mission.
+        NotFound: There is no solver of a name.
+        Unavailable: The solver of an installed package can't be used.
     """
     name, mission = imported.source_name, imported.mission
     requirements = requirements or Requirements()
+    wanted = _solvers_besides(solvers)
     try:
         require_known(mission, requirements)  # before all paths are planned, which takes long
         planned = make_mission_problem(mission, site.navigator, requirements, site.travel)
@@ -153,9 +158,28 @@ def suggest_order(
                 on_progress(progress, planned.problem.unit)
 
         suggestion = suggest_route(
-            planned.problem, time_limit, seed, on_best=report_progress, on_bound=report_progress
+            planned.problem,
+            time_limit,
+            seed,
+            on_best=report_progress,
+            on_bound=report_progress,
+            solvers=wanted,
         )
     return SuggestedOrder(planned, suggestion, site.travel)
+
+
+def _solvers_besides(names: Sequence[str]) -> tuple[str, ...] | None:
+    """Return the names of Argo's own solvers and of others; None if there are no others.
+
+    Raises NotFound or Unavailable if one of the others can't be used.
+    """
+    if not names:
+        return None
+    from argo_compiler.route.solvers import all_solver_names, find_solver  # imports OR-Tools
+
+    for name in names:
+        find_solver(name)
+    return (*all_solver_names(), *names)
 
 
 def _progress_text(progress: SearchProgress, unit: float) -> str:

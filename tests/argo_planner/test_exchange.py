@@ -13,8 +13,13 @@ from argo_compiler.il import Mission
 from argo_compiler.isar import InspectionView, to_isar
 from argo_compiler.ros import Storage, to_ros1_bag, to_ros2_bag
 from argo_planner.terminal.files import read_upload
-from argo_planner.use_cases.exporting import exporters
-from argo_planner.use_cases.importing import SourceKind, guess_source_kind, load_unchecked_mission
+from argo_planner.use_cases.exporting import export_mission
+from argo_planner.use_cases.importing import (
+    ImportedMission,
+    SourceKind,
+    guess_source_kind,
+    load_unchecked_mission,
+)
 from tests.argo_compiler.script.conftest import CATALOG
 from tests.mission_writing import measure
 
@@ -81,8 +86,8 @@ def test_warnings_of_the_import_are_returned(tmp_path):
 
 
 def test_isar_gets_the_positions_of_the_checkpoints(umad, navigator):
-    exported = exporters(umad)["isar"].export(PLAN, lower(PLAN))
-    targets = [task["inspection"]["inspection_target"] for task in json.loads(exported)["tasks"]]
+    content = export_mission(ImportedMission(PLAN, "plan.json", (), ()), umad, "isar").content
+    targets = [task["inspection"]["inspection_target"] for task in json.loads(content)["tasks"]]
     assert [(t["x"], t["y"], t["z"]) for t in targets] == [
         navigator.site.checkpoint(id).position for id in (1, 4)
     ]

@@ -47,7 +47,7 @@ def test_all_that_a_format_can_not_express_is_reported(export):
 
 
 def test_an_unknown_format_is_refused_with_the_known_ones(export):
-    with pytest.raises(ArgoError, match=r"--to word: .*scxml.*isar"):
+    with pytest.raises(ArgoError, match=r"--to word: no format `word`; .*scxml.*isar"):
         export(Mission(tasks=TASKS), "word")
 
 

@@ -1,5 +1,7 @@
 """Policies: all registered ones obey the rules on all kinds of instances."""
 
+from importlib.metadata import entry_points
+
 import numpy as np
 import pytest
 
@@ -7,11 +9,12 @@ from argo_compiler.base.errors import ArgoError
 from argo_compiler.route import suggest_route
 from argo_env.envs.route_instance import score_route
 from argo_env.envs.route_noise import RouteNoise
+from argo_env.policies import POLICIES
 from baselines import portfolio
 from baselines.episodes import play
 from baselines.families import TEST_SETS, InstanceFamily, InstanceSet
 from baselines.heuristics.greedy import GivenOrder
-from baselines.policy import POLICIES, Policy, make_policy
+from baselines.policy import OWN_POLICIES, Policy, make_policy
 from baselines.problem import hindsight_problem
 
 NUMBERS = range(1_000_000, 1_000_100)
@@ -42,7 +45,7 @@ def make_installed_policy(name):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("name", POLICIES)
+@pytest.mark.parametrize("name", OWN_POLICIES)
 def test_policies_obey_the_rules(name, kind):
     policy = make_installed_policy(name)
     assert policy.name == name
@@ -61,7 +64,7 @@ def test_policies_obey_the_rules(name, kind):
         assert score.prize > 0 or kind in {"tight", "noisy"}
 
 
-@pytest.mark.parametrize("name", POLICIES)
+@pytest.mark.parametrize("name", OWN_POLICIES)
 def test_policies_are_never_better_than_the_best(name):
     policy = make_installed_policy(name)
     for kind in ("plain", "noisy"):
@@ -146,9 +149,18 @@ def test_an_action_that_is_no_node_is_an_error_with_the_policys_name():
         list(play(Lost(), InstanceSet("plain", KINDS["plain"], NUMBERS), 1))
 
 
-def test_a_policy_outside_argo_is_made_by_name(monkeypatch):
-    monkeypatch.setitem(POLICIES, "mine", Stubborn)
-    assert make_policy("mine").name == "stubborn"
+def test_the_names_of_argos_policies_are_those_of_its_entry_points():
+    entries = entry_points(group="argo.policies")
+    own = [entry.name for entry in entries if entry.dist.name == "argo-mission"]
+    assert sorted(OWN_POLICIES) == sorted(own)
+
+
+def test_a_policy_outside_argo_is_made_by_name():
+    POLICIES.register("mine", Stubborn)
+    try:
+        assert make_policy("mine").name == "stubborn"
+    finally:
+        POLICIES.discard("mine")
     policy = make_policy("baselines.heuristics.greedy:GivenOrder")
     assert isinstance(policy, GivenOrder)
 
@@ -156,7 +168,7 @@ def test_a_policy_outside_argo_is_made_by_name(monkeypatch):
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("greedy", "no policy `greedy`; choose one of: given-order, .*module:class"),
+        ("greedy", "no policy `greedy`; choose one of: .*given-order, .*module:class"),
         ("nowhere:Policy", "nowhere"),
         ("baselines.policy:Nothing", "Nothing"),
     ],

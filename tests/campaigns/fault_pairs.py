@@ -31,7 +31,7 @@ from argo_env.drives.kinematic import KinematicDrive
 from argo_env.drives.timed_drive import RouteDrive
 from argo_env.faults.kinds import KINDS, FaultFile, find_site_errors
 from argo_env.planning import open_site
-from argo_env.run.drives_and_sensors import DRIVES
+from argo_env.run.drives_and_sensors import drive_names
 from argo_env.run.log import Entry
 from argo_env.run.observer import Observer
 from argo_env.run.record import RunRecord
@@ -233,7 +233,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--runs", type=int, default=1000, help="number of runs")
     parser.add_argument("--first", type=parse_seed, default=0, help="number of the first run")
-    parser.add_argument("--drive", choices=DRIVES, default=KinematicDrive.name)
+    parser.add_argument("--drive", choices=drive_names(), default=KinematicDrive.name)
     parser.add_argument("--processes", type=int, default=1, help="number of processes")
     options = parser.parse_args(arguments)
     numbers = range(options.first, options.first + options.runs)

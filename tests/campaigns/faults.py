@@ -21,7 +21,7 @@ from argo_compiler.il import EventKind, Mission
 from argo_env.faults.walkway import Brick
 from argo_env.navigation import Navigator
 from argo_env.planning import OpenedSite, open_site
-from argo_env.run.drives_and_sensors import DRIVES
+from argo_env.run.drives_and_sensors import drive_names
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
 from argo_env.seeding import generator
@@ -121,7 +121,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     )
     parser.add_argument("--site", default="umad")
     parser.add_argument("--seed", type=parse_seed, default=0, help="seed of the first mission")
-    parser.add_argument("--drive", choices=DRIVES, default="kinematic")
+    parser.add_argument("--drive", choices=drive_names(), default="kinematic")
     options = parser.parse_args(arguments)
     if not options.clean and not options.bricks:
         parser.error("give --clean N, --bricks N or both")

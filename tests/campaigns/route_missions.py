@@ -16,7 +16,7 @@ import numpy as np
 
 from argo_compiler.base.catalog import Catalog
 from argo_env.planning import open_site
-from argo_env.run.drives_and_sensors import DRIVES
+from argo_env.run.drives_and_sensors import drive_names
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
 from argo_planner.use_cases.importing import Upload, import_mission
@@ -53,7 +53,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     )
     parser.add_argument("--sheets", type=int, default=2, help="scripts of each size")
     parser.add_argument("--seed", type=parse_seed, default=0, help="seed of the first script")
-    parser.add_argument("--drive", choices=DRIVES, default="kinematic")
+    parser.add_argument("--drive", choices=drive_names(), default="kinematic")
     options = parser.parse_args(arguments)
     site = open_site("umad")
     print("| checkpoints | seed | as written | predicted | driven | off | proven |")

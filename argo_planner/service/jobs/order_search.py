@@ -46,11 +46,13 @@ def search_order(
     mission: Mission,
     requirements: Requirements,
     time_limit: float,
+    solvers: tuple[str, ...],
     report: ReportProgress,
 ) -> OrderFound:
     """Search for the best order of a mission for at most `time_limit` s, and report the progress.
 
-    `site` is a reference that `open_site` takes. Raises its errors and those of `suggest_order`.
+    `site` is a reference that `open_site` takes, and `solvers` are names of solvers of installed
+    packages. Raises the errors of both `open_site` and `suggest_order`.
     """
     opened = open_site(site)
 
@@ -60,7 +62,12 @@ def search_order(
 
     imported = ImportedMission(mission, "the mission", (), ())
     found = suggest_order(
-        imported, opened, requirements, time_limit=time_limit, on_progress=on_progress
+        imported,
+        opened,
+        requirements,
+        time_limit=time_limit,
+        solvers=solvers,
+        on_progress=on_progress,
     )
     if why := missing_order_error(found):
         return OrderFound(why_none=str(why), reasons=found.suggestion.reasons)

@@ -35,8 +35,11 @@ class OrderSearches:
         requirements: Requirements,
         time_limit: float,
         author: str,
+        solvers: tuple[str, ...] = (),
     ) -> OrderJob:
         """Start a search of at most `time_limit` s, and return its job.
+
+        `solvers` of installed packages take part besides Argo's own.
 
         Raises Conflict if MOST_SEARCHES searches are running.
         """
@@ -48,7 +51,7 @@ class OrderSearches:
             id=self._new_id(), mission=plan, revision=revision, author=author, begun=self._clock()
         )
         self._jobs.start(
-            job, JobProcess(search_order, self._site, mission, requirements, time_limit)
+            job, JobProcess(search_order, self._site, mission, requirements, time_limit, solvers)
         )
         return job
 

@@ -10,12 +10,13 @@ from pathlib import Path
 from uuid import uuid4
 
 from argo_compiler.base.errors import ArgoError, Unavailable
+from argo_compiler.base.extensions import naming_packages
 from argo_compiler.files.atomic_write import write_atomically
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.recording.live import LiveWriter, serve_live
 from argo_env.remote.channel import Channel
 from argo_env.remote.robot import RemoteRobot
-from argo_env.run.drives_and_sensors import ROUTE
+from argo_env.run.drives_and_sensors import REMOTE, ROUTE
 from argo_env.run.initial_state import make_machine
 from argo_env.run.journal import Header, Journal, create_journal, open_journal
 from argo_env.run.log import Entry
@@ -33,8 +34,6 @@ from argo_planner.service.runs.state import RunState, StateTold
 from argo_planner.service.world.obstacles import with_obstacles
 from argo_planner.use_cases.reporting import report_files
 
-REMOTE = "remote"
-"""name of the drive for a run that a remote robot carries out"""
 ACK_TIMEOUT = 10.0
 """s in which a remote robot must acknowledge the end of the run"""
 _JOURNAL = re.compile(r"run-(\d{4})\.journal")
@@ -80,7 +79,7 @@ def run_worker(
     ignore_sigint_and_end_with_parent()
     try:
         site = with_obstacles(open_site(order.site).prepare(), order.obstacles)
-        with ExitStack() as stack:
+        with naming_packages(), ExitStack() as stack:
             live = None if foxglove is None else stack.enter_context(serve_live(foxglove))
             worker = _RunWorker(WorkerPipe(pipe), folder, order, first, site, live, first_request)
             record = worker.run()

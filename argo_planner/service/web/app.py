@@ -36,6 +36,7 @@ from argo_planner.service.web.requests import (
     Viewer,
     json_response,
 )
+from argo_planner.use_cases.extensions import InstalledExtension
 
 OpenService = Callable[[], AbstractAsyncContextManager[PlanningService]]
 """function that returns a context manager, which opens the service and closes it at the end"""
@@ -58,6 +59,8 @@ class ServiceSummary(Model):
     named: bool
     """whether the author's name comes from the token; the client then can't choose it"""
     role: AccessRole
+    extensions: tuple[InstalledExtension, ...]
+    """what installed packages offer and can be used, such as sensors and formats"""
 
 
 @router.get("/service", operation_id="read_service", response_model=ServiceSummary)
@@ -70,6 +73,7 @@ async def read_service(service: Service, visitor: Viewer) -> Response:
             author=visitor.author,
             named=visitor.named,
             role=visitor.role,
+            extensions=service.extensions,
         )
     )
 

@@ -6,6 +6,7 @@ from fastapi import Path, Response
 from pydantic import Field
 
 from argo_compiler.base.errors import Invalid, NotFound
+from argo_compiler.base.extensions import installed_names
 from argo_compiler.base.model import Model
 from argo_compiler.reorder.mission_problem import require_known
 from argo_compiler.reorder.requirements import Requirements
@@ -42,6 +43,8 @@ class OrderAsked(Model):
     time_limit: float = Field(default=10.0, gt=0, le=MAX_SEARCH_TIME)
     """in s"""
     requirements: Requirements = Requirements()
+    solvers: tuple[Annotated[str, Field(max_length=40)], ...] = Field(default=(), max_length=10)
+    """names of solvers of installed packages that take part besides Argo's own"""
 
 
 class OrderAccepted(Model):
@@ -68,12 +71,22 @@ async def start_order_search(
 ) -> Response:
     """Start a search for the mission's best order."""
     plan = (await open_valid_plan(service, id)).plan
+    known = installed_names("argo.solvers")
+    if unknown := [name for name in asked.solvers if name not in known]:
+        raise Invalid(f"no installed package offers the solver `{unknown[0]}`")
+
     try:
         require_known(plan.mission, asked.requirements)
     except NotFound as error:  # 404 would be about the address
         raise Invalid(str(error)) from None
     job = service.orders.start(
-        id, plan.revision, plan.mission, asked.requirements, asked.time_limit, visitor.author
+        id,
+        plan.revision,
+        plan.mission,
+        asked.requirements,
+        asked.time_limit,
+        visitor.author,
+        asked.solvers,
     )
     return json_response(job, 202, location=f"/api/jobs/{job.id}")
 

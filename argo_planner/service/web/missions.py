@@ -337,12 +337,12 @@ def _export_file(imported: ImportedMission, site: OpenedSite, format: str) -> tu
         return imported.mission.model_dump_json(indent=2).encode(), ".json"
     if format == "script":
         return to_script(imported, site).encode(), ".txt"
-    content = export_mission(imported, site, format).content
+    exported = export_mission(imported, site, format)
+    content = exported.content
     if isinstance(content, Mapping):
         buffer = io.BytesIO()
         with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
             for path, part in sorted(content.items()):
                 archive.writestr(zipfile.ZipInfo(path), part)
         return buffer.getvalue(), ".zip"
-    endings = {"isar": ".json"}
-    return content.encode() if isinstance(content, str) else content, endings.get(format, "")
+    return content.encode() if isinstance(content, str) else content, exported.suffix

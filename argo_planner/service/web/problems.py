@@ -23,6 +23,7 @@ from argo_compiler.base.errors import (
     Unavailable,
     Unreachable,
 )
+from argo_compiler.base.extensions import failure_text, package_at_fault
 from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError
 from argo_planner.service.core.commands import Revision
@@ -141,6 +142,12 @@ def install_problem_handlers(app: FastAPI) -> None:
         return problem_response(plain_problem(error.status_code, code, str(error.detail)), headers)
 
     async def handle_defect(_: Request, error: Exception) -> Response:
+        if (package := package_at_fault(error)) is not None:
+            _log.error("a defect of the package %s", package, exc_info=error)
+            detail = failure_text(package, error)
+            return problem_response(
+                plain_problem(HTTPStatus.SERVICE_UNAVAILABLE, "unavailable", detail)
+            )
         _log.error("a defect of Argo", exc_info=error)
         detail = (
             "this is a defect of Argo: please report it with the traceback in the service's log"

@@ -25,6 +25,7 @@ from argo_planner.service.storage.folder import PLAN_ID
 from argo_planner.service.web.access import AccessRole, Visitor
 from argo_planner.service.web.problems import RevisionMissing, problem_responses
 from argo_planner.service.world.obstacle_store import ObstacleStore
+from argo_planner.use_cases.extensions import InstalledExtension
 
 JSON = "application/json"
 # A report is one file that contains its styles and pictures; it runs no script and loads nothing.
@@ -47,6 +48,8 @@ class PlanningService:
     evaluations: Evaluations
     runs: RunHost
     obstacles: ObstacleStore
+    extensions: tuple[InstalledExtension, ...]
+    """what installed packages offer and can be used"""
     site_thread: Executor
     """executor with one thread, as a site is not safe for concurrent use"""
 

@@ -10,7 +10,7 @@ from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.base.model import Model
 from argo_env.faults.kinds import AnyFault
 from argo_env.report.files import PAGE, RECORD
-from argo_env.run.drives_and_sensors import DRIVES, SENSORS
+from argo_env.run.drives_and_sensors import REMOTE, SENSORS, drive_names
 from argo_env.site import Site
 from argo_planner.service.core.commands import CommandId
 from argo_planner.service.runs.pictures import picture_path
@@ -22,7 +22,6 @@ from argo_planner.service.runs.requests import (
     Speed,
 )
 from argo_planner.service.runs.state import EntryList, RunState
-from argo_planner.service.runs.worker import REMOTE
 from argo_planner.service.web.access import AccessRole
 from argo_planner.service.web.bodies import JsonBody
 from argo_planner.service.web.live import accept_socket, exchange_messages, next_client_id
@@ -265,7 +264,7 @@ async def connect_robot(socket: WebSocket) -> None:
 def _require_known(run: RunAsked, site: Site) -> None:
     """Raise Invalid for an unknown drive, sensor or checkpoint, before anything starts."""
     checkpoints = [checkpoint.id for checkpoint in site.checkpoints]
-    _require_in("drive", [run.drive], [*DRIVES, REMOTE])
+    _require_in("drive", [run.drive], [*drive_names(), REMOTE])
     _require_in("sensor", [run.sensor], [*SENSORS])
     _require_in("checkpoint", run.values, checkpoints)
 

@@ -28,6 +28,7 @@ from argo_planner.service.web.connections import raise_file_limit_for_connection
 from argo_planner.service.web.guard import Guard, GuardSettings
 from argo_planner.service.web.requests import PlanningService
 from argo_planner.service.world.obstacle_store import ObstacleStore
+from argo_planner.use_cases.extensions import usable_extensions
 
 
 @dataclass(frozen=True)
@@ -89,6 +90,7 @@ def make_service_opener(
                     evaluations=evaluations,
                     runs=runs,
                     obstacles=obstacles,
+                    extensions=usable_extensions(),
                     site_thread=thread,
                 )
             finally:

@@ -5,7 +5,7 @@ import pytest
 from argo_compiler.base.model import Pose
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, Span, has_errors
-from argo_compiler.export import EXPORTERS
+from argo_compiler.export import EXPORTERS, ExportInput
 from argo_compiler.hfsm import lower
 from argo_compiler.il import (
     Action,
@@ -237,7 +237,7 @@ def exported(form, mission):
         return types.encode(to_message(mission, types)), ()
     machine = lower(mission)
     try:
-        return EXPORTERS[form].export(mission, machine), ()
+        return EXPORTERS[form].export(ExportInput(mission, machine)), ()
     except DiagnosticError as error:
         return None, tuple((d.code, d.message) for d in error.diagnostics)
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from argo_compiler.export import EXPORTERS
+from argo_compiler.export import EXPORTERS, ExportInput
 from argo_compiler.hfsm import lower
 from argo_compiler.il import Action, Mission, Task
 from argo_compiler.ros import message_package, read_bag
@@ -13,7 +13,7 @@ PLAN = Mission(tasks=(Task(name="A", action=Action.MEASURE, object_id="4"),))
 @pytest.mark.parametrize("name", ["ros1-bag", "ros2-bag", "ros2-mcap"])
 def test_bags_have_the_form_that_the_exporter_declares(tmp_path, name):
     exporter = EXPORTERS[name]
-    exported = exporter.export(PLAN, lower(PLAN))
+    exported = exporter.export(ExportInput(PLAN, lower(PLAN)))
     path = tmp_path / ("plan" + "".join(exporter.suffixes))
     if exporter.suffixes:
         path.write_bytes(exported)
@@ -25,6 +25,6 @@ def test_bags_have_the_form_that_the_exporter_declares(tmp_path, name):
 
 
 def test_the_package_does_not_depend_on_the_mission():
-    exported = EXPORTERS["ros-package"].export(PLAN, lower(PLAN))
+    exported = EXPORTERS["ros-package"].export(ExportInput(PLAN, lower(PLAN)))
     assert exported == message_package()
     assert "msg/MissionSpecification.msg" in exported

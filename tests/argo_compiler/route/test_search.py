@@ -21,7 +21,7 @@ from argo_compiler.route import (
 )
 from argo_compiler.route.batch import suggest_routes
 from argo_compiler.route.search import Search
-from argo_compiler.route.solvers import discard_solver, register_solver
+from argo_compiler.route.solvers import InstalledSolver, discard_solver, register_solver
 from argo_compiler.route.stop import (
     FirstFeasible,
     MaxGap,
@@ -176,7 +176,7 @@ class TestCustomSolver:
             discard_solver("reversed")
         assert solver.calls > 1
         assert (made.method, made.order) == ("reversed", tuple(reversed(range(60))))
-        with pytest.raises(NotFound, match="no route solver is named 'reversed'"):
+        with pytest.raises(NotFound, match="no route solver `reversed`"):
             suggest_route(plain(3), solvers=("reversed",))
 
     def test_it_takes_part_when_it_is_passed(self) -> None:
@@ -189,6 +189,25 @@ class TestCustomSolver:
     def test_its_false_claims_are_reported(self) -> None:
         with pytest.raises(Conflict, match="'reversed': its result contradicts"):
             suggest_route(plain(5), solvers=(Reversed(claim=10**9),))
+
+    def test_proofs_of_an_installed_one_are_ignored(self) -> None:
+        installed = InstalledSolver(Reversed(claim=10**9), "some-package 1.0")
+        made = suggest_route(plain(5), solvers=(installed,))
+        assert made.order == (4, 3, 2, 1, 0)
+        assert not made.proven
+        assert made.cost is not None
+        assert made.bound <= made.cost
+
+    def test_the_search_goes_on_without_an_installed_one_that_fails(self) -> None:
+        class Failing(Reversed):
+            def solve(self, _search: Search, /) -> None:
+                raise ZeroDivisionError("a fault")
+
+        installed = InstalledSolver(Failing(), "some-package 1.0")
+        made = suggest_route(plain(60), 0.5, solvers=(installed, "first rules"))
+        assert made.method == "first rules"
+        message = "`reversed` of some-package 1.0 has failed (ZeroDivisionError: a fault)"
+        assert any(message in reason for reason in made.reasons)
 
     def test_its_routes_must_be_feasible(self) -> None:
         ordered = replace(plain(2), precedences=(Precedence((0, 1), "0 before 1"),))

@@ -7,6 +7,7 @@ import pytest
 from argo_compiler.base.errors import Conflict, Invalid, NotFound, Remedy
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import DiagnosticError
+from argo_compiler.export import EXPORTERS
 from argo_compiler.files.mission_file import mission_text
 from argo_compiler.hfsm import Hfsm, Occurred, Pause
 from argo_compiler.il import EventKind, Order
@@ -19,7 +20,7 @@ from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
 from argo_planner.use_cases.checking import Format, check_source, format_diagnostics
 from argo_planner.use_cases.compiling import compile_mission
-from argo_planner.use_cases.exporting import FORMATS, export_mission, to_script
+from argo_planner.use_cases.exporting import export_mission, to_script
 from argo_planner.use_cases.importing import Upload, import_mission
 from argo_planner.use_cases.no_order import require_order
 from argo_planner.use_cases.reporting import report_files
@@ -73,7 +74,7 @@ def test_a_script_gives_the_mission_again(imported, site):
     assert [t.object_id for t in again.mission.tasks] == [t.object_id for t in PLAN.tasks]
 
 
-@pytest.mark.parametrize("format", FORMATS)
+@pytest.mark.parametrize("format", EXPORTERS.names())
 def test_exporting(imported, site, format):
     exported = export_mission(imported, site, format)
     assert exported.content
@@ -81,7 +82,7 @@ def test_exporting(imported, site, format):
 
 
 def test_unknown_formats_are_refused(imported, site):
-    with pytest.raises(NotFound, match="word: there is no such format"):
+    with pytest.raises(NotFound, match="no format `word`; choose one of: scxml"):
         export_mission(imported, site, "word")
 
 

@@ -1,10 +1,10 @@
 /** The form of an evaluation: number of worlds, their differences, requirements. */
 
-import type { EvaluationAsked, FaultKind } from "../api/types";
+import type { EvaluationAsked } from "../api/types";
 import "../run/faults";
 import { parts } from "../run/parts";
 import { missionHasErrors, mission } from "../state/plan";
-import { mayPlan } from "../state/session";
+import { mayPlan, withExtensions } from "../state/session";
 import { t } from "../texts";
 import { choice } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
@@ -57,7 +57,7 @@ export class EvaluateStart extends PageElement {
     `,
   ];
 
-  @state() private faults: readonly FaultKind[] = [];
+  @state() private faults: readonly string[] = [];
   @state() private wrong: string | null = null;
   @state() private starting = false;
 
@@ -89,7 +89,7 @@ export class EvaluateStart extends PageElement {
             ${texts.width}
             <input name="width" type="number" min="1" max="99" step="any" placeholder="5" />
           </label>
-          ${choice(t().run.drive, "drive", DRIVES.map((one) => [one, t().run.drives[one]]))}
+          ${choice(t().run.drive, "drive", withExtensions(DRIVES, t().run.drives, "drive"))}
           <label>
             ${texts.firstSeed}
             <input name="seed" type="number" min="0" max="2147483648" step="1" value="0" required />
@@ -134,7 +134,7 @@ export class EvaluateStart extends PageElement {
     return other === null ? null : texts.busy(other.name, other.author);
   }
 
-  private choseFaults(event: CustomEvent<readonly FaultKind[]>): void {
+  private choseFaults(event: CustomEvent<readonly string[]>): void {
     this.faults = event.detail;
   }
 

@@ -4,7 +4,7 @@ import type { EventKind, Reaction } from "../api/types";
 import { reactionKey } from "../model/outline";
 import { edit, editFromForm } from "../state/commands";
 import { mission, select } from "../state/plan";
-import { mayPlan } from "../state/session";
+import { extensionsOf, mayPlan } from "../state/session";
 import { world } from "../state/world";
 import { t } from "../texts";
 import { html, nothing } from "../ui/element";
@@ -23,6 +23,15 @@ export function reactionForm(reaction: Reaction) {
     if (wrong === null) select([reactionKey(event)]);
     return wrong;
   };
+  // The service replaces a package's response by one of Argo's own, with its fields.
+  const saveExtension = (response: string) =>
+    editFromForm(() => [
+      { kind: "change_reaction", event: reaction.event, reaction: { event: reaction.event, response } },
+    ]);
+  const responses = [
+    ...optionsOf(t().words.response),
+    ...extensionsOf("response").map((name) => ({ value: name, label: name })),
+  ];
   const save = (change: Partial<Reaction>) => saveOf(() => change);
   const had = new Set(mission.value?.reactions.map((one) => one.event));
   const events = optionsOf(t().words.event).filter(
@@ -42,8 +51,10 @@ export function reactionForm(reaction: Reaction) {
           { note: "%" },
         )
       : nothing}
-    ${selectField(texts.response, reaction.response, optionsOf(t().words.response), (response) =>
-      saveOf((was) => responding(was, response as Reaction["response"])),
+    ${selectField(texts.response, reaction.response, responses, (response) =>
+      extensionsOf("response").includes(response)
+        ? saveExtension(response)
+        : saveOf((was) => responding(was, response as Reaction["response"])),
     )}
     ${drives
       ? poseFields(

@@ -3,6 +3,7 @@
 import { responseData, client } from "../api/client";
 import { commandId, withPlan } from "../state/commands";
 import { showNotice } from "../state/notices";
+import { extensionsOf } from "../state/session";
 import { planId, planName, revision, takePlanState, versions } from "../state/plan";
 import { t } from "../texts";
 import { iconButton } from "../ui/controls";
@@ -42,7 +43,7 @@ export class MissionMenu extends PageElement {
         <button @click=${this.duplicate}>${icon("copy")} ${texts.duplicate}</button>
         <h2>${texts.exportAs}</h2>
         <p class="formats">
-          ${FORMATS.map(
+          ${[...FORMATS, ...extensionsOf("format")].map(
             (format) => html`<a href=${`/api/missions/${id}/export/${format}`} download>${format}</a>`,
           )}
         </p>

@@ -4,7 +4,7 @@ import { readTime, writeTime } from "../forms/times";
 import { parts } from "../run/parts";
 import { edit } from "../state/commands";
 import { missionHasErrors, tasksAfterStart, mission } from "../state/plan";
-import { mayPlan } from "../state/session";
+import { extensionsOf, mayPlan } from "../state/session";
 import { t } from "../texts";
 import { choice, iconButton, options } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
@@ -71,7 +71,7 @@ export class RoutePanel extends PageElement {
               <input name="budget" placeholder="20 min" @change=${this.tidy} />
               <span class="reason">${texts.budgetHint}</span>
             </label>
-            ${this.pairs()} ${this.times()}
+            ${this.pairs()} ${this.times()} ${this.solvers()}
           </div>
         </details>
       </form>
@@ -136,6 +136,14 @@ export class RoutePanel extends PageElement {
     </section>`;
   }
 
+  /** Render the choice of a package's solver, which takes part besides Argo's own; nothing if there is none. */
+  private solvers() {
+    const all = extensionsOf("route solver");
+    if (all.length === 0) return nothing;
+    const texts = t().route;
+    return choice(texts.solver, "solver", [["", texts.noSolver] as const, ...all.map((name) => [name, name] as const)], "");
+  }
+
   private item(text: string, drop: () => void) {
     return html`<li class="row">
       <span class="grow">${text}</span>
@@ -195,6 +203,7 @@ export class RoutePanel extends PageElement {
       before: this.pairsAsked.filter((pair) => pair.every((name) => known.has(name))),
       windows: this.windows.filter(({ what }) => known.has(what)),
     };
-    void search(Number(form.get("limit")), asked);
+    const solver = form.get("solver");
+    void search(Number(form.get("limit")), asked, typeof solver === "string" && solver !== "" ? [solver] : []);
   }
 }

@@ -77,9 +77,9 @@ async function previewOrder(id: string): Promise<void> {
   }
 }
 
-export async function search(seconds: number, asked: Asked): Promise<void> {
+export async function search(seconds: number, asked: Asked, solvers: readonly string[]): Promise<void> {
   await withPlan(async (id) => {
-    const body = { time_limit: seconds, requirements: asked } as unknown as SearchAsked;
+    const body = { time_limit: seconds, requirements: asked, solvers } as unknown as SearchAsked;
     const begun = await responseData(client.POST("/api/missions/{id}/orders", { params: { path: { id } }, body }));
     if (planId.value !== id) return;
     closeSearch();

@@ -8,6 +8,7 @@ import { t } from "../texts";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
 import { figure, unitText } from "../ui/figures";
+import { faultText } from "./faults";
 import { parts } from "./parts";
 
 const MOST = 100;
@@ -36,7 +37,7 @@ export function eventText(what: RunEvent): string {
     case "steered":
       return texts[what.how];
     case "fault":
-      return texts.fault(t().run.fault[what.fault as keyof ReturnType<typeof t>["run"]["fault"]]);
+      return texts.fault(faultText(what.fault));
     case "mishap": {
       const name = t().run.trouble[what.trouble];
       return what.detail === "" ? name : `${name}: ${what.detail}`;

@@ -1,14 +1,21 @@
 /** The choice of faults, one by one. */
 
-import type { FaultKind } from "../api/types";
+import { extensionsOf } from "../state/session";
 import { t } from "../texts";
 import { run } from "../texts/run";
 import { iconButton, options } from "../ui/controls";
 import { css, customElement, html, PageElement, property } from "../ui/element";
 import { parts } from "./parts";
 
-/** All kinds of faults, in the order of the texts. */
-export const FAULTS = Object.keys(run.en.fault) as readonly FaultKind[];
+/** Return all kinds of faults: those of the texts, in their order, and those of installed packages. */
+export function faultKinds(): readonly string[] {
+  return [...Object.keys(run.en.fault), ...extensionsOf("fault")];
+}
+
+/** Return the name of a kind of fault; one of a package has no other name than its kind. */
+export function faultText(kind: string): string {
+  return (t().run.fault as Readonly<Record<string, string>>)[kind] ?? kind;
+}
 
 /** Fires `chosen` with all chosen faults when they change. */
 @customElement("argo-faults")
@@ -22,7 +29,7 @@ export class FaultChoice extends PageElement {
     `,
   ];
 
-  @property({ attribute: false }) chosen: readonly FaultKind[] = [];
+  @property({ attribute: false }) chosen: readonly string[] = [];
 
   override render() {
     const texts = t().run;
@@ -31,25 +38,25 @@ export class FaultChoice extends PageElement {
         ${this.chosen.map((kind, at) => {
           const drop = () => this.tell(this.chosen.filter((_, other) => other !== at));
           return html`<li class="row">
-            <span class="grow">${texts.fault[kind]}</span>
-            ${iconButton("close", texts.remove(texts.fault[kind]), drop, { size: 16 })}
+            <span class="grow">${faultText(kind)}</span>
+            ${iconButton("close", texts.remove(faultText(kind)), drop, { size: 16 })}
           </li>`;
         })}
       </ul>
       <select aria-label=${texts.addFault} @change=${this.add}>
         <option value="">${texts.addFault}…</option>
-        ${options(FAULTS.map((kind) => [kind, texts.fault[kind]]))}
+        ${options(faultKinds().map((kind) => [kind, faultText(kind)]))}
       </select>`;
   }
 
   private add(event: Event): void {
     const field = event.target as HTMLSelectElement;
-    const kind = FAULTS.find((one) => one === field.value);
+    const kind = field.value;
     field.value = "";
-    if (kind !== undefined) this.tell([...this.chosen, kind]);
+    if (kind !== "") this.tell([...this.chosen, kind]);
   }
 
-  private tell(chosen: readonly FaultKind[]): void {
+  private tell(chosen: readonly string[]): void {
     this.dispatchEvent(new CustomEvent("chosen", { detail: chosen }));
   }
 }

@@ -1,8 +1,8 @@
 /** The form of a run: its settings. */
 
-import type { FaultKind, RunAsked } from "../api/types";
+import type { RunAsked } from "../api/types";
 import { checkpointSuggestion, parseCheckpoint } from "../model/checkpoint-choice";
-import { storeSetting, storedSetting, mayOperate } from "../state/session";
+import { storeSetting, storedSetting, mayOperate, withExtensions } from "../state/session";
 import { missionHasErrors, mission } from "../state/plan";
 import { startRun } from "../state/requests";
 import { world } from "../state/world";
@@ -39,7 +39,7 @@ export class RunStart extends PageElement {
 
   @state() private starting = false;
   @state() private values: ReadonlyMap<number, number> = new Map();
-  @state() private faults: readonly FaultKind[] = [];
+  @state() private faults: readonly string[] = [];
 
   override render() {
     const texts = t().run;
@@ -60,9 +60,9 @@ export class RunStart extends PageElement {
       <details>
         <summary>${texts.how}</summary>
         <div class="inner">
-          ${choice(texts.drive, "drive", DRIVES.map((one) => [one, texts.drives[one]]))}
+          ${choice(texts.drive, "drive", withExtensions(DRIVES, texts.drives, "drive"))}
           <div class="pair">
-            ${choice(texts.sensor, "sensor", SENSORS.map((one) => [one, texts.sensors[one]]))}
+            ${choice(texts.sensor, "sensor", withExtensions(SENSORS, texts.sensors, "sensor"))}
             <label>
               ${texts.seed}
               <input name="seed" type="number" min="0" max="2147483648" step="1" value="0" required />
@@ -143,7 +143,7 @@ export class RunStart extends PageElement {
     of.focus();
   }
 
-  private choseFaults(event: CustomEvent<readonly FaultKind[]>): void {
+  private choseFaults(event: CustomEvent<readonly string[]>): void {
     this.faults = event.detail;
   }
 

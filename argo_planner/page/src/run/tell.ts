@@ -1,6 +1,6 @@
 /** Reports of a person to the run: an event, a reading, or a fault in the simulation. */
 
-import type { EventKind, FaultKind } from "../api/types";
+import type { EventKind } from "../api/types";
 import { parseCheckpoint } from "../model/checkpoint-choice";
 import { sendRequest, type RunRequest } from "../state/requests";
 import { run } from "../state/run";
@@ -10,7 +10,7 @@ import { t } from "../texts";
 import { options } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { checkpointList, parts } from "./parts";
-import { FAULTS } from "./faults";
+import { faultKinds, faultText } from "./faults";
 
 const OWN: readonly string[] = ["time_up"]; // events that only the run itself raises
 
@@ -57,7 +57,7 @@ export class RunTell extends PageElement {
         </form>
         <form @submit=${this.beginFault}>
           <select name="fault" aria-label=${texts.beginFault}>
-            ${options(FAULTS.map((kind) => [kind, texts.fault[kind]]))}
+            ${options(faultKinds().map((kind) => [kind, faultText(kind)]))}
           </select>
           <button id="begin-fault" ?disabled=${off || state.drive === "remote"}>${texts.begin}</button>
         </form>
@@ -79,7 +79,7 @@ export class RunTell extends PageElement {
   }
 
   private beginFault(event: SubmitEvent): void {
-    const kind = this.field(event, "fault").value as FaultKind;
+    const kind = this.field(event, "fault").value;
     void sendRequest({ kind: "fault", fault: { kind } } as unknown as RunRequest);
   }
 

@@ -28,6 +28,20 @@ export function mayOperate(): boolean {
   return service.value?.role === "operate";
 }
 
+/** Return the names of what installed packages offer of a kind, such as `sensor`. */
+export function extensionsOf(kind: string): readonly string[] {
+  return (service.value?.extensions ?? []).filter((one) => one.kind === kind).map((one) => one.name);
+}
+
+/** Return the options of a choice: Argo's own with their texts, and those of installed packages with their names. */
+export function withExtensions(
+  own: readonly string[],
+  texts: Readonly<Record<string, string>>,
+  kind: string,
+): readonly (readonly [string, string])[] {
+  return [...own, ...extensionsOf(kind)].map((name) => [name, texts[name] ?? name]);
+}
+
 /** Read the stored settings, and store changes. */
 export function beginSession(): void {
   language.value = firstLanguage();

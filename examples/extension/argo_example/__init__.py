@@ -1,0 +1,1 @@
+"""Example of a package that extends Argo, with one extension of each kind."""

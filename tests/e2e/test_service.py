@@ -68,6 +68,7 @@ def service(tmp_path):
         service_process.end(signal.SIGKILL)
 
 
+@pytest.mark.everywhere
 def test_the_service_starts_answers_and_ends(service: ServiceProcess) -> None:
     with service.client() as client:
         assert client.get("/api/service").json()["site"] == "umad"

@@ -114,6 +114,18 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> LoadFil
     return _ByUnit(config, log)
 
 
+_PHYSICS_NAMES = {"argo/Drive-v0", "kinematic", "tracked"}
+"""names of drives and environments that need physics"""
+
+
+def pytest_itemcollected(item: pytest.Item) -> None:
+    """Mark a test as one that needs physics if a parameter names a drive that does."""
+    if isinstance(item, pytest.Function) and hasattr(item, "callspec"):
+        texts = {value for value in item.callspec.params.values() if isinstance(value, str)}
+        if texts & _PHYSICS_NAMES:
+            item.add_marker("physics")
+
+
 _DURATIONS = Path(__file__).with_name("durations.json")
 """Seconds that the tests of each unit took when they were last recorded: those of `make test`, and
 those marked `long`."""

@@ -1,7 +1,6 @@
 """The UMAD site, its navigator, and the same site in PyBullet as an independent witness."""
 
 import numpy as np
-import pybullet
 import pytest
 
 import argo_env.world.world
@@ -13,8 +12,18 @@ from argo_env.planning.catalog import make_catalog
 from argo_env.robot.spec import load_robot
 from argo_env.site import load_site
 from argo_env.site.urdf import to_urdf
+from argo_env.world.pybullet_client import pybullet
 from tests import yard as the_yard
 from tests.yard import Watching, opened, simulated
+
+_WITH_PYBULLET = {"client", "umad_world", "simulated_world", "sheet_run", "protocol_record"}
+"""fixtures below that need PyBullet"""
+
+
+def pytest_itemcollected(item):
+    """Mark the tests that use one of these fixtures."""
+    if _WITH_PYBULLET & set(getattr(item, "fixturenames", ())):
+        item.add_marker("physics")
 
 
 class World:
@@ -132,7 +141,7 @@ def umad_world(umad_urdf):
 
 
 @pytest.fixture(scope="session")
-def simulation(umad, robot):
+def simulated_world(umad, robot):
     """The world that Argo runs missions in, to place the robot in and look."""
     with argo_env.world.world.World(umad, robot) as world:
         yield world

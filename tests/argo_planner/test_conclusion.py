@@ -100,6 +100,7 @@ def test_a_second_signal_ends_the_report(conclude, monkeypatch):
     assert said.endswith("to try again: argo resume run.journal --report report\n")
 
 
+@pytest.mark.physics
 def test_a_film_is_interrupted_between_two_pictures(conclude, monkeypatch):
     def filming(*arguments, progress, **options):
         def told(share):

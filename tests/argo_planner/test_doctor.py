@@ -5,6 +5,8 @@ import tomllib
 from importlib.util import find_spec
 from pathlib import Path
 
+import pytest
+
 import argo_planner.use_cases.doctor
 from argo_compiler import __version__
 from argo_compiler.base.extras import install_line
@@ -20,6 +22,7 @@ def doctor(*arguments):
     return argo("doctor", *arguments, status=0).output
 
 
+@pytest.mark.physics
 def test_what_it_shows(tmp_path, monkeypatch):
     monkeypatch.setenv(cache.VARIABLE, str(tmp_path))
     forget_sites()

@@ -112,6 +112,7 @@ def test_a_written_mission_that_takes_too_long_is_noted(argo, source, tmp_path):
     assert said in argo("check", new, status=2)
 
 
+@pytest.mark.physics
 def test_a_run_without_possible_order_names_the_route_command(argo, source, tmp_path):
     late = read_mission(source).model_copy(update={"max_duration": 3.0})
     write_mission(late, tmp_path / "late.json")

@@ -25,7 +25,9 @@ def require_refusal(result: subprocess.CompletedProcess[str]) -> str:
     return re.sub(r"\s+", " ", result.stderr)
 
 
-@pytest.mark.parametrize("command", ["run", "import", "compile"])
+@pytest.mark.parametrize(
+    "command", [pytest.param("run", marks=pytest.mark.physics), "import", "compile"]
+)
 @pytest.mark.parametrize(
     ("name", "content", "expected"),
     [
@@ -57,6 +59,7 @@ def test_a_bad_script_is_refused(argo, tmp_path: Path, command, name, content, e
     assert not (tmp_path / "out.json").exists()
 
 
+@pytest.mark.physics
 def test_an_unknown_word_is_shown_in_its_line_with_a_hint(argo_process, tmp_path) -> None:
     script = tmp_path / "script.txt"
     line = "2. Checkpoint #4: befriend the position of valve R25"
@@ -77,6 +80,7 @@ def test_missing_areas_are_refused_with_the_options_for_them(
     assert "--end-area" in message
 
 
+@pytest.mark.physics
 def test_gui_without_a_display_is_refused(argo, tmp_path: Path, monkeypatch) -> None:
     monkeypatch.delenv("DISPLAY", raising=False)
     (tmp_path / "sheet.txt").write_text(SHEET)

@@ -63,6 +63,7 @@ def test_examples_are_listed_with_a_line_each(argo) -> None:
         assert any(line.split()[0] == name for line in listed.splitlines()), name
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize("site", ["umad", "plant.yaml"])
 def test_skeletons_are_valid_and_used_together(argo, tmp_path, site) -> None:
     argo("new", "site", "plant", cwd=tmp_path, status=0)

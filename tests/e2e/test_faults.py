@@ -27,6 +27,7 @@ def folder(tmp_path):
     return tmp_path
 
 
+@pytest.mark.physics
 def test_faults_are_detected_logged_and_reported(argo, folder):
     ran = argo(*RUN, "--report", "out", "--journal", "run.journal", cwd=folder, status=0)
     shown = ran.stdout + ran.stderr

@@ -9,6 +9,8 @@ from argo_compiler.il import Group, Mission
 from tests.disks import small_disk
 from tests.yard import measure, mission, waypoint, write_yard
 
+pytestmark = pytest.mark.physics
+
 _PAGE = 4096  # bytes
 
 

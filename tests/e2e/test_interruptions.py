@@ -188,6 +188,7 @@ def test_an_interrupted_run_has_a_report_and_can_be_resumed(
     assert read_run_record(report) == record
 
 
+@pytest.mark.physics
 def test_the_printed_command_to_resume_keeps_the_option_force(folder, tmp_path) -> None:
     film = tmp_path / "run.gif"
     film.write_bytes(b"an older film")

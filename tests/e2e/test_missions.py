@@ -10,6 +10,8 @@ from argo_compiler.hfsm import Hfsm
 from argo_env.run.record import RunRecord
 from tests.e2e.conftest import read_run_record
 
+pytestmark = pytest.mark.physics
+
 AREAS = ("--start-area", 1, "--end-area", 2)
 
 
@@ -47,6 +49,7 @@ def require_protocol_2(record: RunRecord) -> None:
     assert record.contacts == ()
 
 
+@pytest.mark.everywhere
 def test_mission_1_runs_to_success(first) -> None:
     result, folder = first
     assert result.returncode == 0, result.stderr

@@ -52,17 +52,17 @@ WAYS = pytest.mark.parametrize("way", ["flat", "up", "down"])
 
 @WAYS
 @pytest.mark.parametrize("velocity", [None, 0.2, 0.1])
-def test_takes_the_duration_of_the_path(simulation, robot, paths, way, velocity):
+def test_takes_the_duration_of_the_path(simulated_world, robot, paths, way, velocity):
     path = paths[way]
-    poses, drive = follow(simulation, robot, path, velocity)
+    poses, drive = follow(simulated_world, robot, path, velocity)
     taken = (len(poses) - 1) * drive.time_step
     assert taken == pytest.approx(path.duration(robot, velocity), abs=drive.time_step + 1e-6)
 
 
 @WAYS
-def test_arrives_at_the_end_pose(simulation, robot, paths, way):
+def test_arrives_at_the_end_pose(simulated_world, robot, paths, way):
     path = paths[way]
-    poses, drive = follow(simulation, robot, path)
+    poses, drive = follow(simulated_world, robot, path)
     end = drive.pose
     assert end == poses[-1]
     assert (end.x, end.y) == pytest.approx((path.end.x, path.end.y), abs=1e-9)
@@ -73,9 +73,9 @@ def test_arrives_at_the_end_pose(simulation, robot, paths, way):
 
 
 @WAYS
-def test_passes_every_vertex_at_its_time(simulation, robot, paths, way):
+def test_passes_every_vertex_at_its_time(simulated_world, robot, paths, way):
     path, step = paths[way], 0.05
-    poses, _ = follow(simulation, robot, path, time_step=step)
+    poses, _ = follow(simulated_world, robot, path, time_step=step)
     for t, x, y, _, yaw in path.timed_poses(robot):
         pose = poses[min(round(t / step), len(poses) - 1)]
         assert math.dist((pose.x, pose.y), (x, y)) <= robot.speed * step
@@ -84,8 +84,8 @@ def test_passes_every_vertex_at_its_time(simulation, robot, paths, way):
 
 @WAYS
 @pytest.mark.parametrize("velocity", [None, 0.15])
-def test_speed_and_turn_rate_are_kept(simulation, robot, paths, way, velocity):
-    poses, drive = follow(simulation, robot, paths[way], velocity)
+def test_speed_and_turn_rate_are_kept(simulated_world, robot, paths, way, velocity):
+    poses, drive = follow(simulated_world, robot, paths[way], velocity)
     most = drive.time_step * (velocity or robot.speed)
     turn = drive.time_step * robot.turn_rate_radians
     for a, b in pairwise(poses):
@@ -95,16 +95,16 @@ def test_speed_and_turn_rate_are_kept(simulation, robot, paths, way, velocity):
         assert abs(b.z - a.z) <= 1.1 * most
 
 
-def test_drives_at_the_velocity_asked_for_on_the_flat(simulation, robot):
+def test_drives_at_the_velocity_asked_for_on_the_flat(simulated_world, robot):
     a, b = (Pose(x=x, y=-2.05, z=-0.03, yaw=0.0) for x in (5.05, 8.05))
-    poses, drive = follow(simulation, as_told(robot), Path(a, (Motion(a, b),)), 0.3)
+    poses, drive = follow(simulated_world, as_told(robot), Path(a, (Motion(a, b),)), 0.3)
     steps = [math.dist((p.x, p.y), (q.x, q.y)) for p, q in pairwise(poses)]
     assert steps[:-1] == pytest.approx([0.3 * drive.time_step] * (len(steps) - 1))
 
 
 @pytest.mark.parametrize(("way", "gear"), [("up", -1), ("down", 1)])
-def test_heads_down_the_stairs_both_ways(simulation, robot, paths, way, gear):
-    poses, _ = follow(simulation, as_told(robot), paths[way])
+def test_heads_down_the_stairs_both_ways(simulated_world, robot, paths, way, gear):
+    poses, _ = follow(simulated_world, as_told(robot), paths[way])
     tilted = [(a, b) for a, b in pairwise(poses) if a.pitch > math.radians(25)]
     assert len(tilted) > 50
     for a, b in tilted:
@@ -119,45 +119,45 @@ def test_heads_down_the_stairs_both_ways(simulation, robot, paths, way, gear):
 
 
 @WAYS
-def test_no_pitch_on_the_flat_and_none_over_36_degrees(simulation, robot, paths, way):
-    poses, _ = follow(simulation, robot, paths[way])
+def test_no_pitch_on_the_flat_and_none_over_36_degrees(simulated_world, robot, paths, way):
+    poses, _ = follow(simulated_world, robot, paths[way])
     assert max(abs(p.pitch) for p in poses) <= math.radians(36)
     if way == "flat":
         assert max(abs(p.pitch) for p in poses) <= math.radians(0.5)
 
 
-def above_ground(simulation, poses):
+def above_ground(simulated_world, poses):
     """Return the height (m) of the body above what is below its tracks."""
     # Below both tracks, for what lies between treads is no ground.
     sides = [(-math.sin(p.yaw) * d, math.cos(p.yaw) * d) for p in poses for d in (-0.23, 0.23)]
     points = np.repeat([[p.x, p.y] for p in poses], 2, axis=0) + np.array(sides)
     below = np.repeat([p.z + 0.5 for p in poses], 2)
-    surface = simulation.surface_or_ray_end_heights(points, below).reshape(-1, 2).max(axis=1)
+    surface = simulated_world.surface_or_ray_end_heights(points, below).reshape(-1, 2).max(axis=1)
     return np.array([p.z for p in poses]) - surface
 
 
 @WAYS
-def test_body_neither_sinks_nor_hovers(simulation, robot, paths, way):
-    poses, _ = follow(simulation, robot, paths[way])
-    above = above_ground(simulation, poses)
+def test_body_neither_sinks_nor_hovers(simulated_world, robot, paths, way):
+    poses, _ = follow(simulated_world, robot, paths[way])
+    above = above_ground(simulated_world, poses)
     level = np.array([abs(p.pitch) < math.radians(2) for p in poses])
     assert above.min() >= -0.02
     assert above[level].max() <= 0.10
 
 
 @WAYS
-def test_touches_nothing_on_the_way(simulation, robot, paths, way):
+def test_touches_nothing_on_the_way(simulated_world, robot, paths, way):
     path = paths[way]
-    drive = KinematicDrive(simulation, robot)
+    drive = KinematicDrive(simulated_world, robot)
     drive.place_robot(level(path.start))
     drive.follow(path, None)
     while drive.step() is DriveStatus.MOVING:
-        assert simulation.touches() == ()
+        assert simulated_world.touches() == ()
 
 
-def test_small_and_large_steps_agree(simulation, robot, paths):
-    small, _ = follow(simulation, robot, paths["up"], time_step=0.05)
-    large, _ = follow(simulation, robot, paths["up"], time_step=0.2)
+def test_small_and_large_steps_agree(simulated_world, robot, paths):
+    small, _ = follow(simulated_world, robot, paths["up"], time_step=0.05)
+    large, _ = follow(simulated_world, robot, paths["up"], time_step=0.2)
     for k, pose in enumerate(large[:-1]):
         other = small[4 * k]
         assert (pose.x, pose.y, pose.z, pose.pitch) == pytest.approx(
@@ -167,31 +167,31 @@ def test_small_and_large_steps_agree(simulation, robot, paths):
     assert large[-1] == small[-1]
 
 
-def test_one_step_goes_over_many_short_motions(simulation, robot):
+def test_one_step_goes_over_many_short_motions(simulated_world, robot):
     robot = as_told(robot)
     corners = [Pose(x=5.05 + 0.01 * k, y=-2.05, z=-0.03, yaw=0.0) for k in range(6)]
     path = Path(corners[0], tuple(Motion(a, b) for a, b in pairwise(corners)))
-    poses, _ = follow(simulation, robot, path)
+    poses, _ = follow(simulated_world, robot, path)
     assert [p.x for p in poses] == pytest.approx([5.05, 5.09, 5.10])
 
 
-def test_turns_over_the_seam_of_angles(simulation, robot):
+def test_turns_over_the_seam_of_angles(simulated_world, robot):
     a = Pose(x=5.05, y=-2.05, z=-0.03, yaw=math.radians(170))
     b = a.model_copy(update={"yaw": math.radians(-170)})
-    poses, drive = follow(simulation, robot, Path(a, (Motion(a, b, turn=math.radians(20)),)))
+    poses, drive = follow(simulated_world, robot, Path(a, (Motion(a, b, turn=math.radians(20)),)))
     assert all(-math.pi < p.yaw <= math.pi for p in poses)
     assert drive.pose.yaw == pytest.approx(b.yaw)
 
 
-def test_arrives_at_once_without_motions(simulation, robot):
+def test_arrives_at_once_without_motions(simulated_world, robot):
     here = Pose(x=8.05, y=-2.05, z=-0.03, yaw=1.0)
-    poses, _ = follow(simulation, robot, Path(here, ()))
+    poses, _ = follow(simulated_world, robot, Path(here, ()))
     assert poses == [level(here), level(here)]
 
 
-def test_halt_stops_at_once(simulation, robot, paths):
+def test_halt_stops_at_once(simulated_world, robot, paths):
     path = paths["flat"]
-    drive = KinematicDrive(simulation, robot)
+    drive = KinematicDrive(simulated_world, robot)
     drive.place_robot(level(path.start))
     drive.follow(path, None)
     for _ in range(60):
@@ -204,8 +204,8 @@ def test_halt_stops_at_once(simulation, robot, paths):
     assert drive.pose == here
 
 
-def test_goes_on_from_where_it_was_halted(simulation, robot, paths, navigator, catalog):
-    drive = KinematicDrive(simulation, robot)
+def test_goes_on_from_where_it_was_halted(simulated_world, robot, paths, navigator, catalog):
+    drive = KinematicDrive(simulated_world, robot)
     drive.place_robot(level(paths["flat"].start))
     drive.follow(paths["flat"], None)
     lattice = navigator.lattice.state_poses()[:, :2]
@@ -279,17 +279,17 @@ def drive(x0, y0, z0, x1, y1, z1, yaw):
 
 
 @pytest.mark.parametrize("height", [0.0, 2.5, 12.5])
-def test_level_on_a_deck(simulation, robot, height):
-    poses = resting_poses(simulation, drive(1.9, 2.5, height, 1.9, 9.0, height, 90), robot)
+def test_level_on_a_deck(simulated_world, robot, height):
+    poses = resting_poses(simulated_world, drive(1.9, 2.5, height, 1.9, 9.0, height, 90), robot)
     assert max(abs(p.pitch) for p in poses) <= math.radians(0.5)
     assert max(abs(p.z - height) for p in poses) <= 0.002
     assert max(math.dist((a.x, a.y), (b.x, b.y)) for a, b in pairwise(poses)) <= STEP
     assert (poses[0].x, poses[0].y, poses[-1].x, poses[-1].y) == pytest.approx((1.9, 2.5, 1.9, 9.0))
 
 
-def test_level_all_round_while_turning(simulation, robot):
+def test_level_all_round_while_turning(simulated_world, robot):
     here = Pose(x=8.05, y=-2.05, z=-0.03, yaw=0.0)
-    poses = resting_poses(simulation, Motion(here, here, turn=3.0), robot)
+    poses = resting_poses(simulated_world, Motion(here, here, turn=3.0), robot)
     assert poses[-1].yaw - poses[0].yaw == pytest.approx(3.0)
     assert [p.z for p in poses] == pytest.approx([-0.03] * len(poses), abs=1e-6)
     assert [p.pitch for p in poses] == pytest.approx([0.0] * len(poses), abs=1e-6)
@@ -306,9 +306,9 @@ FLIGHTS = [
 
 
 @pytest.fixture(scope="module", params=range(len(FLIGHTS)), ids=str)
-def on_flight(request, simulation, robot):
+def on_flight(request, simulated_world, robot):
     motion = FLIGHTS[request.param]
-    return motion, resting_poses(simulation, motion, robot)
+    return motion, resting_poses(simulated_world, motion, robot)
 
 
 def test_pitch_in_the_middle_of_a_flight(on_flight):
@@ -326,10 +326,10 @@ def test_pitch_on_a_flight_is_bounded(on_flight):
     assert max(abs(p.pitch) for p in poses) <= math.radians(36)
 
 
-def test_body_keeps_to_the_surface_of_a_flight(on_flight, simulation):
+def test_body_keeps_to_the_surface_of_a_flight(on_flight, simulated_world):
     """Under the tracks' middle nothing rises into the body, and the ends stand on the flat."""
     _, poses = on_flight
-    above = above_ground(simulation, poses)
+    above = above_ground(simulated_world, poses)
     assert above.min() >= -0.02
     for end in (above[0], above[-1]):
         assert end == pytest.approx(0.0, abs=0.01)
@@ -342,39 +342,42 @@ def test_climb_is_monotonous(on_flight):
     assert rise.sum() == pytest.approx(abs(motion.end.z - motion.start.z), abs=0.005)
 
 
-def test_continues_where_the_previous_motion_ended(simulation, robot):
+def test_continues_where_the_previous_motion_ended(simulated_world, robot):
     """A flight that is driven in pieces, with seams anywhere, is climbed without jumps."""
     whole = FLIGHTS[1]
     seams = [whole.pose_at(share) for share in np.linspace(0.0, 1.0, 12)]
-    parts = [resting_poses(simulation, Motion(a, b), robot) for a, b in pairwise(seams)]
+    parts = [resting_poses(simulated_world, Motion(a, b), robot) for a, b in pairwise(seams)]
     for before, after in pairwise(parts):
         assert (after[0].z, after[0].pitch) == pytest.approx((before[-1].z, before[-1].pitch))
 
 
-def test_ground_of_a_cached_motion_is_not_probed_again(simulation, robot, monkeypatch):
+def test_ground_of_a_cached_motion_is_not_probed_again(simulated_world, robot, monkeypatch):
     cache = RestingPoseCache()
     motion = drive(1.9, 2.5, 2.5, 1.9, 9.0, 2.5, 90)
-    first = cache.resting_poses(simulation, motion, robot)
-    assert first == resting_poses(simulation, motion, robot)
+    first = cache.resting_poses(simulated_world, motion, robot)
+    assert first == resting_poses(simulated_world, motion, robot)
     monkeypatch.setattr(kinematic, "resting_poses", None)
-    assert cache.resting_poses(simulation, drive(1.9, 2.5, 2.5, 1.9, 9.0, 2.5, 90), robot) == first
+    assert (
+        cache.resting_poses(simulated_world, drive(1.9, 2.5, 2.5, 1.9, 9.0, 2.5, 90), robot)
+        == first
+    )
 
 
-def test_where_something_may_move_the_ground_is_probed_each_time(simulation, umad, robot):
+def test_where_something_may_move_the_ground_is_probed_each_time(simulated_world, umad, robot):
     """The ground is probed beside a checkpoint, and everywhere while there is a screen."""
     cache = RestingPoseCache()
     motion = drive(1.9, 2.5, 2.5, 1.9, 9.0, 2.5, 90)
-    level = cache.resting_poses(simulation, motion, robot)
-    number = simulation.add_screen("plank", Box((1.9, 6.0, 2.55), (1.0, 1.0, 0.1)), (1, 0, 0))
+    level = cache.resting_poses(simulated_world, motion, robot)
+    number = simulated_world.add_screen("plank", Box((1.9, 6.0, 2.55), (1.0, 1.0, 0.1)), (1, 0, 0))
     try:
-        assert max(p.z for p in cache.resting_poses(simulation, motion, robot)) > 2.59
+        assert max(p.z for p in cache.resting_poses(simulated_world, motion, robot)) > 2.59
     finally:
-        simulation.remove_screen(number)
-    assert cache.resting_poses(simulation, motion, robot) == level
+        simulated_world.remove_screen(number)
+    assert cache.resting_poses(simulated_world, motion, robot) == level
     x, y, z = umad.checkpoints[0].position
     beside = drive(x, y - 0.8, z - 0.4, x + 0.5, y - 0.8, z - 0.4, 0)
-    assert cache.resting_poses(simulation, beside, robot) is not cache.resting_poses(
-        simulation, beside, robot
+    assert cache.resting_poses(simulated_world, beside, robot) is not cache.resting_poses(
+        simulated_world, beside, robot
     )
 
 

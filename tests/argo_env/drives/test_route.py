@@ -122,6 +122,7 @@ def test_halt_stops_at_once_and_forgets_the_path():
     assert drive.pose == stopped
 
 
+@pytest.mark.physics
 def test_a_mission_goes_as_with_the_kinematic_drive(yard):
     mission = in_the_yard(measure(1), waypoint("A", 5.05, 2.05, velocity=0.2), measure(3))
     route, kinematic = (
@@ -158,7 +159,7 @@ def test_there_is_nothing_to_show_or_to_photograph(yard):
         simulated(mission, yard, drive="route", sensor="camera")
 
 
-def test_lines_of_sight_are_those_of_the_world(umad, robot, simulation):
+def test_lines_of_sight_are_those_of_the_world(umad, robot, simulated_world):
     """They agree with the geometry that plans views, and with rays in PyBullet."""
     paper, rng = WorldWithoutPhysics(umad, robot), np.random.default_rng(4)
     low, high = (0.0, 0.0, 0.1), (15.0, 10.0, 12.0)
@@ -170,7 +171,7 @@ def test_lines_of_sight_are_those_of_the_world(umad, robot, simulation):
         found = paper.obstacle_between(tuple(origin.tolist()), tuple(target.tolist()))
         assert (found is None) == bool(has_line_of_sight(umad, origin[None, :], target)[0])
         seen += found is None
-        hit = simulation.obstacle_between(tuple(origin.tolist()), tuple(target.tolist()))
+        hit = simulated_world.obstacle_between(tuple(origin.tolist()), tuple(target.tolist()))
         # A ray that begins inside of something, or meets a checkpoint, is another matter.
         same += found == hit or hit not in names
     assert 20 < seen < examples(600) - 20

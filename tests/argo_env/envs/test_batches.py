@@ -94,6 +94,7 @@ def test_masks_are_those_of_the_observation(make):
     assert np.array_equal(masks, observation["mask"])
 
 
+@pytest.mark.physics
 def test_methods_and_attributes_of_each(make):
     batch = make(DRIVE, processes=2)
     batch.reset(seed=SEED)
@@ -136,12 +137,14 @@ def test_continues_equally_from_a_state_and_in_a_copy(make, closing, id, duplica
     assert [rollouts.digest(plain(batch.step(actions))) for actions in plan] == there
 
 
+@pytest.mark.physics
 def test_a_copy_of_a_closed_one_is_closed(make):
     batch = make(DRIVE)
     batch.close()
     assert copy.deepcopy(batch).closed
 
 
+@pytest.mark.physics
 def test_invalid_states_are_refused(make):
     batch = make(DRIVE)
     batch.reset(seed=SEED)
@@ -150,6 +153,7 @@ def test_invalid_states_are_refused(make):
             batch.set_state(state)
 
 
+@pytest.mark.physics
 def test_closing_leaves_no_process(make, workers):
     batch = make(DRIVE, processes=2)
     batch.reset(seed=SEED)
@@ -161,6 +165,7 @@ def test_closing_leaves_no_process(make, workers):
         batch.reset()
 
 
+@pytest.mark.physics
 def test_a_garbage_collected_batch_leaves_no_process(yard_file, workers):
     batch = gym.make_vec(DRIVE, 2, scenario=yard_file)
     batch.reset(seed=SEED)
@@ -186,6 +191,7 @@ def test_errors_are_those_of_a_single_environment_with_the_place_in_the_worker(m
     assert trajectory(batch, 3) == before
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize("actions", [None, np.zeros(2), np.zeros((2, 3)), "abc"])
 def test_invalid_actions_change_nothing(make, actions):
     batch = make(DRIVE)
@@ -195,11 +201,13 @@ def test_invalid_actions_change_nothing(make, actions):
     batch.step(np.zeros((3, 3), np.float32))
 
 
+@pytest.mark.physics
 def test_a_step_before_a_reset_is_refused(make):
     with pytest.raises(gym.error.ResetNeeded):
         make(DRIVE).step(np.zeros((3, 3), np.float32))
 
 
+@pytest.mark.physics
 def test_a_wrong_number_of_seeds_is_refused(make):
     with pytest.raises(ValueError, match="3 environments"):
         make(DRIVE).reset(seed=[1, 2])
@@ -219,6 +227,7 @@ def test_arguments_are_refused_before_any_process_starts(make, arguments, kind, 
     assert not workers()
 
 
+@pytest.mark.physics
 def test_a_dead_process_is_reported_once_and_ends_the_batch(make, workers):
     batch = make(DRIVE, processes=2)
     batch.reset(seed=SEED)

@@ -268,6 +268,7 @@ def test_batches_of_gymnasium(id, small, closing):
 # -- objects that hold a simulator
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize("method", sorted(METHODS))
 @pytest.mark.parametrize(
     "kind", ["World", "Scene", "TrackedBody", "TrackedDrive", "KinematicDrive"]
@@ -287,6 +288,7 @@ def test_copies_of_simulators_are_refused_with_the_reason(yard_file, robot, meth
         assert isinstance(caught.value, TypeError)
 
 
+@pytest.mark.physics
 def test_garbage_collected_connections_end(yard_file, robot):
     """PyBullet has 1,024; a search that copies environments does not close all of them."""
     import gc

@@ -13,6 +13,8 @@ from argo_env.envs.drive import CONTACT, GOAL, PROGRESS, TIME, TIPPING
 from argo_env.envs.expert import Expert
 from tests.argo_env.envs.rollouts import digest
 
+pytestmark = pytest.mark.physics
+
 
 @pytest.fixture(scope="module")
 def env():

@@ -132,6 +132,7 @@ def test_a_site_with_too_many_checkpoints_is_refused():
         gym.make("argo/Inspect-v0", drive="flying", disable_env_checker=True)
 
 
+@pytest.mark.physics
 def test_the_kinematic_drive_finds_what_blocks_the_stairs(begin):
     blocked = {"kind": "blocked_stairs", "tower": "west tower", "floor": 1}
     env, observation, info = begin(blocked, drive="kinematic", floor=2)
@@ -146,6 +147,7 @@ def test_the_kinematic_drive_finds_what_blocks_the_stairs(begin):
     assert observation["noticed"].sum() == 1
 
 
+@pytest.mark.physics
 def test_after_the_platform_alarm_only_docks_are_legal(begin):
     alarm = {"kind": "platform_alarm", "at": 5.0}
     env, observation, _ = begin(alarm, drive="kinematic", floor=1)
@@ -202,6 +204,7 @@ class TestEpisodeAsRun:
         assert [m.trouble for m in env.record().mishaps] == [Trouble.SLIPPING]
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize("mode", ["sync", "async"])
 def test_a_batch_equals_single_environments(make, yard_file, mode):
     """It may use other processes, to which spaces and observations are sent."""

@@ -422,6 +422,7 @@ def test_a_batch_counts_visited_checkpoints():
     assert not differs(batch.render()[0][:HEAD], single.render()[:HEAD])
 
 
+@pytest.mark.physics
 def test_a_drive_is_drawn_with_its_goal(yard_file):
     env = DriveEnv(yard_file, render_mode="rgb_array")
     env.reset(seed=1)

@@ -66,6 +66,7 @@ def test_a_refused_number_of_seeds_leaves_the_options():
     assert info["instance"].tolist() == before["instance"].tolist() != [7, 7]
 
 
+@pytest.mark.physics
 def test_drive_continues_after_refused_options(yard_file):
     env = DriveEnv(yard_file)
     env.reset(seed=1)
@@ -239,6 +240,7 @@ def test_errors_of_faults_name_only_the_mistake(yard_file, faults, words):
         env.reset(options={"faults": faults})
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize(
     ("kind", "options", "words"),
     [

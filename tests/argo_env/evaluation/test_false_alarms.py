@@ -28,6 +28,7 @@ def nominal(checkpoint: int):
     return open_site("umad").site.checkpoint(checkpoint).nominal
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize(
     "world",
     [
@@ -62,6 +63,7 @@ def test_a_value_that_only_noise_makes_abnormal_is_a_false_alarm(mission):
     assert all(row.false_alarms == row.abnormal for row in rows)
 
 
+@pytest.mark.physics
 def test_a_finding_does_not_count_for_a_fault_elsewhere():
     site = open_site("umad")
     path = FAULTS / "ground.txt"

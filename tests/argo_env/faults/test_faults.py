@@ -305,6 +305,7 @@ class TestChangedSite:
         assert lost == pytest.approx(plated.mean() * (x1 - x0) * (y1 - y0) * 0.04, rel=0.02)
         assert [e.name for e in changed.elements] == [e.name for e in umad.elements]
 
+    @pytest.mark.physics
     def test_the_world_has_the_hole_and_the_map_has_not(self, umad, robot):
         hole = {"kind": "missing_plate", "floor": 2, "rect": [1.5, 4.6, 2.1, 5.2]}
         brick = {"kind": "brick", "floor": 2, "place": [9.0, 1.6], "yaw": 30.0}
@@ -320,6 +321,7 @@ class TestChangedSite:
             assert world.obstacle_between((9.0, 1.0, 2.8), (9.0, 2.0, 2.8)) is None
         assert "brick" not in {e.name for e in umad.elements}
 
+    @pytest.mark.physics
     def test_barriers_stand_at_both_ends_of_a_stairway(self, umad, robot):
         (fault,) = resolve_faults(
             faults_of({"kind": "blocked_stairs", "tower": "west tower", "floor": 1}), umad, 0

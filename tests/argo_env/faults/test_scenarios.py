@@ -15,6 +15,8 @@ from tests.campaigns.faults import random_mission
 from tests.conftest import seeds
 from tests.yard import Watching, simulated
 
+pytestmark = pytest.mark.physics
+
 FOLDER = resources.scenarios_folder() / "umad" / "faults"
 SEED = 3
 

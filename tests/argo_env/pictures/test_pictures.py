@@ -63,6 +63,7 @@ def test_a_film_is_an_mp4_or_a_gif(tmp_path, name):
         check_film(tmp_path / name)
 
 
+@pytest.mark.physics
 def test_a_film_needs_an_existing_folder_and_a_name_that_is_no_folder(tmp_path):
     with pytest.raises(ArgoError, match=r"folder .* does not exist"):
         check_film(tmp_path / "none" / "film.gif")
@@ -71,6 +72,7 @@ def test_a_film_needs_an_existing_folder_and_a_name_that_is_no_folder(tmp_path):
         check_film(tmp_path / "folder.gif")
 
 
+@pytest.mark.physics
 def test_without_the_extra_an_mp4_is_refused_and_a_gif_is_not(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
     with pytest.raises(ArgoError, match=r"needs imageio-ffmpeg: pip install .*\[film\].*, or name"):
@@ -83,6 +85,7 @@ def test_every_element_is_in_a_storey(umad):
     assert drawn == {e.name for e in umad.elements}
 
 
+@pytest.mark.physics
 def test_floors_above_are_hidden(scene):
     # The camera looks straight down on the south aisle of floor 2, which is above the slab.
     camera = Camera((6.0, 1.5, 30.0), (6.0, 1.6, 0.0), (60, 60), 3.0)
@@ -93,6 +96,7 @@ def test_floors_above_are_hidden(scene):
     assert heights == pytest.approx({6: 12.5, 2: 2.5, 1: 0.0}, abs=0.1)
 
 
+@pytest.mark.physics
 def test_projection_inverts_unprojection(scene):
     scene.show_floors(6)
     camera = Camera((-16.0, -22.0, 17.0), (8.0, 5.0, 6.0), (200, 150), 40.0, near=5.0)
@@ -104,6 +108,7 @@ def test_projection_inverts_unprojection(scene):
     assert pixels[120, 30, :2] == pytest.approx([30.5, 120.5])
 
 
+@pytest.mark.physics
 def test_the_robot_is_in_the_middle_of_the_frame(scene, robot):
     pose = BodyPose(8.0, -2.0, -0.03, 0.0)
     chase = ChaseCamera(scene, (120, 80), 0.1)
@@ -138,6 +143,7 @@ def test_flippers_lie_flat_on_stairs(record, robot):
     assert (flat, stairs) == (pytest.approx(30.0), 0.0)
 
 
+@pytest.mark.physics
 def test_the_overview_shows_the_path_in_its_colours(record, umad, robot, tmp_path, monkeypatch):
     monkeypatch.setattr(overview, "SIZE", (800, 600))
     monkeypatch.setattr(overview, "_SHADOW_MAP", 400)
@@ -157,6 +163,7 @@ def test_the_overview_shows_the_path_in_its_colours(record, umad, robot, tmp_pat
         assert [red, green, blue] == pytest.approx(given, abs=24)
 
 
+@pytest.mark.physics
 def test_a_gif_has_a_frame_for_each_time(record, umad, robot, tmp_path):
     done = []
     for name in ("a.gif", "b.gif"):
@@ -222,6 +229,7 @@ def test_the_last_frames_show_the_verdict(record, umad, robot, tmp_path):
         assert differs[145:].max() < 0.05
 
 
+@pytest.mark.physics
 def test_an_mp4_has_a_frame_for_each_time(record, umad, robot, tmp_path):
     imageio_ffmpeg = pytest.importorskip("imageio_ffmpeg")
     file = tmp_path / "film.mp4"
@@ -233,12 +241,14 @@ def test_an_mp4_has_a_frame_for_each_time(record, umad, robot, tmp_path):
     assert imageio_ffmpeg.count_frames_and_secs(str(file))[0] == 8 + 8
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize("wrong", [{"speed": 0.0}, {"speed": math.nan}, {"size": (121, 80)}])
 def test_invalid_numbers_for_a_film_are_refused(record, umad, robot, tmp_path, wrong):
     with pytest.raises(ArgoError, match="a film needs"):
         write_film(record, umad, robot, tmp_path / "film.gif", **wrong)
 
 
+@pytest.mark.physics
 def test_a_record_of_another_site_is_refused(record, umad, robot, tmp_path):
     other = record.model_copy(update={"site": "elsewhere"})
     with pytest.raises(ArgoError, match="elsewhere"):
@@ -296,6 +306,7 @@ def test_a_composed_view_is_equal_to_a_rendered_one(umad, robot, whole, alone, x
     assert (composed.dark != dark).mean() < 1e-4
 
 
+@pytest.mark.physics
 def test_the_view_of_a_site_is_rendered_once(umad, robot, tmp_path, monkeypatch):
     monkeypatch.setenv(cache.VARIABLE, str(tmp_path))
     camera, sun = site_camera(umad, (80, 60)), sun_camera(umad, 50)
@@ -307,6 +318,7 @@ def test_the_view_of_a_site_is_rendered_once(umad, robot, tmp_path, monkeypatch)
     assert (again.dark == first.dark).all()
 
 
+@pytest.mark.physics
 def test_another_site_or_camera_has_another_view(umad, robot, tmp_path, monkeypatch):
     monkeypatch.setenv(cache.VARIABLE, str(tmp_path))
     camera, sun = site_camera(umad, (80, 60)), sun_camera(umad, 50)

@@ -50,6 +50,7 @@ def test_what_the_sheets_take_at_least_is_shown(shipped, catalog, travel, sheet,
     assert found.witnesses.least.time.end == pytest.approx(found.duration.least.value)
 
 
+@pytest.mark.physics
 def test_velocities_count_for_the_way_to_the_task(navigator, catalog, travel):
     start = Task(name="S", action=Action.START)
     tasks = in_order(start, measure(1, velocity=0.2), measure(4, velocity=0.8))

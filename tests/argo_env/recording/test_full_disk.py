@@ -26,6 +26,7 @@ def record_on(disk, navigator, *observers, spec=SPEC):
     return record, warnings, recorder.loss
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize("share", [0.4, 0.8, 1.0])
 def test_a_recording_ends_where_the_disk_is_full(recorded, yard, share) -> None:
     pages = int(share * (len(recorded.content) - 1) / _PAGE)
@@ -42,6 +43,7 @@ def test_a_recording_ends_where_the_disk_is_full(recorded, yard, share) -> None:
     assert recording.readings == record.readings[: len(recording.readings)]
 
 
+@pytest.mark.physics
 def test_a_run_succeeds_on_a_disk_that_is_full_from_the_first_step_on(yard) -> None:
     with small_disk(_PAGE) as disk:
         record, warnings, loss = record_on(disk, yard, spec=SHORT)
@@ -61,6 +63,7 @@ def test_a_best_effort_recorder_has_all_methods_of_observers() -> None:
     assert {n for n in vars(Observer) if n.startswith("on_")} <= vars(BestEffortRecorder).keys()
 
 
+@pytest.mark.physics
 def test_a_recording_has_no_gap_if_space_becomes_free_again(recorded, yard) -> None:
     with small_disk(int(0.9 * len(recorded.content))) as disk:
         (disk / "other").write_bytes(bytes(len(recorded.content) // 3))
@@ -75,6 +78,7 @@ def test_a_recording_has_no_gap_if_space_becomes_free_again(recorded, yard) -> N
     assert loss.startswith(f"it ends at {recording.until:g} s")
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize("kind", ["missing", "pipe"])
 def test_a_run_is_recorded_without_a_source_that_can_not_be_read(yard, tmp_path, kind) -> None:
     source, warnings = tmp_path / "plan.txt", []
@@ -87,6 +91,7 @@ def test_a_run_is_recorded_without_a_source_that_can_not_be_read(yard, tmp_path,
     assert re.match(r".*plan\.txt is not recorded with the run: ", warning)
 
 
+@pytest.mark.physics
 def test_all_files_of_a_folder_are_recorded_as_the_source(yard, tmp_path) -> None:
     bag = tmp_path / "bag"
     bag.mkdir()

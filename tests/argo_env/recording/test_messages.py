@@ -28,6 +28,8 @@ from argo_env.site.urdf import COLOURS
 from argo_env.world.world import World
 from tests.argo_env.recording.conftest import SPEC
 
+pytestmark = pytest.mark.physics
+
 FOXGLOVE = {
     "/tf": "FrameTransforms",
     "/tf_limbs": "FrameTransforms",

@@ -21,6 +21,8 @@ from tests.argo_env.recording.conftest import PLAN, SPEC
 from tests.conftest import examples
 from tests.yard import Watching, cut, opened
 
+pytestmark = pytest.mark.physics
+
 EMPTY = b"\x89MCAP0\r\n"
 
 

@@ -5,7 +5,6 @@ import math
 import shutil
 
 import numpy as np
-import pybullet
 import pytest
 import yourdfpy
 from hypothesis import given, settings
@@ -23,6 +22,7 @@ from argo_env.robot.robot_model import add_vectors, from_rpy, multiply, read_mod
 from argo_env.robot.spec import RobotSpec, load_robot, robot_folder
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
+from argo_env.world.pybullet_client import pybullet
 from tests.conftest import examples
 
 CHECKPOINTS = sorted(p.stem for p in (resources.urdf_folder() / "checkpoints").glob("*.urdf"))
@@ -253,6 +253,7 @@ def test_a_joint_that_the_model_does_not_have():
         open_site("darmstadt", robot.model_copy(update={"urdf": "rover.urdf"}))
 
 
+@pytest.mark.physics
 def test_an_arm_that_does_not_turn_reads_as_the_ideal_sensor_does_and_aims_no_camera():
     site = open_site("darmstadt", without("arm_yaw", "arm_stowed", "arm_raised"))
     mission = Mission(tasks=(Task(name="A", action="MEASURE", object_id="1"),))
@@ -307,6 +308,7 @@ def test_links_are_where_pybullet_has_them(body, data) -> None:
         )
 
 
+@pytest.mark.physics
 @settings(deadline=None, max_examples=examples(50))
 @given(st.tuples(angles, angles, angles))
 def test_rpy_means_what_it_means_to_pybullet_also_where_a_body_is_recorded(rpy) -> None:

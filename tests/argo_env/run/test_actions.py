@@ -121,6 +121,7 @@ class TestReadingLimit:
 
 
 class TestJoints:
+    @pytest.mark.physics
     @pytest.mark.rule("T10")
     def test_joints_of_the_arm_are_moved_and_others_are_named(self, yard):
         joint = min(yard.robot.arm_raised)

@@ -111,6 +111,7 @@ def test_a_profile_of_no_checkpoint_is_refused_first():
         run(values={99: {"drift": 1.0}})
 
 
+@pytest.mark.physics
 def test_friction_is_felt_by_the_tracked_drive_alone():
     there = START.model_copy(update={"x": START.x + 1.0})
     drive = from_place(START, Task(name="THERE", action=Action.WAYPOINT, pose=there))

@@ -355,6 +355,7 @@ def test_whatever_occurs(yard, events, answers, limit):
         assert math.dist((a.x, a.y), (b.x, b.y)) <= yard.robot.speed * (b.t - a.t) + 0.15
 
 
+@pytest.mark.physics
 def test_in_the_world(yard):
     """A reaction does the same with the simulated drive, sensor and contacts."""
     plan = mission(

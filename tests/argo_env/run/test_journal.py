@@ -366,6 +366,7 @@ def test_contacts_go_on_as_well(yard, path):
             assert contact.start == before.start or before.start > reached
 
 
+@pytest.mark.physics
 def test_simulate_and_resume_in_the_world(yard, path):
     plan = mission(measure(1), measure(2), end_area=1)
     reference = simulated(plan, yard, seed=4, values={2: 4.0}, journal=path)

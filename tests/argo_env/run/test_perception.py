@@ -297,6 +297,7 @@ class TestResumed:
         assert self.look(yard, told, obstacle(2.3, 2.2), 900.0) == ()
         assert len(self.look(yard, told, obstacle(4.0, 2.0), 100.5)) == 1
 
+    @pytest.mark.physics
     def test_the_whole_run(self, whole):
         _, record = whole
         assert sorted(a.kind for a in record.anomalies) == sorted(
@@ -307,10 +308,12 @@ class TestResumed:
         )  # fmt: skip
         assert record.result.success
 
+    @pytest.mark.physics
     def test_the_same_again(self, yard, whole):
         _, record = whole
         assert simulated(record.mission, yard, seed=4, faults=FAULTS) == record
 
+    @pytest.mark.physics
     @pytest.mark.parametrize("share", [0.1, 0.3, 0.5, 0.8, 0.97])
     def test_a_run_that_was_cut_short(self, yard, whole, tmp_path, share):
         path, record = whole
@@ -324,6 +327,7 @@ class TestResumed:
         assert again.contacts == ()
         assert again.path[-1].charge == pytest.approx(record.path[-1].charge, abs=0.01)
 
+    @pytest.mark.physics
     def test_further_events_are_given_on_resuming_and_kept(self, yard, whole, tmp_path):
         path, _ = whole
         part = tmp_path / "cut.journal"
@@ -410,6 +414,7 @@ class TestResumedWhileItWaits:
         assert [a.t for a in again.anomalies] == [a.t for a in whole.anomalies] == [1.0, 10.1]
 
 
+@pytest.mark.physics
 class TestStandingStill:
     def run(self, yard, *faults, more=(), **fields):
         plan = mission(waypoint("A", 5.05, 2.55), *more, **fields)

@@ -24,6 +24,8 @@ from argo_env.run.simulation import SAMPLE_PERIOD
 from tests.mission_writing import above, way
 from tests.yard import Watching, from_place, in_order, measure, resumed, simulated
 
+pytestmark = pytest.mark.physics
+
 FRONT = Pose(x=8.05, y=-2.05, z=-0.03, yaw=0.0)
 
 

@@ -134,6 +134,7 @@ def whole(site):
     return runs
 
 
+@pytest.mark.physics
 class TestPausing:
     def pause(self, site, drive, at, pause):
         with simulation_of(spec_of(drive), site) as simulation:

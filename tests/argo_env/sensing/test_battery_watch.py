@@ -27,6 +27,7 @@ def reaction(level):
     )
 
 
+@pytest.mark.physics
 @pytest.mark.rule("R11")
 @pytest.mark.parametrize(("level", "low"), [(None, False), (0.4, False), (0.6, True)])
 def test_a_mission_states_below_which_charge_the_battery_is_low(yard, level, low):
@@ -35,6 +36,7 @@ def test_a_mission_states_below_which_charge_the_battery_is_low(yard, level, low
     assert (EventKind.LOW_BATTERY in {a.kind for a in record.anomalies}) == low
 
 
+@pytest.mark.physics
 @pytest.mark.parametrize(("fault", "charge"), [(0.5, 0.3), (0.2, 0.2)])
 def test_a_low_battery_never_raises_the_charge(yard, fault, charge):
     spec = RunConditions(charge=0.3)

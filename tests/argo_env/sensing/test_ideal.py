@@ -18,8 +18,8 @@ def truth(umad):
 
 
 @pytest.fixture(scope="module")
-def sensor(simulation, robot, truth):
-    return IdealSensor(simulation, robot, truth)
+def sensor(simulated_world, robot, truth):
+    return IdealSensor(simulated_world, robot, truth)
 
 
 def in_front_of(umad, robot, id, distance, degrees=0.0):

@@ -3,13 +3,13 @@
 import math
 
 import numpy as np
-import pybullet
 import pytest
 import trimesh
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from argo_env.site.shapes import Box, Cylinder, crossing, half_extents
+from argo_env.world.pybullet_client import pybullet
 
 angles = st.one_of(st.sampled_from([0.0, math.pi / 2, -math.pi / 2, math.pi]), st.floats(-3.1, 3.1))
 triples = st.tuples(*[st.floats(-2.0, 2.0)] * 3)
@@ -35,6 +35,7 @@ def contains(solid, places, slack):
     return (across <= solid.radius + slack) & (np.abs(local[..., 2]) <= solid.length / 2 + slack)
 
 
+@pytest.mark.physics
 @given(solids, points, points)
 @settings(max_examples=150, deadline=None)
 def test_crossing_is_where_the_line_is_inside(solid, start, end):
@@ -110,6 +111,7 @@ def first_inside(solid, start, end, low, high):
     return inside * np.linalg.norm(end - start)
 
 
+@pytest.mark.physics
 @given(solids)
 @settings(max_examples=100, deadline=None)
 def test_half_extents_bound_the_solid(solid):
@@ -126,6 +128,7 @@ def test_half_extents_bound_the_solid(solid):
     assert np.abs((mesh.bounds[1] - mesh.bounds[0]) / 2 - half).max() <= coarse + 1e-6
 
 
+@pytest.mark.physics
 def test_a_ray_that_grazes_a_cylinder_meets_it_where_the_line_does():
     """PyBullet's own ray ends 3.9 mm too early, 0.3 mm from the surface."""
     solid = Cylinder((0.0, 0.0, 0.0), 0.6035, 1.0, (0.0, 1.75, 1.25))

@@ -12,6 +12,8 @@ from argo_env.world.placement import Placement
 from argo_env.world.world import World
 from tests.conftest import examples
 
+pytestmark = pytest.mark.physics
+
 WALKS, STEPS = examples(12), 120
 
 

@@ -10,6 +10,8 @@ from argo_compiler.base.errors import ArgoError
 from argo_env.robot.pose import BodyPose
 from argo_env.world.world import World
 
+pytestmark = pytest.mark.physics
+
 
 def touched(world, x, y, z, degrees=0.0, pitch=0.0):
     world.place_robot(BodyPose(x, y, z, math.radians(degrees), pitch))
@@ -17,16 +19,16 @@ def touched(world, x, y, z, degrees=0.0, pitch=0.0):
 
 
 @pytest.mark.parametrize("area", [1, 2])
-def test_touches_nothing_in_a_docking_station(simulation, umad, area):
+def test_touches_nothing_in_a_docking_station(simulated_world, umad, area):
     dock = umad.docks[area]
-    assert touched(simulation, dock.x, dock.y, dock.z, math.degrees(dock.yaw)) == set()
+    assert touched(simulated_world, dock.x, dock.y, dock.z, math.degrees(dock.yaw)) == set()
 
 
 @pytest.mark.parametrize(
     ("x", "y", "z", "degrees"), [(1.9, 6.0, 2.5, 90), (8.0, 1.6, 12.5, 0), (8.0, 1.6, 0.0, 33)]
 )
-def test_standing_on_the_ground_is_no_contact(simulation, x, y, z, degrees):
-    assert touched(simulation, x, y, z, degrees) == set()
+def test_standing_on_the_ground_is_no_contact(simulated_world, x, y, z, degrees):
+    assert touched(simulated_world, x, y, z, degrees) == set()
 
 
 @pytest.mark.parametrize(
@@ -42,86 +44,86 @@ def test_standing_on_the_ground_is_no_contact(simulation, x, y, z, degrees):
         (6.0, 1.0, 0.9, "pressure gauge 1"),
     ],
 )
-def test_touch_names_the_element(simulation, x, y, z, element):
-    assert element in touched(simulation, x, y, z)
+def test_touch_names_the_element(simulated_world, x, y, z, element):
+    assert element in touched(simulated_world, x, y, z)
 
 
-def test_a_touch_has_its_point_and_depth(simulation):
+def test_a_touch_has_its_point_and_depth(simulated_world):
     # The hull reaches 0.35 m ahead of the origin; the fence's rails are 4 cm thick.
-    simulation.place_robot(BodyPose(4.0, 0.42, 0.0, math.radians(-90)))
-    touches = [t for t in simulation.touches() if t.link == "base_link"]
+    simulated_world.place_robot(BodyPose(4.0, 0.42, 0.0, math.radians(-90)))
+    touches = [t for t in simulated_world.touches() if t.link == "base_link"]
     assert {t.element for t in touches} == {"floor 1 fence south-west"}
     # The shortest way out is 5 cm back, or 3 cm down from the knee rail.
     assert 0.025 <= max(t.depth for t in touches) <= 0.055
     for touch in touches:
         assert touch.point[1] == pytest.approx(0.1, abs=0.06)
         assert 3.7 <= touch.point[0] <= 4.3
-    simulation.place_robot(BodyPose(4.0, 0.63, 0.0, math.radians(-90)))
-    assert simulation.touches() == ()
+    simulated_world.place_robot(BodyPose(4.0, 0.63, 0.0, math.radians(-90)))
+    assert simulated_world.touches() == ()
 
 
-def test_tracks_stand_where_the_body_must_not(simulation):
+def test_tracks_stand_where_the_body_must_not(simulated_world):
     """A robot that is sunk into the slab touches it with its base."""
-    assert touched(simulation, 8.0, 1.6, -0.1) == set()
-    assert touched(simulation, 8.0, 1.6, -0.15) == {"floor 1 slab"}
+    assert touched(simulated_world, 8.0, 1.6, -0.1) == set()
+    assert touched(simulated_world, 8.0, 1.6, -0.15) == {"floor 1 slab"}
 
 
-def test_raised_arm_touches_what_is_above(simulation, robot):
+def test_raised_arm_touches_what_is_above(simulated_world, robot):
     # At the separator's end, at the height of its axis.
-    simulation.set_arm_degrees(robot.arm_raised)
+    simulated_world.set_arm_degrees(robot.arm_raised)
     try:
-        simulation.place_robot(BodyPose(3.25, 4.2, 0.0, 0.0))
-        links = {t.link for t in simulation.touches() if t.element == "separator V-201"}
+        simulated_world.place_robot(BodyPose(3.25, 4.2, 0.0, 0.0))
+        links = {t.link for t in simulated_world.touches() if t.element == "separator V-201"}
         assert "sensor_head" in links
     finally:
-        simulation.set_arm_degrees(robot.arm_stowed)
+        simulated_world.set_arm_degrees(robot.arm_stowed)
 
 
-def test_a_robot_that_leans_to_its_left_touches_what_is_there(simulation, robot):
-    simulation.set_arm_degrees(robot.arm_raised)
+def test_a_robot_that_leans_to_its_left_touches_what_is_there(simulated_world, robot):
+    simulated_world.set_arm_degrees(robot.arm_raised)
     try:
         for roll, leans in ((-0.3, {"separator V-201"}), (0.0, set()), (0.3, set())):
-            simulation.place_robot(BodyPose(3.5, 3.2, 0.0, 0.0, roll=roll))
-            touches = [t for t in simulation.touches() if t.link in {"forearm", "sensor_head"}]
+            simulated_world.place_robot(BodyPose(3.5, 3.2, 0.0, 0.0, roll=roll))
+            touches = [t for t in simulated_world.touches() if t.link in {"forearm", "sensor_head"}]
             assert {t.element for t in touches} == leans
     finally:
-        simulation.set_arm_degrees(robot.arm_stowed)
+        simulated_world.set_arm_degrees(robot.arm_stowed)
 
 
-def test_obstacle_between_names_the_first_thing(simulation):
-    clear = simulation.obstacle_between((4.0, 2.0, 1.5), (4.0, 1.0, 1.5))
+def test_obstacle_between_names_the_first_thing(simulated_world):
+    clear = simulated_world.obstacle_between((4.0, 2.0, 1.5), (4.0, 1.0, 1.5))
     assert clear is None
-    through = simulation.obstacle_between((2.0, 7.7, 1.0), (14.0, 7.7, 1.0))
+    through = simulated_world.obstacle_between((2.0, 7.7, 1.0), (14.0, 7.7, 1.0))
     assert through == "contactor V-101"
-    back = simulation.obstacle_between((14.0, 7.7, 1.0), (2.0, 7.7, 1.0))
+    back = simulated_world.obstacle_between((14.0, 7.7, 1.0), (2.0, 7.7, 1.0))
     assert back in {"riser 10", "regenerator V-102"}
-    assert simulation.obstacle_between((8.0, 1.6, 1.0), (8.0, 1.6, -1.0)) == "floor 1 slab"
-    assert simulation.obstacle_between((6.0, 2.0, 1.2), (6.0, 0.7, 1.2)) == "pressure gauge 1"
+    assert simulated_world.obstacle_between((8.0, 1.6, 1.0), (8.0, 1.6, -1.0)) == "floor 1 slab"
+    assert simulated_world.obstacle_between((6.0, 2.0, 1.2), (6.0, 0.7, 1.2)) == "pressure gauge 1"
 
 
-def test_robot_is_no_obstacle(simulation):
-    simulation.place_robot(BodyPose(8.0, 1.6, 0.0, 0.0))
-    assert simulation.obstacle_between((8.0, 2.5, 0.4), (8.0, 0.7, 0.4)) is None
+def test_robot_is_no_obstacle(simulated_world):
+    simulated_world.place_robot(BodyPose(8.0, 1.6, 0.0, 0.0))
+    assert simulated_world.obstacle_between((8.0, 2.5, 0.4), (8.0, 0.7, 0.4)) is None
 
 
-def test_heights(simulation):
+def test_heights(simulated_world):
     points = np.array([[8.0, 1.6], [8.0, -2.0], [1.9, 6.0], [0.85, 3.65], [4.0, 6.0]])
     below = np.array([1.0, 1.0, 3.0, 1.0, 12.0])
     # The slab, the gravel, floor 2, the first tread, and the void above all vessels' tops.
-    heights = simulation.surface_or_ray_end_heights(points, below)
+    heights = simulated_world.surface_or_ray_end_heights(points, below)
     assert heights == pytest.approx([0.0, -0.03, 2.5, 0.178571, 10.0], abs=1e-4)
 
 
-def test_heights_of_more_points_than_a_batch_holds(simulation):
+def test_heights_of_more_points_than_a_batch_holds(simulated_world):
     points = np.tile([[8.0, 1.6], [8.0, -2.0]], (10_000, 1))
-    heights = simulation.surface_or_ray_end_heights(points, np.ones(len(points)))
+    heights = simulated_world.surface_or_ray_end_heights(points, np.ones(len(points)))
     assert heights[::2] == pytest.approx(np.zeros(10_000), abs=1e-4)
     assert heights[1::2] == pytest.approx(np.full(10_000, -0.03), abs=1e-4)
 
 
-def test_heights_look_through_the_robot(simulation):
-    simulation.place_robot(BodyPose(8.0, 1.6, 0.0, 0.0))
-    assert simulation.surface_or_ray_end_heights(
+def test_heights_look_through_the_robot(simulated_world):
+    simulated_world.place_robot(BodyPose(8.0, 1.6, 0.0, 0.0))
+    assert simulated_world.surface_or_ray_end_heights(
         np.array([[8.0, 1.6]]), np.array([1.5])
     ) == pytest.approx(0.0)
 

@@ -124,6 +124,7 @@ def test_totals_state_which_times_are_unknown(site):
         preview_mission(site, Mission(site="umad", tasks=(broken,)))
 
 
+@pytest.mark.physics
 def test_previews_and_runs_avoid_an_obstacle_alike(site):
     start, goal = Pose(x=4.0, y=1.5, z=0.0), Pose(x=4.0, y=10.0, z=0.0, yaw=1.57)
     free = preview_path(site, start, goal)

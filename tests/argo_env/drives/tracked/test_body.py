@@ -10,6 +10,8 @@ from argo_env.navigation.path import wrap
 from argo_env.robot.pose import BodyPose
 from tests.processes import run_python
 
+pytestmark = pytest.mark.physics
+
 GRAVEL = BodyPose(5.0, -2.05, -0.03, 0.0)
 RISE, GOING = 0.178571, 0.28
 SLOPE = math.atan2(RISE, GOING)

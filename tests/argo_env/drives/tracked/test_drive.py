@@ -14,6 +14,8 @@ from benchmarks.tracked import plan_stair_path
 from tests.argo_env.drives.test_route import level
 from tests.yard import simulated
 
+pytestmark = pytest.mark.physics
+
 
 def at(x, y, z, degrees=0.0):
     return Pose(x=x, y=y, z=z, yaw=math.radians(degrees))

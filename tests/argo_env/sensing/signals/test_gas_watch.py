@@ -1,6 +1,7 @@
 """Gas leaks are detected by the gas or by the hiss; each and its end are reported once."""
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -11,6 +12,8 @@ from argo_env.sensing.watch import ReportedDetection
 from argo_env.surroundings import GasLeak, Surroundings, Weather
 from tests.argo_env.sensing.signals.plant import Z, detections_along, lane
 from tests.conftest import examples
+
+pytestmark = pytest.mark.physics
 
 STAY = [(float(t), BodyPose(8.0, 2.0, Z, 0.0)) for t in range(400)]
 

@@ -14,6 +14,8 @@ from argo_env.surroundings import HotSpot, Surroundings
 from tests.argo_env.sensing.signals.plant import Z, detections_along, lane
 from tests.conftest import examples
 
+pytestmark = pytest.mark.physics
+
 AIR = 20.0
 
 

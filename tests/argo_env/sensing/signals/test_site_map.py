@@ -9,7 +9,7 @@ REACH = 5.0
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_rays_on_the_map_end_where_they_do_in_the_world(umad, simulation, navigator, seed):
+def test_rays_on_the_map_end_where_they_do_in_the_world(umad, simulated_world, navigator, seed):
     rng = np.random.default_rng(seed)
     positions = navigator.surface.cell_positions()
     origin = positions[rng.integers(len(positions))] + [0.0, 0.0, rng.uniform(0.3, 0.9)]
@@ -17,7 +17,7 @@ def test_rays_on_the_map_end_where_they_do_in_the_world(umad, simulation, naviga
     around, up = turn + rng.uniform(-spread, spread, 150), rng.uniform(-1.2, 0.8, 150)
     rays = np.column_stack([np.cos(around) * np.cos(up), np.sin(around) * np.cos(up), np.sin(up)])
     on_map, solids = SiteMap(umad).cast_rays(origin, rays, REACH)
-    in_world = simulation.hit_distances_or_inf(tuple(origin.tolist()), origin + REACH * rays)
+    in_world = simulated_world.hit_distances_or_inf(tuple(origin.tolist()), origin + REACH * rays)
     differ = np.abs(np.minimum(on_map, REACH) - np.minimum(in_world, REACH)) > 0.01
     # The bodies of checkpoints are not on the map, and edges differ slightly.
     assert differ.sum() <= 0.05 * len(rays)

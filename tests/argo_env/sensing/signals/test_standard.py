@@ -1,9 +1,13 @@
 """All watches together: equal seeds give equal detections, and a clean plant gives none."""
 
+import pytest
+
 from argo_compiler.il import EventKind
 from argo_env.sensing.signals import standard_watches
 from argo_env.surroundings import Alarm, GasLeak, HotSpot, PumpFault, PumpSound, Surroundings
 from tests.argo_env.sensing.signals.plant import Z, detections_along, lane
+
+pytestmark = pytest.mark.physics
 
 
 def detect(site, world, seed, *sources):

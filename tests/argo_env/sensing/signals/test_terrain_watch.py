@@ -18,6 +18,8 @@ from argo_env.world.world import World
 from tests.argo_env.sensing.signals.plant import Z, detections_along, lane, with_brick, with_hole
 from tests.conftest import examples
 
+pytestmark = pytest.mark.physics
+
 FRONT, REAR = 0.5, 0.55  # m from the robot's middle to its ends
 
 
@@ -100,17 +102,17 @@ def test_turning_in_place_between_equipment_finds_nothing(world, site_map):
 
 @pytest.mark.parametrize("goal", [(1.9, 9.2, 2.5), (13.0, 13.0, -0.03)])
 def test_stairs_landings_railings_and_rims_are_no_obstacles(
-    umad, simulation, navigator, robot, goal
+    umad, simulated_world, navigator, robot, goal
 ):
     """The robot drives up the west tower, or down the east one."""
     here = navigator.snap_keeping_heading(
         Pose(x=3.05, y=-2.55, z=-0.03) if goal[2] > 0 else Pose(x=12.3, y=8, z=2.5)
     )
-    drive = KinematicDrive(simulation, robot)
+    drive = KinematicDrive(simulated_world, robot)
     drive.place_robot(BodyPose(here.x, here.y, here.z, here.yaw))
     drive.follow(navigator.plan(here, Pose(x=goal[0], y=goal[1], z=goal[2])), None)
     poses = [(0.0, drive.pose)]
     while drive.step() is DriveStatus.MOVING:
         poses.append((poses[-1][0] + 0.1, drive.pose))
     assert max(abs(p.pitch) for _, p in poses) > 0.4
-    assert detections_along(make_watch(simulation, SiteMap(umad)), poses) == []
+    assert detections_along(make_watch(simulated_world, SiteMap(umad)), poses) == []

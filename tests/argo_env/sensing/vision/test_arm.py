@@ -4,7 +4,6 @@ import math
 from itertools import product
 
 import numpy as np
-import pybullet
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
@@ -18,6 +17,7 @@ from argo_env.sensing.vision.align import FacePose
 from argo_env.sensing.vision.arm import JOINTS, forward_kinematics, inverse_kinematics
 from argo_env.sensing.vision.views import plan_views_cheapest_first, solids_with_box_near
 from argo_env.site.shapes import Box
+from argo_env.world.pybullet_client import pybullet
 from tests.argo_env.robot.test_models import load
 from tests.conftest import examples
 
@@ -87,14 +87,14 @@ def test_inverse_kinematics_brings_the_lens_there(tracker, joints, pose, reach):
 
 
 @pytest.fixture
-def place_before(simulation, navigator, umad):
+def place_before(simulated_world, navigator, umad):
     """Place the robot where it sees a checkpoint; return the checkpoint, the pose and the face."""
 
     def place(id):
         checkpoint = umad.checkpoint(id)
         view_pose = navigator.plan_to_view(umad.docks[1], id).end
         pose = BodyPose(view_pose.x, view_pose.y, view_pose.z, view_pose.yaw)
-        simulation.place_robot(pose)
+        simulated_world.place_robot(pose)
         return checkpoint, pose, FacePose(*checkpoint.position, checkpoint.yaw, 0.0)
 
     return place
@@ -102,22 +102,22 @@ def place_before(simulation, navigator, umad):
 
 @pytest.mark.parametrize("id", [1, 2, 4, 5, 10, 12, 16, 19])
 def test_planned_views_touch_nothing_and_see_the_checkpoint(
-    id, place_before, simulation, umad, robot
+    id, place_before, simulated_world, umad, robot
 ):
     checkpoint, pose, face = place_before(id)
     solids = solids_with_box_near(umad, face.center, 1.5)
-    views = plan_views_cheapest_first(simulation, pose, face, solids, 0.05, (), 0.5)
+    views = plan_views_cheapest_first(simulated_world, pose, face, solids, 0.05, (), 0.5)
     obliqueness = []
     for _, view in zip(range(6), views, strict=False):
-        simulation.set_joints(dict(zip(JOINTS, view.joints.tolist(), strict=True)))
-        assert simulation.touches() == ()
+        simulated_world.set_joints(dict(zip(JOINTS, view.joints.tolist(), strict=True)))
+        assert simulated_world.touches() == ()
         sensor = robot.sensor
         assert sensor.min_range <= view.distance <= sensor.max_range
         sight = view.camera.position - face.center
         angle = math.acos(sight @ face_normal(checkpoint) / np.linalg.norm(sight))
         assert view.obliqueness == pytest.approx(angle, abs=1e-6)
         obliqueness.append(math.degrees(angle))
-    simulation.set_arm_degrees(robot.arm_stowed)
+    simulated_world.set_arm_degrees(robot.arm_stowed)
     assert min(obliqueness) <= 40
 
 
@@ -129,11 +129,11 @@ def poses_between(robot, joints):
 
 
 @pytest.mark.parametrize("id", [1, 2, 4, 5, 10])
-def test_the_arm_reaches_a_view_past_an_obstacle(id, place_before, simulation, robot):
+def test_the_arm_reaches_a_view_past_an_obstacle(id, place_before, simulated_world, robot):
     _, pose, face = place_before(id)
 
     def best_view():
-        return next(plan_views_cheapest_first(simulation, pose, face, (), 0.05, (), 0.5))
+        return next(plan_views_cheapest_first(simulated_world, pose, face, (), 0.05, (), 0.5))
 
     direct = best_view()
     path = list(poses_between(robot, direct.joints))
@@ -141,33 +141,33 @@ def test_the_arm_reaches_a_view_past_an_obstacle(id, place_before, simulation, r
     camera = forward_kinematics(np.array([*path[60].values()]), pose)
     middle = camera.position - LENS * camera.rotation[:, 2]
     box = Box(tuple(middle.tolist()), (0.05, 0.05, 0.05))
-    screen = simulation.add_screen("box", box, (0.4, 0.4, 0.4))
+    screen = simulated_world.add_screen("box", box, (0.4, 0.4, 0.4))
     try:
-        assert simulation.arm_obstacle(path[0], 0.0) is None
-        assert simulation.arm_obstacle(path[-1], 0.02) is None
-        assert simulation.arm_obstacle(path[60], 0.0) == "box"
+        assert simulated_world.arm_obstacle(path[0], 0.0) is None
+        assert simulated_world.arm_obstacle(path[-1], 0.02) is None
+        assert simulated_world.arm_obstacle(path[60], 0.0) == "box"
         around_box = best_view()
         assert not np.array_equal(around_box.joints, direct.joints)
         for positions in poses_between(robot, around_box.joints):
-            assert simulation.arm_obstacle(positions, 0.0) is None
+            assert simulated_world.arm_obstacle(positions, 0.0) is None
     finally:
-        simulation.remove_screen(screen)
-        simulation.set_arm_degrees(robot.arm_stowed)
+        simulated_world.remove_screen(screen)
+        simulated_world.set_arm_degrees(robot.arm_stowed)
 
 
-def test_the_arm_check_moves_nothing_and_names_the_obstacle(simulation, robot):
-    simulation.place_robot(BodyPose(3.25, 4.2, 0.0, 0.0))
-    before = simulation.joint_positions(JOINTS)
+def test_the_arm_check_moves_nothing_and_names_the_obstacle(simulated_world, robot):
+    simulated_world.place_robot(BodyPose(3.25, 4.2, 0.0, 0.0))
+    before = simulated_world.joint_positions(JOINTS)
     raised = {name: math.radians(angle) for name, angle in robot.arm_raised.items()}
-    assert simulation.arm_obstacle(raised, 0.02) == "separator V-201"
+    assert simulated_world.arm_obstacle(raised, 0.02) == "separator V-201"
     folded = dict.fromkeys(JOINTS, 0.0) | {"arm_shoulder": 1.7, "arm_elbow": 0.3}
-    simulation.place_robot(BodyPose(8.0, 1.6, 0.0, 0.0))
-    assert simulation.arm_obstacle(folded, 0.02) == "base_link"
-    assert simulation.arm_obstacle(raised, 0.02) is None
-    assert simulation.joint_positions(JOINTS) == before
+    simulated_world.place_robot(BodyPose(8.0, 1.6, 0.0, 0.0))
+    assert simulated_world.arm_obstacle(folded, 0.02) == "base_link"
+    assert simulated_world.arm_obstacle(raised, 0.02) is None
+    assert simulated_world.joint_positions(JOINTS) == before
 
 
-def test_the_arm_is_raised_at_every_view_without_contact(simulation, navigator, robot):
+def test_the_arm_is_raised_at_every_view_without_contact(simulated_world, navigator, robot):
     stowed, raised = (
         np.radians([pose[name] for name in JOINTS]) for pose in (robot.arm_stowed, robot.arm_raised)
     )
@@ -177,8 +177,8 @@ def test_the_arm_is_raised_at_every_view_without_contact(simulation, navigator, 
             at = navigator.plan_to_view(dock, checkpoint.id, turned).end
         except Unreachable:
             continue
-        simulation.place_robot(BodyPose(at.x, at.y, at.z, at.yaw))
+        simulated_world.place_robot(BodyPose(at.x, at.y, at.z, at.yaw))
         for share in np.linspace(0.0, 1.0, 25):
             joints = (stowed + share * (raised - stowed)).tolist()
             positions = dict(zip(JOINTS, joints, strict=True))
-            assert simulation.arm_obstacle(positions, 0.0) is None, checkpoint.id
+            assert simulated_world.arm_obstacle(positions, 0.0) is None, checkpoint.id

@@ -23,28 +23,28 @@ ALLOWED = {DIAL: 0.2, LEVEL: 2.0, VALVE: 5.0}  # bar, %, deg
 
 
 @pytest.fixture
-def set_checkpoint(simulation, navigator, umad, robot):
+def set_checkpoint(simulated_world, navigator, umad, robot):
     """Place the robot before a checkpoint that shows a value; restore everything at the end."""
     screens = []
 
     def set_up(id, value, placement=AS_PLANNED, light=1.0):
         view_pose = navigator.plan_to_view(umad.docks[1], id).end
         pose = BodyPose(view_pose.x, view_pose.y, view_pose.z, view_pose.yaw)
-        simulation.place_robot(pose)
-        simulation.set_arm_degrees(robot.arm_raised)
-        simulation.show_value(id, value)
-        simulation.set_displacement(id, placement)
-        simulation.light = light
+        simulated_world.place_robot(pose)
+        simulated_world.set_arm_degrees(robot.arm_raised)
+        simulated_world.show_value(id, value)
+        simulated_world.set_displacement(id, placement)
+        simulated_world.light = light
         return pose
 
-    set_up.world, set_up.screens = simulation, screens
+    set_up.world, set_up.screens = simulated_world, screens
     yield set_up
-    simulation.light = 1.0
-    simulation.set_arm_degrees(robot.arm_stowed)
+    simulated_world.light = 1.0
+    simulated_world.set_arm_degrees(robot.arm_stowed)
     for id in ALLOWED:
-        simulation.set_displacement(id, AS_PLANNED)
+        simulated_world.set_displacement(id, AS_PLANNED)
     for screen in screens:
-        simulation.remove_screen(screen)
+        simulated_world.remove_screen(screen)
 
 
 @pytest.mark.parametrize(

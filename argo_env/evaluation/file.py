@@ -62,7 +62,8 @@ class EvaluationFile(Model):
     drives: tuple[str, ...] = Field(default=("route",), min_length=1)
     sensors: tuple[str, ...] = Field(default=(IDEAL,), min_length=1)
     policies: tuple[str, ...] = Field(default=(AS_WRITTEN,), min_length=1)
-    """orders of the tasks: `as written`, `optimised`, or `module:function`"""
+    """orders of the tasks: `as written`, `optimised`, the name of an installed package's policy, or
+    `module:function`"""
     faults: tuple[str, ...] | DrawnFaults = (NO_FAULTS,)
     """files or folders of faults, and `none`; or a distribution to draw faults from"""
     seeds: str | int | tuple[int, ...] = "0..99"

@@ -95,7 +95,8 @@ def evaluate_command(
     policy: Annotated[
         list[str] | None,
         typer.Option(
-            help="order of the tasks: `as written`, `optimised`, or a function as module:function"
+            help="order of the tasks: `as written`, `optimised`, the name of an installed policy, "
+            "or a function as module:function"
         ),
     ] = None,
     require: Annotated[

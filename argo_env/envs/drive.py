@@ -235,7 +235,7 @@ class DriveEnv(Copyable, Rendering, gym.Env[Observation, NDArray[np.float32]]):
         truncated = len(self._actions) >= self._limit and not terminated
         self._over = terminated or truncated
         self._update_window()
-        return observation, sum(terms.values()), terminated, truncated, info
+        return observation, math.fsum(terms.values()), terminated, truncated, info
 
     def close(self) -> None:
         self._sites.close()

@@ -1,5 +1,6 @@
 """`argo/Inspect-v0`: choose the next checkpoint; the simulated robot drives there and reads it."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Annotated, Any
@@ -322,7 +323,7 @@ class InspectEnv(Copyable, Rendering, gym.Env[Observation, np.int64]):
         self._update_window()
         truncated = run.is_time_up and not terminated
         self._over = terminated or truncated
-        return observation, sum(terms.values()), terminated, truncated, info
+        return observation, math.fsum(terms.values()), terminated, truncated, info
 
     def action_masks(self) -> NDArray[np.bool_]:
         """Return a mask of the actions that are legal now, shape (n + d,)."""

@@ -87,7 +87,7 @@ def estimate_plan_rate(
         counting = [name for name in weights if outcomes[name] or not by_case[name]]
         if not counting:
             return PlanRate(math.nan, 0.0, 1.0, 0, lost, IntervalMethod.STRATA)
-        total = sum(weights[name] for name in counting)
+        total = math.fsum(weights[name] for name in counting)
         strata = [
             Stratum(weights[name] / total, sum(outcomes[name]), len(outcomes[name]))
             for name in counting
@@ -100,7 +100,7 @@ def estimate_plan_rate(
     sequence = ConfidenceSequence()
     sequence.add(means.values())
     low, high = sequence.interval
-    value = sum(means.values()) / len(means) if means else math.nan
+    value = math.fsum(means.values()) / len(means) if means else math.nan
     # A world with a lost run does not count at all.
     count = len(_outcomes([row for row in ran if row.seed in means], quantity))
     return PlanRate(value, low, high, count, lost, IntervalMethod.SEQUENCE)

@@ -225,7 +225,7 @@ def duration_curve(results: EvaluationResults, plan: PlanName) -> DurationCurve:
     ran = [row for row in results.rows_for(plan) if row.is_completed]
     weights = {case.faults: case.weight for case in results.plan.cases if case.plan == plan}
     runs_by_faults = {name: sum(row.faults == name for row in ran) for name in weights}
-    total = sum(weight for name, weight in weights.items() if runs_by_faults[name])
+    total = math.fsum(weight for name, weight in weights.items() if runs_by_faults[name])
     weighted = sorted(
         (row.duration, weights[row.faults] / runs_by_faults[row.faults] / total)
         for row in ran

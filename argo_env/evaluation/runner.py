@@ -1,6 +1,7 @@
 """Execution of an evaluation: runs are distributed to workers, and their rows are stored."""
 
 import logging
+import math
 import os
 import threading
 import time
@@ -287,7 +288,7 @@ def _by_strata(plan: EvaluationPlan, rows: Sequence[RunRow]) -> Iterator[Iterato
 
 
 def _strata(plan: EvaluationPlan, rows: Sequence[RunRow]) -> list[Stratum]:
-    total_weight = sum(case.weight for case in plan.cases)
+    total_weight = math.fsum(case.weight for case in plan.cases)
     strata = []
     for case in plan.cases:
         ran = [row for row in rows if row.faults == case.faults and row.is_completed]

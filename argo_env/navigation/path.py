@@ -101,16 +101,16 @@ class Path:
     @property
     def length(self) -> float:
         """Length in m along the surface."""
-        return sum(m.length for m in self.motions)
+        return math.fsum(m.length for m in self.motions)
 
     @property
     def total_ascent(self) -> float:
         """Sum of all ascents in m."""
-        return sum(max(0.0, m.end.z - m.start.z) for m in self.motions)
+        return math.fsum(max(0.0, m.end.z - m.start.z) for m in self.motions)
 
     def duration(self, robot: RobotSpec, velocity: float | None = None) -> float:
         """Return the seconds that the path takes; `velocity` (m/s) is that of `Motion.duration`."""
-        return sum(m.duration(robot, velocity) for m in self.motions)
+        return math.fsum(m.duration(robot, velocity) for m in self.motions)
 
     def timed_poses(self, robot: RobotSpec, velocity: float | None = None) -> "NDArray[np.float64]":
         """Return the time and pose at the start and after each motion, shape (n + 1, 5).

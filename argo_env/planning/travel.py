@@ -5,6 +5,7 @@ Planned paths are cached on disk, as the same missions are checked repeatedly.
 
 import hashlib
 import json
+import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -209,7 +210,9 @@ class SiteTravel:
         if seconds > MAX_TIME_S:
             return NoPath(f"at {velocity} m/s the path takes longer than any mission may")
         drive = max(self.time_step, self._round_up(seconds))
-        energy = sum(m.duration(robot, velocity) * self._power(m) for m in path.motions) / 3600
+        energy = (
+            math.fsum(m.duration(robot, velocity) * self._power(m) for m in path.motions) / 3600
+        )
         work_energy = work * power.measuring / 3600
         return Leg(drive + work, energy + work_energy, path.end, work, work_energy)
 

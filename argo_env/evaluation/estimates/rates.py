@@ -173,7 +173,8 @@ def weighted_means_of_complete_worlds(
     means = {}
     for seed, by_case in worlds.items():
         counting = {case: value for case, value in by_case.items() if value is not None}
-        total_weight = sum(weights[case] for case in counting)
+        total_weight = math.fsum(weights[case] for case in counting)
         if len(by_case) == len(weights) and total_weight:
-            means[seed] = sum(weights[case] * v for case, v in counting.items()) / total_weight
+            weighted = math.fsum(weights[case] * v for case, v in counting.items())
+            means[seed] = weighted / total_weight
     return means

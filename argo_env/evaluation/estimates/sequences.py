@@ -64,7 +64,7 @@ class ConfidenceSequence:
         """Interval of all means that the outcomes so far do not refute; 0 to 1 without outcomes."""
         if not self._counts:
             return 0.0, 1.0
-        mean = sum(value * n for value, n in self._counts.items()) / self.runs
+        mean = math.fsum(value * n for value, n in self._counts.items()) / self.runs
         return self._bound(0.0, mean, up=True), self._bound(1.0, mean, up=False)
 
     def _bound(self, refuted: float, possible: float, up: bool) -> float:

@@ -53,7 +53,7 @@ class GasSensor:
         noise, drift, gust = map(float, self._rng.standard_normal(3))
         at = to_site(pose, NOSE)[None, :]
         surroundings, ground = self._surroundings, self._surroundings.site.spec.ground_z
-        mean = sum(
+        mean = math.fsum(
             float(concentration(release, surroundings.weather, ground, at, now)[0])
             for release in surroundings.releases
         )

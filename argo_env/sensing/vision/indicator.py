@@ -127,7 +127,8 @@ def find_most_probable_reading(readings: Sequence[PictureReading]) -> PictureRea
         groups.append((weight, group))
         total += weight
     for weight, group in groups:
-        share = sum(r.share * r.probability for r in group) / sum(r.probability for r in group)
+        share = math.fsum(r.share * r.probability for r in group)
+        share /= math.fsum(r.probability for r in group)
         if weight / total > best[0]:
             best = (weight / total, share)
     return PictureReading(best[1], min(best[0], _CEILING))

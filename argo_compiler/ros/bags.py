@@ -1,6 +1,7 @@
 """Reading and writing of missions in ROS 1 bags, rosbag2 folders, and single storage files."""
 
 import os
+import struct
 import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -200,10 +201,26 @@ def _open_reader(path: Path, first: bytes) -> Iterator[Any]:
         if os.path.isdir(path):
             require_uncompressed_bag(path)
         for file in path.glob("*") if os.path.isdir(path) else [path]:
-            if first_bytes_if_readable(file).startswith(MCAP):
+            start = first_bytes_if_readable(file)
+            if start.startswith(MCAP):
                 require_small_mcap_chunks(file)
+            elif start.startswith(SQLITE):
+                _require_whole_database(file)
         with Ros2Reader(path) as reader:
             yield reader
+
+
+def _require_whole_database(file: Path) -> None:
+    """Raise ValueError if an SQLite file is shorter than it says.
+
+    SQLite itself notices this or not, depending on its version and on what is missing.
+    """
+    with open(file, "rb") as opened:
+        header = opened.read(100)
+    page_size, changes, pages, changes_at_size = struct.unpack(">16xH6xII60xI4x", header)
+    is_size_known = changes == changes_at_size
+    if is_size_known and os.path.getsize(file) < pages * (65536 if page_size == 1 else page_size):
+        raise ValueError("its end is missing")
 
 
 def _read_message(name: str, reader: Any, types: RosTypes) -> bytes:

@@ -53,7 +53,8 @@ def example(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("extension")
     uv = Path(sys.executable).with_name("uv")
     install = (uv, "pip", "install", "--quiet", "--no-deps", "--no-build-isolation")
-    subprocess.run([*install, "--target", folder, EXAMPLE], check=True)
+    into = ("--python", sys.executable, "--target", folder)
+    subprocess.run([*install, *into, EXAMPLE], check=True)
     return folder
 
 
@@ -264,6 +265,7 @@ class TestExample:
         # Both choose the nearest checkpoint.
         assert found["bottom-up"] == found["nearest-neighbour"]
 
+    @pytest.mark.physics
     def test_drive_and_fault_in_an_environment(self, example: Path) -> None:
         code = """
             import gymnasium, argo_env
@@ -331,8 +333,16 @@ class TestFaultyPackages:
     @pytest.mark.parametrize(
         ("arguments", "message"),
         [
-            (("run", "--sensor", "broken"), "the sensor `broken` of bad-package 1.0 can't be"),
-            (("run", "--drive", "fails"), "bad-package 1.0 has failed: ZeroDivisionError: a fault"),
+            pytest.param(
+                ("run", "--sensor", "broken"),
+                "the sensor `broken` of bad-package 1.0 can't be",
+                marks=pytest.mark.physics,
+            ),
+            pytest.param(
+                ("run", "--drive", "fails"),
+                "bad-package 1.0 has failed: ZeroDivisionError: a fault",
+                marks=pytest.mark.physics,
+            ),
             (("export", "--to", "exits", "-o", "-"), "the format `exits` of bad-package 1.0 can't"),
             (("evaluate", "--policy", "fails"), "the policy `fails` plays episodes"),
             (("route", "--solver", "nobody"), "no route solver `nobody`"),

@@ -6,6 +6,7 @@
     python -m benchmarks.same_results ../before --only protocol_2    # results with this name
     python -m benchmarks.same_results --write digests.txt            # store this checkout's digests
     python -m benchmarks.same_results digests.txt                    # compare with stored digests
+    python3.13 -m benchmarks.same_results digests.txt                # likewise, on another Python
     python -m benchmarks.same_results ../before --without-prose      # after a change of words
 
 `plans`, `routes` and `journals` run the commands of `argo` as a user would: they read, check,

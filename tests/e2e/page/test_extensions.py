@@ -19,7 +19,7 @@ __all__ = ["example"]
 
 @pytest.fixture
 def extended_service(
-    example: Path,  # noqa: F811
+    example: Path,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> Iterator[httpx.Client]:

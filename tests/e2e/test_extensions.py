@@ -186,6 +186,7 @@ class TestExample:
         assert [row.split(",")[1] for row in rows[1:]] == ["1", "4"]
 
     @pytest.mark.long
+    @pytest.mark.physics
     def test_drive_sensor_and_fault_in_a_run(
         self, extended: Extended, mission: Path, tmp_path: Path
     ) -> None:
@@ -218,6 +219,7 @@ class TestExample:
         assert "`density` has to be at most 1" in errors
 
     @pytest.mark.long
+    @pytest.mark.physics
     def test_a_run_is_resumed_only_with_the_same_package(
         self, argo: Argo, extended: Extended, mission: Path, tmp_path: Path
     ) -> None:
@@ -238,6 +240,7 @@ class TestExample:
         assert order in extra
 
     @pytest.mark.long
+    @pytest.mark.physics
     def test_the_policy_in_an_evaluation(self, extended: Extended, tmp_path: Path) -> None:
         head, _, tasks = ANY_ORDER.read_text().partition("1. ")
         few = [line for line in f"1. {tasks}".splitlines() if line[0] in "12"]
@@ -330,6 +333,7 @@ class TestFaultyPackages:
         hampered("run", mission, "--drive", "route", "--report", tmp_path / "report")
         assert read_run_record(tmp_path / "report").sensor == "ideal"
 
+    @pytest.mark.physics
     @pytest.mark.parametrize(
         ("arguments", "message"),
         [
@@ -383,6 +387,7 @@ def service(
 
 
 @pytest.mark.long
+@pytest.mark.physics
 def test_the_service(service: httpx.Client) -> None:
     listed = service.get("/api/service").json()["extensions"]
     assert {one["name"] for one in listed} == {

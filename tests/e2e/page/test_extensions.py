@@ -12,7 +12,7 @@ from tests.e2e.page.person import Browsers
 from tests.e2e.test_extensions import MISSION, example, path_with
 from tests.e2e.test_service import TOKEN, ServiceProcess
 
-pytestmark = pytest.mark.long
+pytestmark = [pytest.mark.long, pytest.mark.physics]
 
 __all__ = ["example"]
 

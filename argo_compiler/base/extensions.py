@@ -22,6 +22,8 @@ T = TypeVar("T")
 
 _PREFIX = "argo."
 """beginning of the names of all groups"""
+_ARGO = ("argo_compiler", "argo_env", "argo_planner", "baselines")
+"""top-level modules of Argo"""
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,39}")
 
 
@@ -197,13 +199,12 @@ def package_at_fault(error: BaseException) -> str | None:
 
     Returns None if no code of a package that extends Argo was running.
     """
-    modules = {}
-    for package, module in _modules_of_packages():
-        modules[module.partition(".")[0]] = package
+    modules = {module: package for package, module in _top_modules_of_packages()}
     trace, found = error.__traceback__, None
     while trace is not None:
         module = str(trace.tb_frame.f_globals.get("__name__")).partition(".")[0]
-        found = modules.get(module, found)
+        if module not in _ARGO:
+            found = modules.get(module, found)
         trace = trace.tb_next
     return found
 
@@ -226,15 +227,15 @@ def failure_text(package: str, error: BaseException) -> str:
     return f"the package {package} has failed: {type(error).__name__}: {error}"
 
 
-def _modules_of_packages() -> Iterator[tuple[str, str]]:
-    """Yield the modules that other packages than Argo offer something from, with the packages."""
+def _top_modules_of_packages() -> Iterator[tuple[str, str]]:
+    """Yield the packages that extend Argo, each with its top-level modules that it offers from."""
     from importlib.metadata import entry_points
 
     for group in entry_points().groups:
         if group.startswith(_PREFIX):
             for offer in _offers(group):
                 if not offer.is_of_argo:
-                    yield offer.package, offer.entry.module
+                    yield offer.package, re.split(r"[.:\s]", offer.entry.value)[0]
 
 
 def installed_names(group: str) -> tuple[str, ...]:
@@ -247,7 +248,7 @@ def installed_names(group: str) -> tuple[str, ...]:
 
 def installed_packages() -> tuple[str, ...]:
     """Return the names and versions of all packages that extend Argo."""
-    return tuple(sorted({package for package, _ in _modules_of_packages()}))
+    return tuple(sorted({package for package, _ in _top_modules_of_packages()}))
 
 
 @cache
@@ -255,11 +256,19 @@ def _offers(group: str) -> tuple[_Offer, ...]:
     """Return what installed packages offer in a group, Argo's first, then by package and name."""
     from importlib.metadata import entry_points  # takes 15 ms, and few commands need it
 
-    offers = []
-    for entry in entry_points(group=group):
-        dist = entry.dist
-        package = "an unknown package" if dist is None else f"{dist.name} {dist.version}"
-        offers.append(_Offer(entry, package))
+    offers = [_Offer(entry, _package_of(entry)) for entry in entry_points(group=group)]
     return tuple(
         sorted(offers, key=lambda offer: (not offer.is_of_argo, offer.package, offer.entry.name))
     )
+
+
+def _package_of(entry: "EntryPoint") -> str:
+    """Return the name and version of the package that an entry point belongs to."""
+    try:
+        return (
+            "an unknown package"
+            if entry.dist is None
+            else f"{entry.dist.name} {entry.dist.version}"
+        )
+    except Exception:  # what remains of a package that was removed in part
+        return "a damaged package"

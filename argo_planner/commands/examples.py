@@ -1,21 +1,17 @@
 """`argo examples`: list the shipped examples, or copy one."""
 
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from argo_compiler.base.errors import Invalid
+from argo_planner.terminal.completion import offer_names
 from argo_planner.terminal.files import check_outputs, print_written, write_content
 from argo_planner.terminal.options import Force
 from argo_planner.use_cases.examples import example_files, list_examples
 
-
-class ExampleAction(StrEnum):
-    """Use of an example."""
-
-    COPY = "copy"
+_COPY = "copy"
 
 
 def _offer_examples(incomplete: str) -> list[str]:
@@ -25,8 +21,12 @@ def _offer_examples(incomplete: str) -> list[str]:
 
 def examples_command(
     action: Annotated[
-        ExampleAction | None,
-        typer.Argument(help="copy: copy an example with the files that it needs"),
+        str | None,
+        typer.Argument(
+            metavar=f"[{_COPY}]",
+            help="copy an example with the files that it needs; nothing: list all",
+            autocompletion=offer_names([_COPY]),
+        ),
     ] = None,
     name: Annotated[
         str | None, typer.Argument(help="name of the example", autocompletion=_offer_examples)
@@ -38,13 +38,26 @@ def examples_command(
     if action is None:
         _print_examples()
         return
+    if action != _COPY:
+        known = any(action in examples for examples in list_examples().values())
+        remedy = f"{action}` copies it" if known else "NAME` copies one, `argo examples` lists them"
+        raise Invalid(f"there is no `argo examples {action}`; `argo examples copy {remedy}")
     if name is None:
         raise Invalid("give the name of the example to copy; `argo examples` lists them")
     files = example_files(name)
-    check_outputs((), (), [(folder, files)], force)
-    write_content(folder, files)
+    # Several examples need the same file.
+    new = {path: content for path, content in files.items() if not _has(folder / path, content)}
+    check_outputs((), (), [(folder, new)], force)
+    write_content(folder, new)
     for path in files:
-        print_written(folder / path, "copied")
+        print_written(folder / path, "copied" if path in new else "already there")
+
+
+def _has(path: Path, content: bytes) -> bool:
+    try:
+        return path.read_bytes() == content
+    except OSError:
+        return False
 
 
 def _print_examples() -> None:

@@ -38,7 +38,8 @@ def list_examples() -> dict[str, dict[str, Example]]:
 def example_files(name: str) -> dict[str, bytes]:
     """Return the files of an example, by their paths in the folder to which they are copied.
 
-    A copied site has the name `my_NAME`, since NAME stands for the shipped site. Raises NotFound.
+    The example itself comes first; its file is called as the example. A copied site has the name
+    `my_NAME`, since NAME stands for the shipped site. Raises NotFound.
     """
     kinds = list_examples()
     kind = next((kind for kind, examples in kinds.items() if name in examples), None)
@@ -52,7 +53,8 @@ def example_files(name: str) -> dict[str, bytes]:
         text = (scenarios_folder() / first).read_text(encoding="utf-8")
         text = re.sub(rf"(?m)^name: {name}$", f"name: my_{name}", text, count=1)
         return {f"my_{name}.yaml": text.encode()}
-    return dict(_paths_and_contents(Path(first).parent, [first, *others]))
+    copied = dict(_paths_and_contents(Path(first).parent, others))
+    return {name + Path(first).suffix: (scenarios_folder() / first).read_bytes(), **copied}
 
 
 def _paths_and_contents(folder: Path, files: list[str]) -> Iterator[tuple[str, bytes]]:

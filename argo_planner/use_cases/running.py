@@ -59,7 +59,10 @@ def _parse_reading(text: str) -> ReadingGiven:
 
 
 def is_run_spec(upload: Upload) -> bool:
-    """Return True if an upload is the spec of a run: JSON with a mission, a drive and a seed."""
+    """Return True if an upload is the spec of a run: JSON with a mission, a drive and a seed.
+
+    The record of a run, which has a result too, is none.
+    """
     content = upload.content
     if not isinstance(content, bytes) or b'"mission"' not in content:
         return False
@@ -67,7 +70,8 @@ def is_run_spec(upload: Upload) -> bool:
         data = json.loads(content)
     except (ValueError, RecursionError):
         return False
-    return isinstance(data, dict) and {"mission", "drive", "seed"} <= data.keys()
+    fields = data.keys() if isinstance(data, dict) else ()
+    return {"mission", "drive", "seed"} <= {*fields} and "result" not in fields
 
 
 def load_spec(upload: Upload) -> RunSpec:

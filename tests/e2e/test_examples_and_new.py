@@ -57,6 +57,16 @@ def test_each_example_is_valid_in_the_folder_to_which_it_is_copied(
         read_scoring(tmp_path / file)
 
 
+def test_a_file_that_two_examples_need_is_copied_once(argo, tmp_path) -> None:
+    argo("examples", "copy", "gas_leak", cwd=tmp_path, status=0)
+    output = argo("examples", "copy", "hot_spot", cwd=tmp_path, status=0).stdout
+    assert output.splitlines() == ["hot_spot.yaml: copied", "ground.txt: already there"]
+    (tmp_path / "ground.txt").write_text("mine")
+    argo("examples", "copy", "brick", cwd=tmp_path, status=2)
+    assert (tmp_path / "ground.txt").read_text() == "mine"
+    assert not (tmp_path / "brick.yaml").exists()
+
+
 def test_examples_are_listed_with_a_line_each(argo) -> None:
     listed = argo("examples", status=0).stdout
     for _, name in EXAMPLES:
@@ -86,9 +96,13 @@ def test_a_missing_mission_of_an_evaluation_is_named(argo, tmp_path) -> None:
     ("command", "message"),
     [
         ("examples copy gas_leek", "there is no example gas_leek: did you mean gas_leak?"),
-        ("examples copy 123456789", "`argo examples` lists them"),
+        ("examples copy 123456789", "choose one of: mission_1, "),
         ("examples copy", "give the name of the example"),
-        ("examples remove gas_leak", "remove"),
+        (
+            "examples remove gas_leak",
+            "there is no `argo examples remove`; `argo examples copy NAME` copies one",
+        ),
+        ("examples gas_leak", "`argo examples copy gas_leak` copies it"),
         ("new site umad", "like the one that Argo ships; choose another name"),
         ("new site a/b", "`a/b` can't be a name"),
         ("new mission ../out", "`../out` can't be a name"),

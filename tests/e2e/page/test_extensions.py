@@ -62,7 +62,6 @@ def test_choices_have_the_names_of_extensions(
     expect(settings.locator("argo-faults li")).to_have_text(["fogged_lens"])
     settings.locator("select[name=drive]").select_option("cautious")
     settings.locator("select[name=speed]").select_option("null")
-    page.screenshot(path="/tmp/shots/ext.png")
     ann.click(page.locator("#start"))
 
     def run() -> Any:
@@ -71,4 +70,8 @@ def test_choices_have_the_names_of_extensions(
 
     ended = ann.wait_until(lambda: run() if run() and run()["status"] == "ended" else None, "end")
     assert ended["drive"] == "cautious"
-    expect(page.locator("argo-run")).to_contain_text("with: fogged_lens")
+    report = f"/api/runs/{ended['id']}/report/report.json"
+    ann.wait_until(lambda: extended_service.get(report).status_code == 200, "the report")
+    assert [fault["kind"] for fault in extended_service.get(report).json()["faults"]] == [
+        "fogged_lens"
+    ]

@@ -93,7 +93,7 @@ class TrackedBody(Connection):
         joints = {joint: k for k, (joint, _) in self._parts(self._body).items()}
         self._flippers = [joints[name] for name in FLIPPERS]
         self._prepare()
-        self.mass = sum(self._dynamics(link)[0] for link in self._names)
+        self.mass = math.fsum(self._dynamics(link)[0] for link in self._names)
         """mass of the robot in kg"""
         offset: Vector = self._dynamics(-1)[3]
         self._belts = Belts(offset, traction or Traction(), self.mass * GRAVITY)
@@ -185,8 +185,8 @@ class TrackedBody(Connection):
         """Velocity in m/s along the robot's x axis, and in rad/s about its z axis."""
         velocity, spin = pybullet.getBaseVelocity(self._body, physicsClientId=self._client)
         _, axes = self._frame()
-        ahead = sum(velocity[k] * axes[3 * k] for k in range(3))
-        return ahead, sum(spin[k] * axes[3 * k + 2] for k in range(3))
+        ahead = math.fsum(velocity[k] * axes[3 * k] for k in range(3))
+        return ahead, math.fsum(spin[k] * axes[3 * k + 2] for k in range(3))
 
     @property
     def flipper(self) -> float:

@@ -117,8 +117,8 @@ class StallDetector:
         if len(self._samples) < (self._samples.maxlen or 0):
             return None
         before = self._samples[0].pose
-        distance = sum(s.distance for s in self._samples)
-        turn = sum(s.turn for s in self._samples)
+        distance = math.fsum(s.distance for s in self._samples)
+        turn = math.fsum(s.turn for s in self._samples)
         went = math.dist((pose.x, pose.y, pose.z), (before.x, before.y, before.z))
         turned = abs(wrap(pose.yaw - before.yaw))
         share = max(

@@ -1,4 +1,4 @@
-"""The snippets of README and docs work unchanged: Python runs, YAML is accepted."""
+"""README and docs: snippets work unchanged, and the pages of `docs/` need no clone or say so."""
 
 import re
 from pathlib import Path
@@ -11,6 +11,7 @@ from argo_env.faults.loading import decode_distribution, decode_faults
 from argo_env.planning import OpenedSite
 from argo_env.site import make_site
 from argo_env.site.site_file import parse_site_spec
+from argo_planner.use_cases.examples import example_files
 from argo_planner.use_cases.routing import parse_requirements
 from argo_planner.use_cases.sites import make_site_report
 
@@ -39,9 +40,13 @@ PYTHON, YAML = snippets("python"), snippets("yaml")
 
 @pytest.mark.parametrize("page", PYTHON)
 @pytest.mark.long
-def test_snippets_run(page, monkeypatch):
-    """The snippets of a page run one after the other, in the project's folder."""
-    monkeypatch.chdir(ROOT)
+def test_snippets_run(page, tmp_path, monkeypatch):
+    """The snippets of a page run one after the other, beside the examples that the page copies."""
+    for example in re.findall(r"argo examples copy ([a-z]\w*)", PAGES[page]):
+        for name, content in example_files(example).items():
+            (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / name).write_bytes(content)
+    monkeypatch.chdir(tmp_path)
     names = {"__name__": "snippet"}
     for number, snippet in enumerate(PYTHON[page], start=1):
         exec(compile(snippet, f"{page}, snippet {number}", "exec"), names)
@@ -70,6 +75,60 @@ def test_yaml_snippets_are_accepted(page):
 def test_the_distribution_of_faults_is_accepted():
     (text,) = snippets("yml")["docs/evaluating.md"]
     assert len(decode_distribution(text.encode(), "docs/evaluating.md").chances) == 2
+
+
+LINK = re.compile(r"(!?)\[[^]]*\]\(([^)#\s]+)[^)]*\)")
+"""a link or a picture, with its target"""
+CLONE_ONLY = re.compile(
+    r"(?:^|`)make \w+|pip install -e|\bpytest\b|\b(?:benchmarks|examples|scenarios|tests)[./]\w+",
+    re.M,
+)
+"""commands and files that only a clone has, or has elsewhere than a wheel"""
+
+
+def test_links_lead_to_files():
+    missing = [
+        f"{page}: {target}"
+        for page, text in PAGES.items()
+        for _, target in LINK.findall(text)
+        if "://" not in target and not (ROOT / page).parent.joinpath(target).exists()
+    ]
+    assert not missing
+
+
+def is_in_the_wheel(path):
+    """Return True if a wheel has the file or folder at the same place beside the pages."""
+    folder = path.relative_to(ROOT).parts[0]
+    return folder in {"scenarios", "urdf"} or (
+        folder == "docs" and (path.is_dir() or path.suffix == ".md")
+    )
+
+
+def test_links_of_docs_lead_to_files_that_the_wheel_has():
+    """Pictures are the exception: their texts say what they show."""
+    missing = [
+        f"{page}: {target}"
+        for page, text in PAGES.items()
+        if page.startswith("docs/")
+        for picture, target in LINK.findall(text)
+        if not picture
+        and "://" not in target
+        and not is_in_the_wheel((ROOT / page).parent.joinpath(target).resolve())
+    ]
+    assert not missing
+
+
+def test_docs_say_what_needs_a_clone():
+    """The section or the beginning of the page says it; decision records are for contributors."""
+    silent = []
+    for page, text in PAGES.items():
+        if not re.fullmatch(r"docs/[\w-]+\.md", page):
+            continue
+        beginning, *sections = re.split(r"^## ", LINK.sub("", text), flags=re.M)
+        for section in (beginning, *sections):
+            said = "in a clone" in " ".join(f"{beginning} {section}".lower().split())
+            silent += [] if said else [f"{page}: {part}" for part in CLONE_ONLY.findall(section)]
+    assert not silent
 
 
 WITH_TABLES = {"docs/diagnostics.md", "docs/script.md"}

@@ -71,6 +71,7 @@ def test_the_ids_of_the_environments_are_listed() -> None:
 def test_the_packages_of_the_wheel_are_listed() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     wheel = project["tool"]["hatch"]["build"]["targets"]["wheel"]
-    packages = {path.strip("/") for path in wheel["include"]} - {"docs/*.md", "scenarios", "urdf"}
+    data = {"docs/**/*.md", "scenarios", "urdf"}
+    packages = {path.strip("/") for path in wheel["include"]} - data
     (listed,) = re.findall(r"installs four packages: (.*?)\.", PAGE, re.S)
     assert set(re.findall(r"`(\w+)`", listed)) == packages

@@ -14,7 +14,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("argo_compiler", "argo_env", "argo_planner", "baselines")
-DATA = {"docs": "*.md", "scenarios": "**/*", "urdf": "**/*"}
+DATA = {"docs": "**/*.md", "scenarios": "**/*", "urdf": "**/*"}
 """folders that a wheel has in `argo_env/data`, with the files that it takes from each"""
 
 pytestmark = pytest.mark.long  # building takes several seconds, installing more

@@ -9,9 +9,10 @@ import threading
 import time
 from collections.abc import Callable
 from functools import partial
+from multiprocessing import resource_tracker
 from multiprocessing.connection import wait
 
-from argo_compiler.base.operating_system import wait_for_parent_end
+from argo_compiler.base.operating_system import sigint_blocked, wait_for_parent_end
 
 if sys.platform == "win32":
     from multiprocessing.context import SpawnContext as WorkerContext
@@ -67,7 +68,9 @@ else:
             """Start the process. Raises OSError if that fails."""
             for attempts_left in reversed(range(_ATTEMPTS)):
                 try:
-                    super().start()
+                    resource_tracker.ensure_running()  # its start would unblock SIGINT
+                    with sigint_blocked():
+                        super().start()
                     return
                 except (EOFError, ConnectionError) as error:
                     if not attempts_left:

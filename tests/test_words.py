@@ -73,6 +73,7 @@ SHARED_NAMES = {
     "start": "begin an action, a machine or a job",
     "start_pose": "return the pose at which a mission starts",
     "step": "let one time step pass",
+    "submit": "call a function in a worker process",
     "successors": "return the states that follow in a graph",
     "update": "process the newest values",
     "write": "write text or bytes, as files do",

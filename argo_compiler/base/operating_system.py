@@ -5,8 +5,11 @@ must not import this package, and `argo_env.worker_processes`.
 """
 
 import os
+import signal
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 if sys.platform == "win32":
@@ -116,3 +119,20 @@ def wait_for_parent_end(parent: int) -> None:
         return
     while os.getppid() == parent:
         time.sleep(_PERIOD)
+
+
+@contextmanager
+def sigint_blocked() -> Iterator[None]:
+    """Block SIGINT in this thread, and for good in processes and threads that start meanwhile.
+
+    Worker processes are started this way: a process that imports its modules does not ignore SIGINT
+    yet, and would end with a traceback. No-op on Windows.
+    """
+    if sys.platform == "win32":
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)

@@ -5,10 +5,10 @@ from functools import partial
 from itertools import islice
 from typing import Any
 
-from loky import ProcessPoolExecutor
 from loky.process_executor import BrokenProcessPool
 
 from argo_compiler.base.errors import ArgoError, Unavailable, with_message_prefix
+from argo_compiler.base.process_pool import ProcessPool
 from argo_compiler.route.problem import RouteProblem
 from argo_compiler.route.suggested import RouteSuggestion
 from argo_compiler.route.suggestion import suggest_route
@@ -25,7 +25,7 @@ def suggest_routes(
     from 0; and Unavailable if a process is killed.
     """
     numbered = iter(enumerate(problems))
-    pool = ProcessPoolExecutor(processes)
+    pool = ProcessPool(processes)
     try:
         # Bounded, so that no problem is taken from the iterable long before a process needs it.
         pending = [

@@ -17,12 +17,12 @@ from pathlib import Path
 from typing import IO
 
 import numpy as np
-from loky import ProcessPoolExecutor
 from loky.process_executor import BrokenProcessPool
 from PIL import GifImagePlugin, Image
 
 from argo_compiler.base.errors import Invalid, Unavailable, with_message_prefix
 from argo_compiler.base.extras import install_line
+from argo_compiler.base.process_pool import ProcessPool
 from argo_compiler.files.atomic_write import atomic_draft, check_writable
 from argo_env.files.folders import CHOOSE_ANOTHER_PLACE, reporting_write_errors
 from argo_env.pictures.camera import Camera
@@ -217,7 +217,7 @@ def draw_frames(
         with Scene(site, robot) as scene:
             yield from (draw_frame(record, scene, shot, end) for shot in shots)
         return
-    executor = ProcessPoolExecutor(
+    executor = ProcessPool(
         workers, initializer=_start_worker, initargs=(os.getpid(), record, site, robot, end)
     )
     try:

@@ -394,3 +394,16 @@ def test_ctrl_c_keeps_the_rows(argo, long_file, tmp_path):
     assert stored >= 3
     assert argo("evaluate", long_file, "--out", out, "--no-report").returncode == 0
     assert count_rows(out) == 120
+
+
+@pytest.mark.parametrize("delay", [0, 0.4])
+def test_ctrl_c_while_workers_start(long_file: Path, tmp_path: Path, delay: float) -> None:
+    process = start_evaluate(long_file, tmp_path / "out", subprocess.PIPE)
+    while not other_processes(process.pid):
+        time.sleep(0.005)
+    time.sleep(delay)
+    os.killpg(process.pid, signal.SIGINT)
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert errors.splitlines()[-1].startswith("argo: interrupted")
+    assert "Traceback" not in errors

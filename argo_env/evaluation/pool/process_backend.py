@@ -6,12 +6,12 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from typing import Any
 
-from loky import ProcessPoolExecutor
 from loky.backend.context import LokyContext
 from loky.process_executor import BrokenProcessPool
 
 from argo_compiler.base.errors import Unavailable
 from argo_compiler.base.operating_system import niceness, set_niceness
+from argo_compiler.base.process_pool import ProcessPool
 from argo_env.evaluation.pool.backend import WorkerDiedError
 from argo_env.worker_processes import WorkerContext, ignore_sigint_and_end_with_parent
 
@@ -40,7 +40,7 @@ class ProcessBackend:
 
     def submit(self, function: Callable[[Any], Any], argument: Any) -> "Future[Any]":
         try:
-            future: Future[Any] = self._executor.submit(function, argument)
+            future = self._executor.submit(function, argument)
         except BrokenProcessPool as broken:
             self._broken = True
             raise _death(broken) from None
@@ -70,8 +70,8 @@ class ProcessBackend:
     def close(self) -> None:
         self._executor.shutdown(wait=True, kill_workers=True)
 
-    def _start(self) -> ProcessPoolExecutor:
-        return ProcessPoolExecutor(
+    def _start(self) -> ProcessPool:
+        return ProcessPool(
             self.workers,
             context=self._context,
             initializer=_initialize,

@@ -3,13 +3,13 @@
 import asyncio
 import os
 
-from loky import ProcessPoolExecutor
 from loky.backend.context import LokyContext
 from loky.process_executor import BrokenProcessPool
 
 from argo_compiler.analysis import Analysis, analyse
 from argo_compiler.base.errors import ArgoError
 from argo_compiler.base.model import Model
+from argo_compiler.base.process_pool import ProcessPool
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import has_errors
 from argo_compiler.il import Mission
@@ -63,11 +63,11 @@ class Analyst:
         self._pool.shutdown(wait=True, kill_workers=True)
 
 
-def _make_pool() -> ProcessPoolExecutor:
+def _make_pool() -> ProcessPool:
     # A pool of Python 3.11 that breaks may accept a job and never end it; loky's pool does not.
     context = LokyContext()
     context.Process = CONTEXT.Process
-    return ProcessPoolExecutor(
+    return ProcessPool(
         1, context=context, initializer=ignore_sigint_and_end_with_parent, initargs=(os.getpid(),)
     )
 

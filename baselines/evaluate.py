@@ -184,6 +184,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except ArgoError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
+        return 130
     return 0
 
 

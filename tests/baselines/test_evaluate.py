@@ -3,6 +3,8 @@
 import csv
 import json
 import math
+import os
+import signal
 
 import numpy as np
 import pytest
@@ -108,6 +110,22 @@ def comparison_of(prizes_and_seconds, best):
 
 
 KNOWN = (BestKnown(4.0, 5.0), BestKnown(6.0, 6.0))
+
+
+class Interrupted:
+    """Policy during whose construction a person presses Ctrl-C."""
+
+    def __init__(self) -> None:
+        os.kill(os.getpid(), signal.SIGINT)
+
+
+def test_ctrl_c_ends_with_one_line(capsys):
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # may be ignored
+    try:
+        assert evaluate.main(["--policy", f"{__name__}:Interrupted"]) == 130
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert capsys.readouterr().err == "interrupted\n"
 
 
 def test_the_pareto_front_has_the_policies_that_no_faster_one_equals():

@@ -62,7 +62,7 @@ class Floor(Model):
     """m, height of its deck"""
     patrol: tuple[Pose, ...]
     """at least three poses near the floor's corners that the robot can reach, in the order of a
-    patrol"""
+    patrol; empty: there are no three"""
 
 
 class Place(Model):

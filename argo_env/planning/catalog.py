@@ -7,7 +7,7 @@ from argo_compiler.base.catalog import Area, Catalog, CheckpointInfo, Floor, Pla
 from argo_compiler.base.model import Pose
 from argo_compiler.base.stages import stage_items
 from argo_env.files.parts import Parts
-from argo_env.planning.patrols import load_patrol, require_patrol
+from argo_env.planning.patrols import find_patrol, load_patrol
 from argo_env.site import Site
 
 if TYPE_CHECKING:
@@ -15,12 +15,9 @@ if TYPE_CHECKING:
 
 
 def make_catalog(navigator: "Navigator") -> Catalog:
-    """Return the catalogue of the navigator's site, with a patrol for each floor.
-
-    Raises ArgoError if a floor has no patrol.
-    """
+    """Return the catalogue of the navigator's site, with the patrol of each floor that has one."""
     floors = stage_items("looking for patrols of all floors", navigator.site.spec.floors)
-    return _catalog(navigator.site, {f.number: require_patrol(navigator, f.number) for f in floors})
+    return _catalog(navigator.site, {f.number: find_patrol(navigator, f.number) for f in floors})
 
 
 def load_catalog(site: Site, parts: Parts) -> Catalog | None:

@@ -1,9 +1,8 @@
 """Checks that every site must pass before missions run on it."""
 
-from argo_compiler.base.errors import ArgoError
 from argo_compiler.base.stages import stage_items
 from argo_env.navigation.navigator import Navigator
-from argo_env.planning.patrols import require_patrol
+from argo_env.planning.patrols import find_patrol
 
 
 def unpatrolled_floors(navigator: Navigator) -> list[int]:
@@ -12,15 +11,7 @@ def unpatrolled_floors(navigator: Navigator) -> list[int]:
     A pose can be reached if the robot gets there from all docking stations and back.
     """
     floors = stage_items("looking for patrols of all floors", navigator.site.spec.floors)
-    return [f.number for f in floors if not _has_patrol(navigator, f.number)]
-
-
-def _has_patrol(navigator: Navigator, floor: int) -> bool:
-    try:
-        require_patrol(navigator, floor)
-    except ArgoError:
-        return False
-    return True
+    return [f.number for f in floors if not find_patrol(navigator, f.number)]
 
 
 def unseen_checkpoints(navigator: Navigator) -> list[int]:

@@ -5,7 +5,6 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from argo_compiler.base.errors import Unreachable
 from argo_compiler.base.model import Pose
 from argo_env.files.parts import Parts
 
@@ -16,15 +15,17 @@ if TYPE_CHECKING:
 MIN_SPACING = 2.0  # m, minimum distance between two poses of a patrol
 
 
-def require_patrol(navigator: "Navigator", floor: int) -> tuple[Pose, ...]:
+def find_patrol(navigator: "Navigator", floor: int) -> tuple[Pose, ...]:
     """Return the poses of a floor's patrol, from the disk cache or computed and stored there.
 
     They are at the positions of `patrol_corners`, counter-clockwise from the south-west, and each
-    is turned towards the next one. Raises ArgoError if there are fewer than three positions.
+    is turned towards the next one. There are none if there are fewer than three positions.
     """
     poses = load_patrol(navigator.parts, floor)
     if poses is None:
-        corners = _corners(navigator, floor)
+        corners = patrol_corners(navigator, floor)
+        if len(corners) < 3:
+            corners = []
         navigator.parts.store_text(_part_name(floor), json.dumps(corners))
         poses = _patrol_poses(corners)
     return poses
@@ -54,15 +55,6 @@ def _patrol_poses(corners: Sequence[Sequence[float]]) -> tuple[Pose, ...]:
         )
         for (x, y, z), (next_x, next_y, _) in zip(corners, following, strict=True)
     )
-
-
-def _corners(navigator: "Navigator", floor: int) -> list[tuple[float, float, float]]:
-    corners = patrol_corners(navigator, floor)
-    if len(corners) < 3:
-        raise Unreachable(
-            f"site {navigator.site.name}: floor {floor} has no three places to patrol between"
-        )
-    return corners
 
 
 def patrol_corners(navigator: "Navigator", floor: int) -> list[tuple[float, float, float]]:

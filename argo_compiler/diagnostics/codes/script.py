@@ -234,6 +234,10 @@ SCRIPT = {
         "Words such as a title, a greeting or a remark have no effect on the mission.",
         "No action is needed; if they are an order, write it in other words.",
     ),
+    "script.no-patrol": error(
+        "A floor has no three places that the robot can drive between.",
+        "Name a checkpoint or a place of the floor, or check the site.",
+    ),
     "script.no-start": error(
         "The protocol does not state where the robot starts.", "Set a starting point."
     ),

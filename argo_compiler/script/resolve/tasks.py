@@ -41,7 +41,7 @@ class TaskMaker:
             case orders.Measure():
                 return self._measurements(order)
             case orders.Go(where=FloorName() as floor):
-                return [_waypoint(self.context.lookup.floor(floor).patrol[0], span)]
+                return [_waypoint(self._patrol(floor)[0], span)]
             case orders.Go(where=where):
                 assert not isinstance(where, FloorName)
                 return [_waypoint(self.context.lookup.locate(where, "end")[0], span)]
@@ -162,7 +162,7 @@ class TaskMaker:
         for place in order.places:
             if isinstance(place, FloorName):
                 floor = context.lookup.floor(place)
-                rounds.append((f"Patrol floor {floor.number}", list(floor.patrol)))
+                rounds.append((f"Patrol floor {floor.number}", self._patrol(place)))
                 continue
             pose, area = context.lookup.locate(place, "end")
             if isinstance(place, PlaceLocation):
@@ -176,6 +176,15 @@ class TaskMaker:
             hint = "write a line and a name for each of them"
             context.diagnostics.error("one-name", message, order.span, hint)
         return rounds
+
+    def _patrol(self, name: FloorName) -> list[Pose]:
+        """Return the poses of a floor's patrol. Raises RefusedError if there is none."""
+        floor = self.context.lookup.floor(name)
+        if not floor.patrol:
+            message = f"floor {floor.number} has no three places that the robot can drive between"
+            hint = "name a checkpoint or a place of the floor, or check the site"
+            self.context.diagnostics.refuse("no-patrol", message, name.span, hint)
+        return list(floor.patrol)
 
     # ---- what is measured before already, or elsewhere
 

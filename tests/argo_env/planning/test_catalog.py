@@ -7,14 +7,15 @@ import math
 import pytest
 
 from argo_compiler.base.catalog import Catalog
-from argo_compiler.base.errors import ArgoError
+from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.hfsm import lower
 from argo_compiler.il import Action, Mission, Task
 from argo_compiler.isar import from_isar, to_isar
+from argo_compiler.script import import_script
+from argo_env.files.parts import Parts
 from argo_env.navigation import Navigator
-from argo_env.planning.catalog import make_catalog
+from argo_env.planning.catalog import load_catalog, make_catalog
 from argo_env.planning.inspection_views import inspection_views_by_object_id
-from argo_env.planning.patrols import require_patrol
 from tests.yard import site_of
 
 
@@ -81,16 +82,22 @@ def test_same_site_same_catalogue(catalog, navigator):
     assert make_catalog(navigator) == catalog
 
 
-def test_floor_that_is_too_small_to_patrol(robot):
+def test_floor_that_is_too_small_to_patrol(robot, tmp_path):
     nook = site_of(
         name="nook",
         ground=(0, 0, 6, 6),
         floors=[{"number": 1, "z": 0.0, "railed": False, "walkways": {"a": [2, 2, 4, 4]}}],
         areas=[{"number": 1, "dock": [3.05, 3.05, 0]}],
     )
-    navigator = Navigator(nook, robot)
-    with pytest.raises(ArgoError, match="site nook: floor 1 has no three places"):
-        require_patrol(navigator, 1)
+    navigator = Navigator(nook, robot, Parts(tmp_path, "nook"))
+    catalog = make_catalog(navigator)
+    assert catalog.floor(1).patrol == ()
+    assert load_catalog(nook, navigator.parts) == catalog
+    begin = "Mission Protocol\n1. Set the starting point in starting area 1.\n"
+    for sentence in ("2. Patrol floor 1.", "2. Go to floor 1."):
+        with pytest.raises(DiagnosticError, match="floor 1 has no three places that the robot"):
+            import_script(begin + sentence, catalog, source_name="nook.txt")
+    import_script(begin + "2. Wait 5 s.", catalog, source_name="nook.txt")
 
 
 def test_views_are_places_that_the_robot_reads_from(shipped, navigator):

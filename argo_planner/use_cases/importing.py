@@ -33,6 +33,10 @@ _log = logging.getLogger(__name__)
 
 _BRACE = re.compile(rb"(\xef\xbb\xbf|\xff\xfe|\xfe\xff)?[\s\0]*\{")
 """beginning of a JSON object, in any encoding"""
+_PLAN = re.compile(rb'[0-9a-f]{8} \{"n":0,"format":"argo plan"')
+"""beginning of a mission plan of the planning service"""
+_XML = re.compile(rb"(\xef\xbb\xbf)?\s*<[?!a-zA-Z]")
+"""beginning of an XML or HTML file"""
 _JOURNAL = re.compile(rb'[0-9a-f]{8} \{"n":0,')
 """beginning of the journal of a run"""
 _RECORDING = re.compile(rb"\x89MCAP0.{11,16}\x04\x00\x00\x00argo", re.DOTALL)
@@ -108,8 +112,8 @@ def load_unchecked_mission(
 
     Raises:
         DiagnosticError: The upload can't be read as a mission.
-        Invalid: It is the journal or recording of a run, or areas are given for a mission that has
-            its own.
+        Invalid: It is a file of another kind, such as the journal of a run, or areas are given for
+            a mission that has its own.
     """
     _require_no_run(upload)
     kind, name = guess_source_kind(upload), upload.name
@@ -127,26 +131,40 @@ def load_unchecked_mission(
             file = decode_mission(upload.content, name)
             return LoadedMission(file.mission, file.diagnostics_with_positions(file.changes), file)
         case SourceKind.SCRIPT:
+            _require_script(upload)
             return _load_script(upload.content, name, catalog, start_area, end_area)
 
 
+def _require_script(upload: Upload) -> None:
+    """Raise Invalid if an upload can't be a script: XML, HTML or YAML."""
+    assert isinstance(upload.content, bytes)
+    for is_other, kind in (
+        (_XML.match(upload.content), "XML or HTML: choose the mission's file"),
+        (
+            Path(upload.name).suffix.lower() in (".yaml", ".yml"),
+            "YAML, in which sites, faults and evaluations are written: choose the mission's file",
+        ),
+    ):
+        if is_other:
+            raise Invalid(f"{upload.name} is no mission, but {kind}")
+
+
 def _require_no_run(upload: Upload) -> None:
-    """Raise Invalid if an upload is the journal or the recording of a run."""
+    """Raise Invalid if an upload is a plan, or the journal or recording of a run."""
     beginning = b""
     if isinstance(upload.content, bytes):
         beginning = upload.content[:64]
     elif isinstance(upload.content, Path) and os.path.isfile(upload.content):
         with open_file(upload.content, "bag") as file:
             beginning = file.read(64)
-    for pattern, kind, remedy in (
-        (_JOURNAL, "journal", Remedy.RESUME),
-        (_RECORDING, "recording", Remedy.REPLAY),
+    for pattern, kind, remedies in (
+        (_PLAN, "a plan of the planning service, which exports its mission", ()),
+        (_JOURNAL, "the journal of a run", (Remedy.RESUME,)),
+        (_RECORDING, "the recording of a run", (Remedy.REPLAY,)),
     ):
         if pattern.match(beginning):
             raise Invalid(
-                f"{upload.name} is the {kind} of a run, not a mission",
-                remedies=(remedy,),
-                about=upload.name,
+                f"{upload.name} is {kind}, not a mission", remedies=remedies, about=upload.name
             )
 
 

@@ -82,7 +82,9 @@ def test_skeletons_are_valid_and_used_together(argo, tmp_path, site) -> None:
         argo("new", kind, name, "--site", site, cwd=tmp_path, status=0)
     checked = argo("check", "tour.txt", "--site", site, "--strict", cwd=tmp_path, status=0)
     assert "warning" not in checked.stdout + checked.stderr
-    argo("run", "tour.txt", "--site", site, "--faults", "bad_day.yaml", cwd=tmp_path, status=0)
+    run = ("run", "tour.txt", "--site", site, "--faults", "bad_day.yaml")
+    output = argo(*run, cwd=tmp_path, status=0).stdout
+    assert "Done, 2 findings" in " ".join(output.split())
     evaluate_few_worlds(argo, tmp_path / "tour.yaml")
     assert (tmp_path / "out" / "evaluations" / "tour" / "report.html").exists()
 

@@ -27,7 +27,7 @@ TYPES := $(PAGE)/src/api/schema.d.ts
 NPM := npm --prefix $(PAGE)
 export PATH := $(PATH):$(abspath $(BIN))
 
-.PHONY: constraints demo page test test-all test-campaigns test-everywhere test-without-physics speed lint lint-python lint-page format generated help clean
+.PHONY: constraints demo page test test-all test-campaigns test-everywhere test-without-physics speed lint lint-style lint-types lint-page format generated help clean
 
 demo: $(VENV)/demo.stamp ## run mission #1 and write its report
 	$(BIN)/argo run scenarios/umad/missions/mission_1.txt --site umad --seed 0 \
@@ -59,14 +59,16 @@ speed: $(VENV)/test.stamp ## how fast Argo is beside the values that are kept; n
 	$(INSTALL) 'py_trees>=2.3,<3'
 	env -u PYTHONDONTWRITEBYTECODE $(BIN)/python -m benchmarks.speed
 
-lint: lint-python lint-page ## check style and types
+lint: lint-style lint-types lint-page ## check style and types
 
-lint-python: $(VENV)/learned.stamp
+lint-style: $(VENV)/test.stamp
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/mypy
-	$(BIN)/mypy --platform win32 --cache-dir .mypy_cache/win32
-	$(BIN)/mypy --platform darwin --cache-dir .mypy_cache/darwin
+
+lint-types: lint-types-linux lint-types-win32 lint-types-darwin
+
+lint-types-%: $(VENV)/learned.stamp
+	$(BIN)/mypy --platform $* --cache-dir .mypy_cache/$*
 
 lint-page: $(TYPES) $(VENV)/npm.stamp
 	$(NPM) run --silent check

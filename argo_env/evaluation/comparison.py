@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from argo_compiler.base.errors import Conflict, NotFound, Remedy
 from argo_env.evaluation.case import PlanName
 from argo_env.evaluation.estimates.pairs import (
+    MIN_PAIRS,
     FirstMinusSecond,
     SuccessPairs,
     mean_first_minus_second,
@@ -121,9 +122,15 @@ class PlanComparison:
         is_significant = excludes_zero if self.any_time else self.p_value <= 0.05
         if is_significant:
             return f"{'A' if self.success.value > 0 else 'B'} succeeds more often."
-        if self.duration.is_significant_by_p_value:
-            faster = "A" if self.duration.value < 0 else "B"
+        time = self.duration
+        faster = "A" if time.value < 0 else "B"
+        if time.is_significant_by_p_value:
             return f"No difference in success is shown; {faster} is faster where both succeed."
+        if time.value and 0 < time.pairs < MIN_PAIRS:
+            return (
+                f"No difference in success is shown. {faster} is faster where both succeed, but "
+                f"{time.pairs} worlds can't exclude chance: evaluate at least {MIN_PAIRS}."
+            )
         return "No difference is shown."
 
 

@@ -247,7 +247,7 @@ def _difference(found: FirstMinusSecond, scale: float, unit: str) -> tuple[str, 
         return "", ""
     value, low, high = (scale * v for v in (found.value, found.low, found.high))
     if low == high:
-        return f"{value:+.1f} {unit}", "equal everywhere"
+        return f"{value:+.1f} {unit}", "none: the same in all worlds"
     return f"{value:+.1f} {unit}", f"{low:+.1f} to {high:+.1f} {unit}"
 
 

@@ -14,6 +14,8 @@ from argo_env.evaluation.estimates.rates import LEVEL, clopper_pearson
 from argo_env.seeding import generator
 
 RESAMPLES = 10_000
+MIN_PAIRS = 6
+"""number of pairs from which on a test can show a difference: 2 of 2**6 swaps are below 5 %"""
 _BATCH_SIZE = 2_000_000  # numbers in memory at once
 
 

@@ -262,11 +262,27 @@ def test_the_page_of_a_comparison_has_the_tests_and_intervals(mission, tmp_path)
     )
     assert "A succeeds more often." in page
     assert "+20.0 %" in page
-    assert "none: equal in all worlds" in page  # of times
+    assert "none: the same in all worlds" in page  # of times
     assert "succeeds in 40 of 40 runs" in page
     assert "A test over worlds" in page
     assert f"{100 * compared.power(0.05):.0f} %" in page
     assert page == comparison_page(compared, tmp_path, tmp_path / "b")
+
+
+def test_few_worlds_show_no_difference_of_the_times(mission):
+    calm, hasty = (results_of(mission, name, fail=()) for name in ("calm", "hasty"))
+
+    def compared_in(worlds):
+        rows = [row for row in hasty.rows if row.seed < worlds]
+        slower = (row.model_copy(update={"duration": row.duration + 100.0}) for row in rows)
+        return compare_plans(calm, EvaluationResults(hasty.plan, tuple(slower)))
+
+    few, many = compared_in(5), compared_in(6)
+    assert "A is faster where both succeed, but 5 worlds can't exclude chance" in few.conclusion
+    assert "evaluate at least 6" in few.conclusion
+    assert many.conclusion.endswith("A is faster where both succeed.")
+    for compared in (few, many):
+        assert "none: the same in all worlds" in comparison_page(compared)
 
 
 def test_a_comparison_of_failures_has_a_page(mission):

@@ -44,6 +44,8 @@ MAX_BYTES = 50_000_000
 
 _RECORD_FIELDS = {"mission", "result", "trace"}
 """Fields of a run's record, which has its own versions."""
+_MIN_UNKNOWN = 3
+"""number of unknown fields from which on an object without tasks is no mission with mistakes"""
 
 
 @dataclass(frozen=True)
@@ -111,6 +113,9 @@ def decode_mission(content: bytes, source_name: str) -> MissionFile:
     version = current.get("version", VERSION)
     if version != VERSION or isinstance(version, bool):
         _refuse(source_name, text, [*faults, _unsupported_version(version)])
+    unknown = [name for name in current if name not in Mission.model_fields]
+    if len(unknown) >= _MIN_UNKNOWN and "tasks" not in current:
+        _refuse(source_name, text, [*faults, _other_json(unknown[0])])
     result = validate_mission(current)
     if isinstance(result, list) or faults:
         _refuse(source_name, text, faults + (result if isinstance(result, list) else []))
@@ -216,6 +221,14 @@ def _not_a_mission() -> UnplacedDiagnostic:
         "file.not-a-mission",
         "the file is not a mission: its JSON is not an object",
         f'a mission begins with {{"version": {VERSION}, "tasks": [',
+    )
+
+
+def _other_json(unknown_field: str) -> UnplacedDiagnostic:
+    return unplaced(
+        "file.not-a-mission",
+        f"the file is not a mission: it has {unknown_field[:40]!r}, but no 'tasks'",
+        "choose the mission's file",
     )
 
 

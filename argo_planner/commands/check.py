@@ -37,7 +37,8 @@ def check_command(
 ) -> None:
     """Check a mission without running it; exits with status 2 if there are errors."""
     check_outputs([source, site], [output], force=force)
-    diagnostics = add_options_to_hints(_diagnostics(source, site, start_area, end_area))
+    found = _diagnostics(source, site, start_area, end_area)
+    diagnostics = add_options_to_hints(found, str(source))
     written = format_diagnostics(diagnostics, str(source), format)
     if output and output != STANDARD_OUTPUT:
         write_content(output, written + "\n")

@@ -5,7 +5,7 @@ import sys
 from argo_compiler.diagnostics import DiagnosticError, to_text
 from argo_env.planning.opening import OpenedSite
 from argo_planner.terminal.verbosity import is_quiet
-from argo_planner.terminal.words import add_options_to_hints
+from argo_planner.terminal.words import diagnostics_text
 from argo_planner.use_cases.explaining import explain_mission, format_explanation
 from argo_planner.use_cases.importing import ImportedMission, Upload, import_mission
 
@@ -16,7 +16,7 @@ def import_and_warn(
     """Import a mission and print its warnings; raise what `import_mission` raises."""
     imported = import_mission(upload, site, start_area, end_area)
     if imported.warnings and not is_quiet():
-        print(to_text(add_options_to_hints(imported.warnings), upload.name), file=sys.stderr)
+        print(diagnostics_text(imported.warnings, upload.name), file=sys.stderr)
     return imported
 
 

@@ -37,11 +37,19 @@ def error_text(error: ArgoError, prefix: str = "") -> str:
     The `prefix` goes before a message that does not begin with the name of a file.
     """
     # Slow to import, and most commands have no error.
-    from argo_compiler.diagnostics import DiagnosticError, to_text
+    from argo_compiler.diagnostics import DiagnosticError
 
     if isinstance(error, DiagnosticError):
-        return to_text(add_options_to_hints(error.diagnostics), error.source_name)
-    return f"{prefix}{error}{_remedies_text(error.remedies, error.about)}"
+        return diagnostics_text(error.diagnostics, error.source_name)
+    remedies = _remedies_text(error.remedies, error.about)
+    return f"{prefix}{error} ({remedies})" if remedies else f"{prefix}{error}"
+
+
+def diagnostics_text(diagnostics: Iterable["Diagnostic"], source: str) -> str:
+    """Return the text of the diagnostics of a file, with the options that are the remedies."""
+    from argo_compiler.diagnostics import to_text
+
+    return to_text(add_options_to_hints(diagnostics, source), source)
 
 
 def error_text_with_route_commands(error: ArgoError, source: str) -> str:
@@ -63,21 +71,28 @@ def insert_keep_order_option(text: str) -> str:
     return text.replace(AS_WRITTEN, f"{AS_WRITTEN} (--keep-order)")
 
 
-def add_options_to_hints(diagnostics: Iterable["Diagnostic"]) -> tuple["Diagnostic", ...]:
-    """Return all diagnostics, with the options that are the remedy added to their hints."""
-    return tuple(d.model_copy(update={"hint": _hint(d)}) if d.remedies else d for d in diagnostics)
+def add_options_to_hints(
+    diagnostics: Iterable["Diagnostic"], source: str
+) -> tuple["Diagnostic", ...]:
+    """Return all diagnostics, with the options that are the remedy added to their hints.
+
+    `source` is the file that they are about.
+    """
+    return tuple(
+        d.model_copy(update={"hint": _hint(d, source)}) if d.remedies else d for d in diagnostics
+    )
 
 
-def _hint(diagnostic: "Diagnostic") -> str:
+def _hint(diagnostic: "Diagnostic", source: str) -> str:
     hint, choice = diagnostic.hint or "", diagnostic.choice
     if choice is None or not choice.values:
-        return f"{hint}{_remedies_text(diagnostic.remedies)}".lstrip()
+        remedies = _remedies_text(diagnostic.remedies, source)
+        return f"{hint} ({remedies})" if hint else remedies
     option = _REMEDY_TEXTS[choice.remedy]
     chosen = listed([f"{option} {value}" for value in choice.values], "or")
     it = "it " if choice.remedy is Remedy.CHOOSE_SITE else ""
     return hint.replace(str(choice), f"choose {it}with {chosen}")
 
 
-def _remedies_text(remedies: tuple[Remedy, ...], about: str = "") -> str:
-    texts = [_REMEDY_TEXTS[remedy].format(about=shlex.quote(about)) for remedy in remedies]
-    return f" ({', '.join(texts)})" if texts else ""
+def _remedies_text(remedies: tuple[Remedy, ...], about: str) -> str:
+    return ", ".join(_REMEDY_TEXTS[remedy].format(about=shlex.quote(about)) for remedy in remedies)

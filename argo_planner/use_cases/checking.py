@@ -107,6 +107,7 @@ def error_diagnostics(error: ArgoError) -> tuple[Diagnostic, ...]:
             severity=Severity.ERROR,
             message=f"the file {file.message}" if file else str(error),
             hint=file.hint if file else None,
+            remedies=error.remedies,
         ),
     )
 

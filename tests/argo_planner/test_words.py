@@ -41,7 +41,7 @@ def test_hints_name_the_options(hint, remedy, choice, said):
         remedies=(remedy,),
         choice=choice and RemedyChoice(remedy, *choice),
     )
-    (shown,) = add_options_to_hints([found])
+    (shown,) = add_options_to_hints([found], "m.txt")
     assert shown.hint == said
 
 

@@ -38,6 +38,7 @@ FILES: dict[str, str | bytes] = {
     "folder/mine.txt": "mine\n",
     "out/report.json": json.dumps({"version": 4, "mission": {}, "result": {}, "trace": []}),
     "out/report.html": "<html></html>",
+    "machine.json": '{"composites": [], "initial": "A", "leaves": [], "events": []}',
     "service.plan": '00000000 {"n":0,"format":"argo plan","version":1}\n',
     # documents
     "mission.docx": b"PK\3\4\x14\0\0\0\0\0\0\0!\0",
@@ -233,6 +234,8 @@ IN_OUTPUT = {
     "run out/report.json": "out/report.json: error: the file is the report of a run, not a mission",
     "run out/report.html": "out/report.html is no mission, but XML or HTML",
     "check taken.yaml": "taken.yaml is no mission, but YAML, in which sites, faults",
+    "check out/run.journal": "hint: argo resume out/run.journal",
+    "check machine.json": "the file is not a mission: it has 'composites', but no 'tasks'",
     "explain service.plan": "service.plan is a plan of the planning service, which exports",
     "run out/run.journal": "is the journal of a run, not a mission (argo resume out/run.journal)",
     "run run.mcap": "run.mcap is the recording of a run, not a mission (argo replay run.mcap)",

@@ -198,11 +198,11 @@ def _report_error(error: BaseException) -> int:
 
         print(error_text(error, "argo: "), file=sys.stderr)
         return 2
-    from argo_compiler.base.extensions import failure_text, package_at_fault
+    from argo_compiler.base.extensions import package_failure
 
-    if isinstance(error, Exception) and (package := package_at_fault(error)) is not None:
-        _log.debug("the error of %s", package, exc_info=error)
-        print(f"argo: {failure_text(package, error)}; see more with argo -vv", file=sys.stderr)
+    if isinstance(error, Exception) and (failure := package_failure(error)) is not None:
+        _log.debug("%s", failure, exc_info=error)
+        print(f"argo: {failure}; see more with argo -vv", file=sys.stderr)
         return 2
     raise error
 

@@ -1,13 +1,10 @@
 """Protocol of policies, the names of Argo's own, and the choice of one by name."""
 
-from collections.abc import Callable
-from importlib import import_module
-from operator import attrgetter
-from typing import Any, Protocol, cast
+from typing import Protocol, cast
 
 from argo_compiler.base.errors import NotFound
 from argo_env.envs.observations import Observation
-from argo_env.policies import POLICIES
+from argo_env.policies import POLICIES, import_policy
 
 
 class Policy(Protocol):
@@ -56,18 +53,10 @@ def make_policy(name: str) -> Policy:
 
     Raises ArgoError if there is none, or if it can't be used.
     """
-    if ":" not in name:
-        return cast("Policy", _find_factory(name)())
-    module, _, attribute = name.partition(":")
+    if ":" in name:
+        return cast("Policy", import_policy(name)())
     try:
-        factory = attrgetter(attribute)(import_module(module))
-    except (ImportError, AttributeError, ValueError) as error:
-        raise NotFound(f"policy `{name}` can't be loaded ({error})") from None
-    return cast("Policy", factory())
-
-
-def _find_factory(name: str) -> Callable[..., Any]:
-    try:
-        return POLICIES[name]
+        factory = POLICIES[name]
     except NotFound as error:
         raise NotFound(f"{error}; name a policy of your own as `module:class`") from None
+    return cast("Policy", factory())

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 
 from argo_compiler.base.errors import ArgoError, Conflict, NotFound, Unavailable
 from argo_compiler.base.extras import PROJECT
+from argo_compiler.base.model import Model
 from argo_compiler.base.nearest_name import nearest_name
 
 if TYPE_CHECKING:
@@ -27,17 +28,16 @@ _ARGO = ("argo_compiler", "argo_env", "argo_planner", "baselines")
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,39}")
 
 
-@dataclass(frozen=True, slots=True)
-class Extension:
-    """An object that an installed package offers, and whether it can be used."""
+class InstalledExtension(Model):
+    """An object that an installed package offers."""
 
-    group: str
-    """group of the entry point, such as `argo.sensors`"""
+    kind: str
+    """such as `sensor`"""
     name: str
     package: str
     """name and version of the package"""
     problem: str | None = None
-    """reason why it can't be used; None: it can, or it was not imported yet"""
+    """reason why it can't be used; None: it can"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +135,7 @@ class ExtensionPoint(Generic[T]):
         """Remove an object that was added by `register`; no-op if there is none of that name."""
         self._registered.pop(name, None)
 
-    def extensions(self) -> tuple[Extension, ...]:
+    def extensions(self) -> tuple[InstalledExtension, ...]:
         """Import all that packages offer, and return it with the problems.
 
         Among them are offers that are not used, as their name is taken or can't be a name. Those of
@@ -150,7 +150,11 @@ class ExtensionPoint(Generic[T]):
             elif isinstance(loaded := self._load(name, offer), str):
                 problem = loaded
             if problem or not offer.is_of_argo:
-                found.append(Extension(self.group, name, offer.package, problem))
+                found.append(
+                    InstalledExtension(
+                        kind=self.noun, name=name, package=offer.package, problem=problem
+                    )
+                )
         return tuple(found)
 
     def _usable_offers(self) -> dict[str, _Offer]:
@@ -194,8 +198,8 @@ def function_problem(name: str, item: object) -> str | None:  # noqa: ARG001
     return None if callable(item) else "is no function"
 
 
-def package_at_fault(error: BaseException) -> str | None:
-    """Return the name and version of the package in whose code an error was raised.
+def package_failure(error: Exception) -> Unavailable | None:
+    """Return the error that names the package in whose code another error was raised.
 
     Returns None if no code of a package that extends Argo was running.
     """
@@ -206,7 +210,9 @@ def package_at_fault(error: BaseException) -> str | None:
         if module not in _ARGO:
             found = modules.get(module, found)
         trace = trace.tb_next
-    return found
+    if found is None:
+        return None
+    return Unavailable(f"the package {found} has failed: {type(error).__name__}: {error}")
 
 
 @contextmanager
@@ -217,14 +223,9 @@ def naming_packages() -> Iterator[None]:
     except ArgoError:
         raise
     except Exception as error:
-        if (package := package_at_fault(error)) is None:
+        if (failure := package_failure(error)) is None:
             raise
-        raise Unavailable(failure_text(package, error)) from error
-
-
-def failure_text(package: str, error: BaseException) -> str:
-    """Return the message that a package has failed."""
-    return f"the package {package} has failed: {type(error).__name__}: {error}"
+        raise failure from error
 
 
 def _top_modules_of_packages() -> Iterator[tuple[str, str]]:

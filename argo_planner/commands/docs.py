@@ -8,6 +8,7 @@ import typer
 from argo_compiler.base.errors import NotFound
 from argo_compiler.base.nearest_name import nearest_name
 from argo_env.files.resources import docs_folder
+from argo_planner.terminal.completion import offer_names
 
 
 def _find_pages() -> dict[str, Path]:
@@ -15,13 +16,10 @@ def _find_pages() -> dict[str, Path]:
     return {path.stem: path for path in sorted(docs_folder().glob("*.md"))}
 
 
-def _offer_pages(incomplete: str) -> list[str]:
-    return [name for name in _find_pages() if name.startswith(incomplete)]
-
-
 def docs_command(
     page: Annotated[
-        str | None, typer.Argument(help="name of the page to print", autocompletion=_offer_pages)
+        str | None,
+        typer.Argument(help="name of the page to print", autocompletion=offer_names(_find_pages)),
     ] = None,
 ) -> None:
     """List the pages of the documentation, or print one as Markdown."""

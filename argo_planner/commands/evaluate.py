@@ -73,14 +73,14 @@ def evaluate_command(
         str,
         typer.Option(
             help=f"model of the robot's motion: {', '.join(drive_names())}",
-            autocompletion=offer_names(drive_names()),
+            autocompletion=offer_names(drive_names),
         ),
     ] = "route",
     sensor: Annotated[
         str,
         typer.Option(
             help=f"how checkpoints are read: {', '.join(SENSORS)}",
-            autocompletion=offer_names(SENSORS),
+            autocompletion=offer_names(SENSORS.names),
         ),
     ] = IDEAL,
     faults: Annotated[
@@ -119,7 +119,7 @@ def evaluate_command(
             metavar="DRIVE",
             help="fast drive, such as route; many runs with it make the estimates for --drive more "
             "precise, if that saves time",
-            autocompletion=offer_names(drive_names()),
+            autocompletion=offer_names(drive_names),
         ),
     ] = None,
     start_area: StartArea = None,
@@ -128,7 +128,7 @@ def evaluate_command(
         str,
         typer.Option(
             help=f"where the runs are computed: {', '.join(BACKENDS)}",
-            autocompletion=offer_names(tuple(BACKENDS)),
+            autocompletion=offer_names(lambda: BACKENDS),
         ),
     ] = PROCESSES,
     workers: Annotated[

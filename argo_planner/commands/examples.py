@@ -1,5 +1,6 @@
 """`argo examples`: list the shipped examples, or copy one."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
@@ -14,9 +15,8 @@ from argo_planner.use_cases.examples import example_files, list_examples
 _COPY = "copy"
 
 
-def _offer_examples(incomplete: str) -> list[str]:
-    names = (name for examples in list_examples().values() for name in examples)
-    return [name for name in names if name.startswith(incomplete)]
+def _example_names() -> Iterator[str]:
+    return (name for examples in list_examples().values() for name in examples)
 
 
 def examples_command(
@@ -25,11 +25,12 @@ def examples_command(
         typer.Argument(
             metavar=f"[{_COPY}]",
             help="copy an example with the files that it needs; nothing: list all",
-            autocompletion=offer_names([_COPY]),
+            autocompletion=offer_names(lambda: [_COPY]),
         ),
     ] = None,
     name: Annotated[
-        str | None, typer.Argument(help="name of the example", autocompletion=_offer_examples)
+        str | None,
+        typer.Argument(help="name of the example", autocompletion=offer_names(_example_names)),
     ] = None,
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="folder to copy to")] = Path(),
     force: Force = False,
@@ -39,7 +40,7 @@ def examples_command(
         _print_examples()
         return
     if action != _COPY:
-        known = any(action in examples for examples in list_examples().values())
+        known = action in _example_names()
         remedy = f"{action}` copies it" if known else "NAME` copies one, `argo examples` lists them"
         raise Invalid(f"there is no `argo examples {action}`; `argo examples copy {remedy}")
     if name is None:

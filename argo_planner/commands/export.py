@@ -30,7 +30,7 @@ def export_command(
             "--to",
             metavar="FORMAT",
             help=f"format: {', '.join(EXPORTERS)}",
-            autocompletion=offer_names(EXPORTERS),
+            autocompletion=offer_names(EXPORTERS.names),
         ),
     ],
     output: Annotated[

@@ -1,6 +1,7 @@
 """`argo route`: suggest the best order of a mission's tasks, with its proof."""
 
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -51,10 +52,6 @@ class Spread(StrEnum):
 SPREADS = {Spread.SIMULATED: SIMULATED, Spread.CAUTIOUS: CAUTIOUS}
 
 
-def _offer_solvers(incomplete: str) -> list[str]:
-    return offer_names(installed_names("argo.solvers"))(incomplete)
-
-
 def route_command(
     source: Source,
     site: SiteOption = "umad",
@@ -85,7 +82,7 @@ def route_command(
         typer.Option(
             help="solver of an installed package, which takes part besides Argo's own; "
             "can be given several times; `argo doctor` lists them",
-            autocompletion=_offer_solvers,
+            autocompletion=offer_names(partial(installed_names, "argo.solvers")),
         ),
     ] = None,
     risk: Annotated[

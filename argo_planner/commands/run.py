@@ -121,14 +121,14 @@ def run_command(
         str,
         typer.Option(
             help=f"model of the robot's motion: {', '.join(drive_names())}",
-            autocompletion=offer_names(drive_names()),
+            autocompletion=offer_names(drive_names),
         ),
     ] = "kinematic",
     sensor: Annotated[
         str,
         typer.Option(
             help=f"how checkpoints are read: {', '.join(SENSORS)}",
-            autocompletion=offer_names(SENSORS),
+            autocompletion=offer_names(SENSORS.names),
         ),
     ] = "ideal",
     optimise: Optimise = False,

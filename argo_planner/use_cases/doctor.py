@@ -5,11 +5,12 @@ import sys
 from importlib.util import find_spec
 
 from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.extensions import InstalledExtension
 from argo_compiler.base.extras import install_line
 from argo_compiler.base.model import Model
 from argo_compiler.base.version import __version__
 from argo_env.files import cache
-from argo_planner.use_cases.extensions import InstalledExtension, find_extensions
+from argo_planner.use_cases.extensions import find_extensions
 
 _UVLOOP = () if sys.platform == "win32" else ("uvloop",)
 _EXTRAS: dict[str, tuple[str, tuple[str, ...]]] = {

@@ -3,7 +3,6 @@
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from importlib import import_module
 from pathlib import Path
 from typing import cast
 
@@ -28,7 +27,7 @@ from argo_env.faults.loading import (
     decode_faults,
 )
 from argo_env.planning.opening import OpenedSite, open_site
-from argo_env.policies import OPTIMISED, POLICIES
+from argo_env.policies import OPTIMISED, POLICIES, import_policy
 from argo_env.robot.spec import load_robot
 from argo_env.run.run_setup import check_spec
 from argo_env.run.spec import RunSpec
@@ -219,12 +218,8 @@ def _find_order_function(policy: str) -> Callable[[Mission, OpenedSite], object]
 
     Raises NotFound if there is none, Unavailable if an installed package's can't be used.
     """
-    module, colon, name = policy.partition(":")
-    if colon:
-        try:
-            return cast("Callable[..., object]", getattr(import_module(module), name))
-        except (ImportError, AttributeError, ValueError) as error:
-            raise NotFound(f"policy `{policy}`: {error}") from None
+    if ":" in policy:
+        return cast("Callable[..., object]", import_policy(policy))
     if policy not in POLICIES:
         others = "".join(f", {name}" for name in installed_names(POLICIES.group))
         raise NotFound(

@@ -5,8 +5,7 @@ from collections.abc import Iterator
 from importlib import import_module
 from typing import Any
 
-from argo_compiler.base.extensions import ExtensionPoint, installed_names
-from argo_compiler.base.model import Model
+from argo_compiler.base.extensions import ExtensionPoint, InstalledExtension, installed_names
 
 _log = logging.getLogger(__name__)
 
@@ -23,28 +22,13 @@ _POINTS = {
 that offer something in the group, since some take a second"""
 
 
-class InstalledExtension(Model):
-    """An object that an installed package offers."""
-
-    kind: str
-    """such as `sensor`"""
-    name: str
-    package: str
-    """name and version of the package"""
-    problem: str | None = None
-    """reason why it can't be used; None: it can"""
-
-
 def find_extensions() -> Iterator[InstalledExtension]:
     """Import and yield all that installed packages offer, also what can't be used."""
     for group, (module, name) in _POINTS.items():
         if not installed_names(group):
             continue
         point: ExtensionPoint[Any] = getattr(import_module(module), name)
-        for one in point.extensions():
-            yield InstalledExtension(
-                kind=point.noun, name=one.name, package=one.package, problem=one.problem
-            )
+        yield from point.extensions()
 
 
 def usable_extensions() -> tuple[InstalledExtension, ...]:

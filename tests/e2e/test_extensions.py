@@ -335,7 +335,6 @@ class TestFaultyPackages:
         hampered("run", mission, "--drive", "route", "--report", tmp_path / "report")
         assert read_run_record(tmp_path / "report").sensor == "ideal"
 
-    @pytest.mark.physics
     @pytest.mark.parametrize(
         ("arguments", "message"),
         [

@@ -8,6 +8,7 @@ from typing import Any
 
 from fastapi import APIRouter, FastAPI, Response
 
+from argo_compiler.base.extensions import InstalledExtension
 from argo_compiler.base.model import Model
 from argo_compiler.base.version import __version__
 from argo_planner.service.rooms.messages import RoomMessage
@@ -36,7 +37,6 @@ from argo_planner.service.web.requests import (
     Viewer,
     json_response,
 )
-from argo_planner.use_cases.extensions import InstalledExtension
 
 OpenService = Callable[[], AbstractAsyncContextManager[PlanningService]]
 """function that returns a context manager, which opens the service and closes it at the end"""

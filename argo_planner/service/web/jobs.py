@@ -74,7 +74,6 @@ async def start_order_search(
     known = installed_names("argo.solvers")
     if unknown := [name for name in asked.solvers if name not in known]:
         raise Invalid(f"no installed package offers the solver `{unknown[0]}`")
-
     try:
         require_known(plan.mission, asked.requirements)
     except NotFound as error:  # 404 would be about the address

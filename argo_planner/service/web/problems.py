@@ -23,7 +23,7 @@ from argo_compiler.base.errors import (
     Unavailable,
     Unreachable,
 )
-from argo_compiler.base.extensions import failure_text, package_at_fault
+from argo_compiler.base.extensions import package_failure
 from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError
 from argo_planner.service.core.commands import Revision
@@ -142,12 +142,9 @@ def install_problem_handlers(app: FastAPI) -> None:
         return problem_response(plain_problem(error.status_code, code, str(error.detail)), headers)
 
     async def handle_defect(_: Request, error: Exception) -> Response:
-        if (package := package_at_fault(error)) is not None:
-            _log.error("a defect of the package %s", package, exc_info=error)
-            detail = failure_text(package, error)
-            return problem_response(
-                plain_problem(HTTPStatus.SERVICE_UNAVAILABLE, "unavailable", detail)
-            )
+        if (failure := package_failure(error)) is not None:
+            _log.error("%s", failure, exc_info=error)
+            return problem_response(problem_from_error(failure))
         _log.error("a defect of Argo", exc_info=error)
         detail = (
             "this is a defect of Argo: please report it with the traceback in the service's log"

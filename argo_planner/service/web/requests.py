@@ -14,6 +14,7 @@ from fastapi.security import APIKeyCookie, HTTPBearer
 from pydantic import Field
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.extensions import InstalledExtension
 from argo_compiler.base.model import Model
 from argo_env.planning.opening import OpenedSite
 from argo_planner.service.evaluations.evaluations import Evaluations
@@ -25,7 +26,6 @@ from argo_planner.service.storage.folder import PLAN_ID
 from argo_planner.service.web.access import AccessRole, Visitor
 from argo_planner.service.web.problems import RevisionMissing, problem_responses
 from argo_planner.service.world.obstacle_store import ObstacleStore
-from argo_planner.use_cases.extensions import InstalledExtension
 
 JSON = "application/json"
 # A report is one file that contains its styles and pictures; it runs no script and loads nothing.

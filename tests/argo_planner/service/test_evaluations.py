@@ -190,7 +190,7 @@ def test_evaluations_outlive_the_service(tmp_path: Path, site: OpenedSite) -> No
         id = import_script(first)
         done = start_evaluation(first, id, worlds=3)
         assert wait_for_end(first, done)["state"] == "done"
-        ended_early = start_evaluation(first, id, worlds=150)
+        ended_early = start_evaluation(first, id, worlds=60)
         known = wait_until(first, ended_early, lambda read: read["standing"] is not None)[
             "standing"
         ]
@@ -204,8 +204,8 @@ def test_evaluations_outlive_the_service(tmp_path: Path, site: OpenedSite) -> No
         assert second.client.get(f"/api/jobs/{done}/report").status_code == 200
         assert second.client.post(f"/api/jobs/{ended_early}/go_on").status_code == 202
         complete = wait_for_end(second, ended_early)
-        assert (complete["state"], complete["standing"]["done"]) == ("done", 150)
-        assert len(read_rows(tmp_path / "evaluations" / ended_early)) == 150
+        assert (complete["state"], complete["standing"]["done"]) == ("done", 60)
+        assert len(read_rows(tmp_path / "evaluations" / ended_early)) == 60
 
 
 @pytest.mark.long

@@ -20,8 +20,6 @@ from argo_env.planning.opening import open_site
 from tests.argo_planner.service.served import ALL, Served, served
 from tests.e2e.page.person import Browsers, Person
 
-MOVES = 200
-
 
 def mission(count: int, site: str) -> dict[str, Any]:
     tasks: list[dict[str, Any]] = [
@@ -62,9 +60,9 @@ def measure_opening(browsers: Browsers, service: Served, count: int) -> None:
         browsers.close_windows()
 
 
-def measure_many_pages(browsers: Browsers, service: Served, count: int) -> None:
+def measure_many_pages(browsers: Browsers, service: Served, count: int, tasks: int) -> None:
     """Print the seconds that many pages of one mission take to open at once."""
-    id = service.create("Together", mission(200, "umad"))
+    id = service.create("Together", mission(tasks, "umad"))
     people = [browsers.person(f"http://{service.address}/?token={ALL}") for _ in range(count)]
     begun = time.perf_counter()
     for person in people:
@@ -72,7 +70,7 @@ def measure_many_pages(browsers: Browsers, service: Served, count: int) -> None:
     for person in people:
         wait_for_rows(person)
     took = time.perf_counter() - begun
-    print(f"{count} pages with 200 tasks: the last one usable in {took:.1f} s")
+    print(f"{count} pages with {tasks} tasks: the last one usable in {took:.1f} s")
     # One browser process draws all scenes; its messages about that are no problems of the page.
     print(*sorted({text for person in people for text in person.problems}), sep="\n")
     for person in people:
@@ -121,9 +119,9 @@ def measure_requests(address: str, paths: list[str], id: str, count: int) -> Non
     print(f"{count} times all of the {len(paths)} answers that a page needs: {took:.1f} s")
 
 
-def measure_service(browsers: Browsers, service: Served, count: int) -> None:
+def measure_service(browsers: Browsers, service: Served, count: int, tasks: int) -> None:
     """Print the seconds that the service needs for many pages at once, without their browsers."""
-    id = service.create("Answers", mission(200, "umad"))
+    id = service.create("Answers", mission(tasks, "umad"))
     paths = record_requests(browsers, service, id)
     asking = Process(target=measure_requests, args=(service.address, paths, id, count))
     asking.start()
@@ -144,7 +142,7 @@ def measure_text_page(browsers: Browsers, service: Served, count: int) -> None:
     browsers.close_windows()
 
 
-def measure_hover(browsers: Browsers, service: Served, site: str) -> None:
+def measure_hover(browsers: Browsers, service: Served, site: str, moves: int) -> None:
     """Print the duration (ms) of verdicts under the pointer, and the number of requests."""
     id = service.create("Ghost", mission(3, site))
     person = browsers.person(f"http://{service.address}/?token={ALL}")
@@ -157,8 +155,8 @@ def measure_hover(browsers: Browsers, service: Served, site: str) -> None:
     person.page.on("request", lambda request: asked.append(request.url))
     box = person.page.locator("argo-scene").bounding_box()
     assert box is not None
-    for k in range(MOVES):
-        x = box["x"] + box["width"] * (0.25 + 0.5 * k / MOVES)
+    for k in range(moves):
+        x = box["x"] + box["width"] * (0.25 + 0.5 * k / moves)
         person.page.mouse.move(x, box["y"] + box["height"] * (0.4 + 0.3 * (k % 10) / 10))
     took = sorted(person.evaluate("() => window.argo.figures().hover"))
     solids = sum(len(element.solids) for element in open_site(site).site.elements)
@@ -170,18 +168,19 @@ def measure_hover(browsers: Browsers, service: Served, site: str) -> None:
 def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition(":")[0])
     parser.add_argument("--large", default="generated:floors=6,seed=7", metavar="SITE")
-    parser.add_argument("--tasks", type=int, nargs="*", default=(200, 2_000))
-    parser.add_argument("--pages", type=int, default=50)
+    parser.add_argument("--moves", type=int, default=200, help="moves of the pointer")
+    parser.add_argument("--tasks", type=int, nargs="+", default=(200, 2_000))
+    parser.add_argument("--pages", type=int, default=50, help="pages of the first mission")
     given = parser.parse_args(arguments)
     browsers = Browsers()
     with serving(given.large) as service:
-        measure_hover(browsers, service, given.large)
+        measure_hover(browsers, service, given.large, given.moves)
     with serving("umad") as service:
         for count in given.tasks:
             measure_opening(browsers, service, count)
-        measure_service(browsers, service, given.pages)
+        measure_service(browsers, service, given.pages, given.tasks[0])
         measure_text_page(browsers, service, given.pages)
-        measure_many_pages(browsers, service, given.pages)
+        measure_many_pages(browsers, service, given.pages, given.tasks[0])
     browsers.close()
 
 

@@ -51,9 +51,8 @@ test-everywhere: $(VENV)/test.stamp page ## run a short use of all parts, as CI 
 	$(PYTEST) -m everywhere $(WORKERS) --durations 5 --durations-min 3 tests/e2e
 
 test-without-physics: $(VENV)/test.stamp page ## run what needs no PyBullet of most folders, as CI does without it
-	$(PYTEST) -m "not physics and not long" $(WORKERS) --durations 15 --durations-min 3 \
-		--ignore tests/e2e/page --ignore tests/argo_compiler/route --ignore tests/argo_compiler/script \
-		tests/argo_compiler tests/argo_env tests/argo_planner tests/e2e
+	$(PYTEST) -m "not (physics or long or learned or small_disk)" $(WORKERS) --durations 15 --durations-min 3 \
+		--ignore tests/e2e/page tests/argo_env tests/argo_planner tests/e2e
 
 speed: $(VENV)/test.stamp ## how fast Argo is beside the values that are kept; names what has become slower
 	$(INSTALL) 'py_trees>=2.3,<3'

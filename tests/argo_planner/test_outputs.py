@@ -194,6 +194,7 @@ def test_unwritable_paths_are_reported_before_any_work(command: str, says: str) 
     assert says in str(error)
 
 
+@pytest.mark.small_disk
 @pytest.mark.usefixtures("folder", "quick_picture")
 @pytest.mark.parametrize("room", [0, 2, 5])
 def test_an_old_report_stays_whole_where_the_disk_is_full(room: int) -> None:

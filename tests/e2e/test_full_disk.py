@@ -41,6 +41,7 @@ def printed_results(output: str) -> str:
     return output[: output.index("Success: ")]
 
 
+@pytest.mark.small_disk
 def test_a_full_disk_ends_the_recording_but_not_the_run(argo, folder: Path, reference: str) -> None:
     with small_disk(20 * _PAGE) as disk:
         run = argo(*RUN, "--record", disk / "run.mcap", cwd=folder)
@@ -54,6 +55,7 @@ def test_a_full_disk_ends_the_recording_but_not_the_run(argo, folder: Path, refe
     assert f"breaks off after {ending[1]} s" in shown.stdout
 
 
+@pytest.mark.small_disk
 def test_a_run_is_resumed_once_its_journal_has_room_again(
     argo, folder: Path, reference: str
 ) -> None:

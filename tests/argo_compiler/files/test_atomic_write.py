@@ -162,6 +162,7 @@ def test_a_second_interruption_loses_nothing(tmp_path, monkeypatch, steps, more)
 _PAGE = 4096  # bytes
 
 
+@pytest.mark.small_disk
 def test_a_full_disk_leaves_all_old_or_all_new():
     old = {"data.json": b"o" * 7 * _PAGE, "page.html": b"o" * 2 * _PAGE}
     outcomes = set()

@@ -48,6 +48,7 @@ def test_gymnasium_reports_no_error(make, monkeypatch):
     check_env(make(render_mode="rgb_array"))
 
 
+@pytest.mark.learned
 def test_stable_baselines_reports_no_error(make):
     checker = pytest.importorskip("stable_baselines3.common.env_checker")
     checker.check_env(make())

@@ -26,6 +26,7 @@ def record_on(disk, navigator, *observers, spec=SPEC):
     return record, warnings, recorder.loss
 
 
+@pytest.mark.small_disk
 @pytest.mark.physics
 @pytest.mark.parametrize("share", [0.4, 0.8, 1.0])
 def test_a_recording_ends_where_the_disk_is_full(recorded, yard, share) -> None:
@@ -43,6 +44,7 @@ def test_a_recording_ends_where_the_disk_is_full(recorded, yard, share) -> None:
     assert recording.readings == record.readings[: len(recording.readings)]
 
 
+@pytest.mark.small_disk
 @pytest.mark.physics
 def test_a_run_succeeds_on_a_disk_that_is_full_from_the_first_step_on(yard) -> None:
     with small_disk(_PAGE) as disk:
@@ -52,6 +54,7 @@ def test_a_run_succeeds_on_a_disk_that_is_full_from_the_first_step_on(yard) -> N
     assert loss == "it has nothing of the run: No space left on device"
 
 
+@pytest.mark.small_disk
 def test_a_disk_that_is_full_before_the_run_is_an_error(yard) -> None:
     with small_disk(_PAGE) as disk:
         fill(disk)
@@ -63,6 +66,7 @@ def test_a_best_effort_recorder_has_all_methods_of_observers() -> None:
     assert {n for n in vars(Observer) if n.startswith("on_")} <= vars(BestEffortRecorder).keys()
 
 
+@pytest.mark.small_disk
 @pytest.mark.physics
 def test_a_recording_has_no_gap_if_space_becomes_free_again(recorded, yard) -> None:
     with small_disk(int(0.9 * len(recorded.content))) as disk:

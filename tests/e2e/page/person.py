@@ -127,6 +127,14 @@ class Person:
         ):
             self.problems.append(f"console: {message.text}")
 
+    def clear_connection_problems(self) -> None:
+        """Clear the browser's own messages of connections and requests that a proxy has cut."""
+        self.problems[:] = [
+            problem
+            for problem in self.problems
+            if "WebSocket connection" not in problem and "net::ERR_" not in problem
+        ]
+
     def on_request(self, request: Request) -> None:
         host = urlsplit(request.url)
         if host.scheme in ("http", "https") and host.netloc != urlsplit(self.address).netloc:
@@ -192,7 +200,7 @@ class Browsers:
             if not person.stays:
                 person.context.close()
         self.people = [person for person in self.people if person.stays]
-        assert problems == []
+        assert not problems, "\n".join(problems)
 
     def close(self) -> None:
         self._browser.close()

@@ -67,7 +67,7 @@ def test_a_stale_edit_is_refused_with_the_change_that_came_first(browsers, plan,
         expect_order(ann, "START", "A1", "B2", "C4")
         ann.click(ann.button("Apply anyway"))
         expect_order(ann, "START", "B2", "C4")
-        ann.problems[:] = [text for text in ann.problems if "WebSocket connection" not in text]
+        ann.clear_connection_problems()
 
 
 def test_a_mission_is_not_closed_before_all_edits_are_sent(browsers, plan, service) -> None:
@@ -86,7 +86,7 @@ def test_a_mission_is_not_closed_before_all_edits_are_sent(browsers, plan, servi
         ann.click(ann.button("All missions"))
         expect(ann.button("New mission")).to_be_visible()
         assert task_names(service, plan) == ["START", "B2", "C4"]
-        ann.problems[:] = [text for text in ann.problems if "WebSocket connection" not in text]
+        ann.clear_connection_problems()
 
 
 def test_the_deletion_of_a_task_in_a_form_is_reported_with_the_typed_text(
@@ -158,8 +158,7 @@ def work_offline(browsers: Any, service: Served, plan: str, seconds: float) -> N
         assert ann.evaluate("() => window.argo.camera()") == camera
         name.press("Enter")
         expect_order(ann, "START", "A1", "Half a name")
-        # The browser itself reports failed connections while the proxy refuses them.
-        ann.problems[:] = [text for text in ann.problems if "WebSocket connection" not in text]
+        ann.clear_connection_problems()
 
 
 def test_a_short_time_offline_loses_nothing(browsers, service, plan) -> None:

@@ -115,7 +115,7 @@ def load_unchecked_mission(
         Invalid: It is a file of another kind, such as the journal of a run, or areas are given for
             a mission that has its own.
     """
-    _require_no_run(upload)
+    _require_no_plan_or_run(upload)
     kind, name = guess_source_kind(upload), upload.name
     _log.info("%s is read as a %s", name, kind)
     if kind is not SourceKind.SCRIPT:
@@ -138,18 +138,16 @@ def load_unchecked_mission(
 def _require_script(upload: Upload) -> None:
     """Raise Invalid if an upload can't be a script: XML, HTML or YAML."""
     assert isinstance(upload.content, bytes)
-    for is_other, kind in (
-        (_XML.match(upload.content), "XML or HTML: choose the mission's file"),
-        (
-            Path(upload.name).suffix.lower() in (".yaml", ".yml"),
-            "YAML, in which sites, faults and evaluations are written: choose the mission's file",
-        ),
-    ):
-        if is_other:
-            raise Invalid(f"{upload.name} is no mission, but {kind}")
+    if _XML.match(upload.content):
+        kind = "XML or HTML"
+    elif Path(upload.name).suffix.lower() in (".yaml", ".yml"):
+        kind = "YAML, in which sites, faults and evaluations are written"
+    else:
+        return
+    raise Invalid(f"{upload.name} is no mission, but {kind}: choose the mission's file")
 
 
-def _require_no_run(upload: Upload) -> None:
+def _require_no_plan_or_run(upload: Upload) -> None:
     """Raise Invalid if an upload is a plan, or the journal or recording of a run."""
     beginning = b""
     if isinstance(upload.content, bytes):

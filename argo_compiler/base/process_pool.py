@@ -16,21 +16,14 @@ class ProcessPool(ProcessPoolExecutor):  # type: ignore[misc]  # loky has no typ
     start that interrupts, on either side, would end with a traceback.
     """
 
-    def __init__(self, max_workers: int, **options: Any) -> None:
-        super().__init__(max_workers, **options)
-        self._starter = ThreadPoolExecutor(1)
-
     def submit(self, function: Callable[..., Any], *args: Any, **kwargs: Any) -> "Future[Any]":
         """Call a function in a worker process, which starts if needed.
 
-        Raises BrokenProcessPool if a process has died, and OSError if none can start.
+        Raises BrokenProcessPool if a process has died, even after `shutdown`, and OSError if none
+        can start.
         """
-        return self._starter.submit(self._submit, function, *args, **kwargs).result()
-
-    def shutdown(self, wait: bool = True, kill_workers: bool = False) -> None:
-        """End the processes; with `wait`, those as well that are starting."""
-        self._starter.shutdown(wait=wait)
-        super().shutdown(wait=wait, kill_workers=kill_workers)
+        with ThreadPoolExecutor(1) as starter:
+            return starter.submit(self._submit, function, *args, **kwargs).result()
 
     def _submit(self, function: Callable[..., Any], *args: Any, **kwargs: Any) -> "Future[Any]":
         with sigint_blocked():

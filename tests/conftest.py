@@ -181,3 +181,12 @@ def pytest_configure(config: pytest.Config) -> None:
     is_worker = hasattr(config, "workerinput")
     if config.getoption("--record-durations") and not is_worker:
         config.pluginmanager.register(_DurationRecorder())
+
+
+@pytest.fixture(scope="session")
+def fault_inputs() -> Path:
+    """Return the folder of inputs on which an older Argo failed, which are not part of it."""
+    folder = os.environ.get("ARGO_FAULTS")
+    if not folder:
+        pytest.skip("ARGO_FAULTS names no folder: the inputs on which Argo failed are not tried")
+    return Path(folder)

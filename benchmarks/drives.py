@@ -27,9 +27,9 @@ from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
-import yaml
 
 from argo_compiler.base.model import Pose
+from argo_compiler.files.yaml_text import dump_yaml
 from argo_compiler.il import Action, Mission, Task, Transition
 from argo_env.drives.drive import Drive, DriveStatus
 from argo_env.drives.tracked.drive import TrackedDrive
@@ -297,7 +297,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 def write_calibration(calibration: Calibration, header: list[str]) -> None:
     """Write the calibration, after its header lines, beside the robot's description; print it."""
     text = "".join(f"# {line}\n" for line in header) + "\n"
-    text += yaml.safe_dump(calibration.model_dump(), sort_keys=False, default_flow_style=None)
+    text += dump_yaml(calibration.model_dump())
     path = calibration_file("tracker")
     path.write_text(text, encoding="utf-8")
     print(f"{text}\nwritten to {path}")

@@ -338,3 +338,15 @@ def test_paths_of_users_are_asked_for_by_what_never_raises():
         and ast.unparse(node.func.value) != "os.path"
     }
     assert {module for module in asking if not module.startswith("baselines")} == SHIPPED
+
+
+def test_all_yaml_goes_through_one_reader_and_writer():
+    """PyYAML alone reads `010` as 8 and `1:30` as 90."""
+    using = {
+        module
+        for module in trees()
+        for node in nodes_of(module)
+        if (isinstance(node, ast.Import) and "yaml" in {name.name for name in node.names})
+        or (isinstance(node, ast.ImportFrom) and node.module == "yaml")
+    }
+    assert using == {"argo_compiler.files.yaml_text"}

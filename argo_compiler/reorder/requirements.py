@@ -9,16 +9,29 @@ from argo_compiler.base.errors import ArgoError, Invalid
 from argo_compiler.base.model import Model
 
 _PART = re.compile(r"\s*(\d+(?:\.\d+)?)\s*(h|hours?|min|minutes?|'|s|seconds?)?(?![^\W\d])")
+_CLOCK = re.compile(r"(?:(\d+):)?(\d+):([0-5]\d)")
 _SECONDS = {"h": 3600.0, "m": 60.0, "'": 60.0, "s": 1.0}
 
 
 def parse_seconds(text: str) -> float:
-    """Parse a duration such as `20 min`, `1 h 30 min`, `90 s` or `90`, in s. Raises ArgoError."""
+    """Parse a duration such as `20 min`, `1 h 30 min`, `00:12:30`, `90 s` or `90`, in s.
+
+    Raises Invalid for other texts, and for `12:30`, which has two meanings, as in scripts.
+    """
     total, at = 0.0, 0
     scale = 2 * _SECONDS["h"]
     text = text.strip()
     if text.startswith("-"):
         raise Invalid(f"`{text}` must be above 0: write `20 min`, `1 h 30 min` or `90 s`")
+    if clock := _CLOCK.fullmatch(text):
+        hours, first, last = (int(part or 0) for part in clock.groups())
+        if clock.group(1) is None:
+            raise Invalid(
+                f"`{text}` can be read as {first} min {last} s or as {first} h {last} min: write "
+                "one of these"
+            )
+        if first < 60:
+            return 3600.0 * hours + 60.0 * first + last
     while at < len(text):
         part = _PART.match(text, at)
         factor = _SECONDS[(part.group(2) or "s")[0]] if part else scale

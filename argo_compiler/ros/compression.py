@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import yaml
+from argo_compiler.files.yaml_text import load_yaml
 
 MAX_CHUNK_BYTES = 100_000_000
 """Largest size of an unpacked chunk; recorders start a new chunk after a few megabytes."""
@@ -59,7 +59,7 @@ def require_uncompressed_bag(folder: Path) -> None:
     path = folder / "metadata.yaml"
     if path.stat().st_size > MAX_METADATA_BYTES:
         raise TooLargeError(f"its metadata.yaml is larger than {MAX_METADATA_BYTES // 1000} kB")
-    data = yaml.safe_load(path.read_text(encoding="utf-8"))
+    data = load_yaml(path.read_text(encoding="utf-8"), str(path))
     mode = str(data["rosbag2_bagfile_information"].get("compression_mode") or "none").lower()
     if mode != "none":
         raise TooLargeError(f"it is compressed by {mode}")

@@ -1,15 +1,21 @@
 """Parser of YAML files into pydantic models, with diagnostics that locate each error."""
 
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple, TypeVar
 
-import yaml
 from pydantic import ValidationError
 
 from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity, Span, with_excerpts
 from argo_compiler.files.fields import unknown_field_hint
 from argo_compiler.files.json_places import JsonPath, format_path
+from argo_compiler.files.yaml_text import (
+    MappingNode,
+    Node,
+    NotYamlError,
+    SequenceNode,
+    compose_yaml,
+)
 from argo_env.files.yaml_messages import error_message, strip_discriminators
 
 MAX_FINDINGS = 20
@@ -24,14 +30,6 @@ class _Flaw(NamedTuple):
     hint: str | None
     subject: str | None
     span: Span | None
-
-
-class NotYamlError(Exception):
-    """Raised when the text is not YAML; holds the error."""
-
-    def __init__(self, flaw: _Flaw) -> None:
-        super().__init__(flaw.message)
-        self.flaw = flaw
 
 
 def parse_yaml(
@@ -62,10 +60,15 @@ def parse_yaml(
             and the first 20 wrong fields.
     """
     try:
-        tree, repeated, data = _compose(text)
+        tree, repeated, data = compose_yaml(text)
     except NotYamlError as error:
-        raise _error(source_name, text, [_diagnostic(not_yaml, error.flaw)]) from None
-    diagnostics = [_diagnostic(duplicate_key, flaw) for flaw in repeated]
+        raise _error(source_name, text, [_diagnostic(not_yaml, _syntax_flaw(error))]) from None
+    diagnostics = [
+        _diagnostic(
+            duplicate_key, _Flaw(one.message, "remove one of the two", None, _span(one.node))
+        )
+        for one in repeated
+    ]
     try:
         parsed = model.model_validate(data)
     except ValidationError as error:
@@ -89,7 +92,7 @@ def error_at_paths(
         code: code of all diagnostics.
         messages: messages by the path of the value that they are about.
     """
-    tree, _, _ = _compose(text)
+    tree = compose_yaml(text).tree
     flaws = [
         _Flaw(message, None, format_path(path), _span_at(tree, path))
         for path, message in messages.items()
@@ -97,32 +100,10 @@ def error_at_paths(
     return _error(source_name, text, [_diagnostic(code, flaw) for flaw in flaws])
 
 
-def _compose(text: str) -> tuple[yaml.Node | None, list[_Flaw], Any]:
-    """Parse a YAML text, and return its tree of nodes, its duplicate keys, and its data.
-
-    The nodes have the spans in the text. Tree and data are None for a text without content. Raises
-    NotYamlError if the text is not YAML.
-    """
-    try:
-        loader = yaml.SafeLoader(text)
-        try:
-            tree = loader.get_single_node()
-            # Before the data is constructed, which merges mappings in the tree.
-            repeated = [*_duplicate_keys(tree)]
-            return tree, repeated, None if tree is None else loader.construct_document(tree)
-        finally:
-            loader.dispose()
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark
-        span = Span(line=mark.line + 1, column=mark.column + 1) if mark else None
-        message, hint = f"the file is not YAML: {error.problem}", "correct it there"
-        raise NotYamlError(_Flaw(message, hint, None, span)) from None
-    except (ValueError, RecursionError, yaml.YAMLError) as error:
-        # ValueError: impossible dates, numbers too long.
-        why = "it is nested too deeply" if isinstance(error, RecursionError) else str(error)
-        raise NotYamlError(
-            _Flaw(f"the file is not YAML: {why}", "check the file", None, None)
-        ) from None
+def _syntax_flaw(error: NotYamlError) -> _Flaw:
+    if error.line is None or error.column is None:
+        return _Flaw(str(error), "check the file", None, None)
+    return _Flaw(str(error), "correct it there", None, Span(line=error.line, column=error.column))
 
 
 def _error(source_name: str, text: str, diagnostics: list[Diagnostic]) -> DiagnosticError:
@@ -145,7 +126,7 @@ def _wrong_fields(
     model: type[Model],
     things: str,
     no_field: Mapping[str, str],
-    tree: yaml.Node | None,
+    tree: Node | None,
     data: Any,
 ) -> Iterator[_Flaw]:
     faults = error.errors(include_url=False)[:MAX_FINDINGS]
@@ -184,9 +165,9 @@ def _list_hint(model: type[Model], path: JsonPath) -> str | None:
     return None
 
 
-def _span_at(tree: yaml.Node | None, path: JsonPath, key: bool = False) -> Span | None:
+def _span_at(tree: Node | None, path: JsonPath, key: bool = False) -> Span | None:
     """Return the span of the value at a path, or of its key, or of the longest existing prefix."""
-    if key and isinstance(mapping := _node(tree, path[:-1]), yaml.MappingNode):
+    if key and isinstance(mapping := _node(tree, path[:-1]), MappingNode):
         named = next((k for k, _ in mapping.value if k.value == path[-1]), None)
         if named is not None:
             return _span(named)
@@ -194,13 +175,13 @@ def _span_at(tree: yaml.Node | None, path: JsonPath, key: bool = False) -> Span 
     return _span(node) if node else None
 
 
-def _node(tree: yaml.Node | None, path: JsonPath) -> yaml.Node | None:
+def _node(tree: Node | None, path: JsonPath) -> Node | None:
     node = tree
     for step in path:
-        child: yaml.Node | None = None
-        if isinstance(node, yaml.MappingNode):
+        child: Node | None = None
+        if isinstance(node, MappingNode):
             child = next((v for k, v in reversed(node.value) if k.value == step), None)
-        elif isinstance(node, yaml.SequenceNode) and isinstance(step, int):
+        elif isinstance(node, SequenceNode) and isinstance(step, int):
             child = node.value[step] if step < len(node.value) else None
         if child is None:
             break
@@ -208,30 +189,7 @@ def _node(tree: yaml.Node | None, path: JsonPath) -> yaml.Node | None:
     return node
 
 
-def _span(node: yaml.Node) -> Span:
+def _span(node: Node) -> Span:
     start, end = node.start_mark, node.end_mark
     length = end.column - start.column if end.line == start.line else 1
     return Span(line=start.line + 1, column=start.column + 1, length=max(1, length))
-
-
-def _duplicate_keys(tree: yaml.Node | None) -> Iterator[_Flaw]:
-    """Yield an error for each key that a mapping has twice; YAML parsers silently drop one."""
-    pending: list[Any] = [tree]
-    seen: set[int] = set()  # aliases lead to the same node again
-    while pending:
-        node = pending.pop()
-        if id(node) in seen:
-            continue
-        seen.add(id(node))
-        if isinstance(node, yaml.SequenceNode):
-            pending += node.value
-        elif isinstance(node, yaml.MappingNode):
-            spans: dict[Hashable, Span] = {}
-            for key, value in node.value:
-                pending.append(value)
-                if isinstance(key, yaml.ScalarNode) and key.value != "<<":
-                    span = _span(key)
-                    first = spans.setdefault(key.value, span)
-                    if first is not span:
-                        message = f"`{key.value}` is given twice; it was first given at line "
-                        yield _Flaw(f"{message}{first.line}", "remove one of the two", None, span)

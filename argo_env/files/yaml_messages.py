@@ -1,5 +1,6 @@
 """Messages in plain words for pydantic's validation errors in YAML files and options."""
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -34,6 +35,9 @@ _HAS_TO_BE = {
 """the required value, by pydantic's type of error; the error's context fills the placeholders"""
 
 
+_CLOCK = re.compile(r"\d+(:\d+)+")
+
+
 def error_message(error: ErrorDetails, path: JsonPath) -> str:
     """Return the message for one of pydantic's errors, about the value at a path of the file.
 
@@ -42,6 +46,8 @@ def error_message(error: ErrorDetails, path: JsonPath) -> str:
     name, kind = _name(path), error["type"]
     if kind == "missing":
         return f"{name} is missing"
+    if kind == "float_parsing" and _CLOCK.fullmatch(str(error["input"])):
+        return f"{name} has to be a number; times are in s, such as 90"
     if kind in _HAS_TO_BE:
         return f"{name} has to be {_HAS_TO_BE[kind].format(**error.get('ctx', {}))}"
     return error["msg"].removeprefix("Value error, ")

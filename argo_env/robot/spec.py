@@ -9,7 +9,7 @@ import os
 from enum import StrEnum
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from pydantic import BaseModel, Field, ValidationError, model_validator
 
@@ -263,20 +263,13 @@ def _parse_description(kind: type[_Description], path: Path, text: str) -> _Desc
     try:
         if cached is not None:
             return kind.model_validate_json(cached)
-        description = kind.model_validate(_read_yaml(path, text))
+        from argo_compiler.files.yaml_text import load_yaml  # importing it takes long
+
+        description = kind.model_validate(load_yaml(text, str(path)))
     except ValidationError as error:
         raise Invalid(f"{path}: {error}") from error
     parts.store_text("fields", description.model_dump_json(exclude_unset=True))
     return description
-
-
-def _read_yaml(path: Path, text: str) -> Any:
-    import yaml  # imported here: this takes longer than to parse a robot's file
-
-    try:
-        return yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
-    except yaml.YAMLError as error:
-        raise Invalid(f"{path}: {error}") from error
 
 
 def calibration_file(name: str) -> Path:

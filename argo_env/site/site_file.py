@@ -2,9 +2,8 @@
 
 from pathlib import Path
 
-import yaml
-
 from argo_compiler.files.loading import read_text
+from argo_compiler.files.yaml_text import dump_yaml
 from argo_env.files.yaml_file import parse_yaml
 from argo_env.site.spec import MAX_BYTES, SiteSpec
 
@@ -38,10 +37,4 @@ def to_yaml(spec: SiteSpec) -> str:
 
     Fields that have their defaults are left out.
     """
-    return yaml.safe_dump(
-        spec.model_dump(mode="json", exclude_defaults=True),
-        sort_keys=False,
-        allow_unicode=True,
-        default_flow_style=None,
-        width=100,
-    )
+    return dump_yaml(spec.model_dump(mode="json", exclude_defaults=True))

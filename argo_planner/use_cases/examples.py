@@ -4,11 +4,10 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-import yaml
-
 from argo_compiler.base.errors import NotFound
 from argo_compiler.base.model import Model
 from argo_compiler.base.nearest_name import nearest_name
+from argo_compiler.files.yaml_text import load_yaml
 from argo_env.files.resources import scenarios_folder
 
 INDEX = "examples.yaml"
@@ -28,7 +27,8 @@ class Example(Model):
 
 def list_examples() -> dict[str, dict[str, Example]]:
     """Return the examples by their kind, such as `missions`, and name."""
-    kinds = yaml.safe_load((scenarios_folder() / INDEX).read_text(encoding="utf-8"))
+    path = scenarios_folder() / INDEX
+    kinds = load_yaml(path.read_text(encoding="utf-8"), str(path))
     return {
         kind: {name: Example.model_validate(content) for name, content in examples.items()}
         for kind, examples in kinds.items()

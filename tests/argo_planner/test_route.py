@@ -223,6 +223,13 @@ def test_options_that_make_no_sense_are_refused(argo, source, options, said):
     assert said in argo("route", source, *options, status=1)
 
 
+def test_a_budget_with_two_meanings_is_refused_with_both(argo, source, tmp_path):
+    wanted = tmp_path / "wanted.yaml"
+    wanted.write_text("budget: 12:30\n")
+    text = argo("route", source, "--requirements", wanted, status=1)
+    assert "wanted.yaml:1:9: error: budget: `12:30` can be read as 12 min 30 s or as 12 h" in text
+
+
 def test_errors_in_requirements_name_the_line(argo, source, tmp_path):
     wanted = tmp_path / "wanted.yaml"
     wanted.write_text("mandatory: [2]\nbudgets: 5 min\n")

@@ -8,11 +8,11 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-import yaml
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 from markupsafe import Markup
 
 from argo_compiler.base.version import __version__
+from argo_compiler.files.yaml_text import dump_yaml
 from argo_env.evaluation.case import PlanName
 from argo_env.evaluation.comparison import PlanComparison
 from argo_env.evaluation.folder import COMPARISON, REPORT, write_file
@@ -173,7 +173,7 @@ def comparison_page(
 def _in_yaml(variation: Variation) -> str:
     """Return the variation as a line of YAML; empty if nothing varies."""
     data = variation.model_dump(mode="json", exclude_none=True, exclude_defaults=True)
-    return yaml.safe_dump(data, default_flow_style=True, width=math.inf).strip() if data else ""
+    return dump_yaml(data, flow=True, width=math.inf).strip() if data else ""
 
 
 def _with_faults(results: EvaluationResults) -> list[PlanName]:

@@ -441,7 +441,7 @@ def test_an_order_that_breaks_a_rule_is_not_written():
 @pytest.mark.parametrize(
     ("text", "seconds"),
     [("20 min", 1200), ("20min", 1200), ("1 h 30 min", 5400), ("90", 90), ("1.5 h", 5400),
-     ("20'", 1200), ("2 minutes 5 s", 125), ("1h", 3600)],
+     ("20'", 1200), ("2 minutes 5 s", 125), ("1h", 3600), ("00:12:30", 750), ("1:02:03", 3723)],
 )  # fmt: skip
 def test_durations_are_read(text, seconds):
     assert parse_seconds(text) == seconds
@@ -453,6 +453,11 @@ def test_durations_are_read(text, seconds):
 def test_text_that_is_no_duration_is_refused(text):
     with pytest.raises(ArgoError, match="20 min"):
         parse_seconds(text)
+
+
+def test_a_clock_that_has_two_meanings_is_refused_as_in_scripts():
+    with pytest.raises(ArgoError, match="can be read as 12 min 30 s or as 12 h 30 min"):
+        parse_seconds("12:30")
 
 
 @pytest.mark.rule("M10")

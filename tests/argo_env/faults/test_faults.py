@@ -445,3 +445,18 @@ def test_a_connection_is_back_when_nothing_shadows_it(targets):
     lost = fault("connection_loss", 1, 5), fault("connection_loss", 3, 8)
     seen = observe_at(targets, lambda s: s.network.is_connected(POSE), (0, 4, 6, 8), *lost)
     assert seen == [True, False, False, True]
+
+
+def test_a_checkpoint_with_a_leading_zero_is_read_as_written():
+    text = b"faults:\n- {kind: abnormal_value, checkpoint: 010, value: 7.5, at: 0}"
+    (fault,) = decode_faults(text, "faults.yaml").faults
+    assert fault.checkpoint == 10
+
+
+def test_a_time_as_a_clock_is_refused():
+    text = b"faults:\n- {kind: drive_dysfunction, speed: 0.4, at: 1:30}"
+    with pytest.raises(DiagnosticError) as refused:
+        decode_faults(text, "faults.yaml")
+    assert "faults.yaml:2:45: error: faults[0].at: `at` has to be a number; times are in s" in str(
+        refused.value
+    )

@@ -202,7 +202,7 @@ def plot_prize_and_bound(
     bounds = [(first / 2, everything), *((point.time, point.prize_bound) for point in history)]
     bounds.append((last, suggestion.prize_bound))
     prizes = [(point.time, point.prize) for point in history if point.prize]
-    prizes.append((last, suggestion.prize))
+    prizes += [] if suggestion.prize is None else [(last, suggestion.prize)]
     figure, axes = plt.subplots(figsize=(7, 4), layout="constrained")
     for points, colour, marker, label in (
         (bounds, _BOUND, "", "no route wins more"),

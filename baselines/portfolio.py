@@ -28,7 +28,7 @@ class Portfolio(PlannedPolicy):
         suggestion = suggest_route(
             open_problem.problem, time_limit=None, seed=self._seed, work_limit=self.work_limit
         )
-        return open_problem.to_nodes(suggestion.order)
+        return open_problem.to_nodes(suggestion.order or ())
 
 
 class QuickPortfolio(Portfolio):

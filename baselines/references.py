@@ -231,10 +231,10 @@ def _search(
     """
     share = 1.0 - _RELAXED_SHARE if problem.precedences else 1.0
     suggestion = _suggest(problem, share * seconds, seed)
-    yield suggestion.prize_bound, suggestion.order
-    if problem.precedences and not suggestion.proven:
+    yield suggestion.prize_bound, suggestion.order or ()
+    if problem.precedences and not (suggestion.proven or suggestion.infeasible):
         relaxed = _suggest(replace(problem, precedences=()), _RELAXED_SHARE * seconds, seed)
-        yield relaxed.prize_bound, insert_and_improve(problem, relaxed.order)
+        yield relaxed.prize_bound, insert_and_improve(problem, relaxed.order or ())
 
 
 def _suggest(problem: RouteProblem, seconds: float, seed: int) -> RouteSuggestion:

@@ -45,24 +45,28 @@ class Gain:
     @property
     def lost_prize_share(self) -> float:
         """Share of the prize with the part that is lost without it; negative if more is won."""
-        return (self.with_it.prize - self.without.prize) / max(1, self.with_it.prize)
+        with_it, without = self.with_it.prize or 0, self.without.prize or 0
+        return (with_it - without) / max(1, with_it)
 
     @property
     def relative_cost_increase(self) -> float:
         """Relative increase of the cost without the part; 0 without routes of equal prize."""
-        comparable = self.with_it.route and self.without.route and not self.lost_prize_share
-        return (
-            (self.without.cost - self.with_it.cost) / max(1, self.with_it.cost) * bool(comparable)
-        )
+        if self.with_it.cost is None or self.without.cost is None or self.lost_prize_share:
+            return 0.0
+        return (self.without.cost - self.with_it.cost) / max(1, self.with_it.cost)
 
 
 def _quality(suggestion: RouteSuggestion) -> tuple[bool, int, int]:
-    return suggestion.route is not None, suggestion.prize, -suggestion.cost
+    return suggestion.route is not None, suggestion.prize or 0, -(suggestion.cost or 0)
+
+
+def _is_decided(suggestion: RouteSuggestion) -> bool:
+    return suggestion.proven or suggestion.infeasible
 
 
 def summary_line(part: str, gains: Sequence[Gain]) -> str:
     """Return the line of the table for a part of the route search."""
-    lost = sum(g.with_it.proven for g in gains) - sum(g.without.proven for g in gains)
+    lost = sum(_is_decided(g.with_it) for g in gains) - sum(_is_decided(g.without) for g in gains)
     missing = sum(g.with_it.route is not None for g in gains) - sum(
         g.without.route is not None for g in gains
     )
@@ -122,7 +126,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     complete = solve(all_solver_names())
     print(f"{len(problems)} problems, {options.time_limit:g} s each: all parts find", end=" ")
     print(f"{sum(each.route is not None for each in complete)} routes and", end=" ")
-    print(f"{sum(each.proven for each in complete)} proofs; without a part, these are lost")
+    print(f"{sum(_is_decided(each) for each in complete)} proofs; without a part, these are lost")
     print(HEADER)
     for part in parts:
         without = solve([name for name in all_solver_names() if name != part])

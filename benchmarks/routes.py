@@ -83,16 +83,17 @@ def measure_problem(
     seconds = time.perf_counter() - started
     bound = named.published_value(suggestion.prize_bound, suggestion.bound)
     value, wrong = None, None
+    is_decided = suggestion.proven or suggestion.infeasible
     if suggestion.route is not None:
         value, wrong = _evaluate(named, suggestion.route)
         claimed = named.published_value(suggestion.prize, suggestion.cost)
         if wrong is None and value != claimed:
             wrong = f"its solver claims {claimed:.10g}"
-    wrong = wrong or _find_contradiction(named.kind, value, bound, suggestion.proven, known)
+    wrong = wrong or _find_contradiction(named.kind, value, bound, is_decided, known)
     peer_results = tuple(_run_peer(peer, named, time_limit, seed) for peer in peers)
     return Row(
         path.stem, named.kind, _node_count(named), known, value,
-        bound, suggestion.proven, seconds, suggestion.method, peer_results, wrong,
+        bound, is_decided, seconds, suggestion.method, peer_results, wrong,
     )  # fmt: skip
 
 

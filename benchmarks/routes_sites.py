@@ -198,8 +198,8 @@ def time_search(problem: RouteProblem, time_limit: float) -> Row:
 def summary_text(rows: Sequence[Row]) -> str:
     """Return the number of proofs, and percentiles of the time, as text."""
     seconds = [row.seconds for row in rows]
-    proven = sum(row.suggestion.proven for row in rows)
-    without = sum(row.suggestion.proven and row.suggestion.route is None for row in rows)
+    without = sum(row.suggestion.infeasible for row in rows)
+    proven = without + sum(row.suggestion.proven for row in rows)
     middle, percentile, worst = np.percentile(seconds, [50, 99, 100])
     return (
         f"{proven} of {len(rows)} proven ({without} have no route); "

@@ -119,12 +119,12 @@ class _Check:
             Claim.PRIZE_BOUND: (suggestion.prize_bound, 0),
             Claim.BOUND: (suggestion.prize_bound, suggestion.bound),
         }
-        if suggestion.proven:
-            self._open |= (
-                {Claim.NONE: None}
-                if suggestion.route is None
-                else {Claim.BEST: (suggestion.prize, suggestion.cost)}
-            )
+        if suggestion.infeasible:
+            self._open[Claim.NONE] = None
+        elif suggestion.proven:
+            assert suggestion.prize is not None
+            assert suggestion.cost is not None
+            self._open[Claim.BEST] = suggestion.prize, suggestion.cost
 
     def certificate(self) -> Certificate:
         for claim in list(self._open):
@@ -150,7 +150,7 @@ class _Check:
             errors.append(
                 f"it wins {prize} and costs {cost}, not {suggestion.prize} and {suggestion.cost}"
             )
-        if set(suggestion.dropped) != set(range(self._problem.size)) - set(suggestion.order):
+        if set(suggestion.dropped or ()) != set(suggestion.route.left_out(self._problem.size)):
             errors.append("it leaves out other visits than it states")
         judgement = Judgement.REFUTED if errors else Judgement.CONFIRMED
         self._decide(Claim.ROUTE, judgement, "; ".join(errors) or "followed from visit to visit")

@@ -47,20 +47,20 @@ def find_route(
     if explain and search.infeasible:
         words = _explain(problem, search, limits, begun, clock)
     best = search.best
-    visited = set(best.tour.order) if best else set()
     return RouteSuggestion(
-        None if best is None else best.tour,
-        0 if best is None else best.prize,
-        search.prize_bound,
-        0 if best is None else best.cost,
-        search.bound,
-        search.proven,
-        () if best is None else tuple(v for v in range(problem.size) if v not in visited),
-        words,
-        search.proving_or_finding_solver,
-        search.reasons,
-        search.history,
-        search.turns,
+        route=None if best is None else best.tour,
+        prize=None if best is None else best.prize,
+        prize_bound=search.prize_bound,
+        cost=None if best is None else best.cost,
+        bound=search.bound,
+        proven=best is not None and search.proven,
+        infeasible=best is None and search.infeasible,
+        dropped=None if best is None else best.tour.left_out(problem.size),
+        infeasible_subset=words,
+        method=search.proving_or_finding_solver,
+        reasons=search.reasons,
+        history=search.history,
+        turns=search.turns,
     )
 
 

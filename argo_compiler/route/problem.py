@@ -179,6 +179,10 @@ class Tour:
     """number of the charger by the position in `order` before which the robot charges. No position
     is within a round, even one with a single repetition; `len(order)`: before the end"""
 
+    def left_out(self, size: int) -> tuple[int, ...]:
+        """Return which of the visits 0 to `size` - 1 are not in the order."""
+        return tuple(sorted({*range(size)} - {*self.order}))
+
 
 def _flaws(problem: RouteProblem) -> Iterator[str]:
     n = problem.size

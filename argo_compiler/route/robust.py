@@ -50,7 +50,7 @@ class RobustSuggestion:
     @property
     def dropped_for_robustness(self) -> tuple[int, ...]:
         """Visits that this route leaves out, but the best route without any spread makes."""
-        return tuple(sorted(set(self.nominal.order) - set(self.route.order)))
+        return tuple(sorted(set(self.nominal.order or ()) - set(self.route.order)))
 
 
 def suggest_robust_route(
@@ -74,8 +74,10 @@ def suggest_robust_route(
     # The time counts from here: the first search imports OR-Tools, which may take longer than that.
     end = time.monotonic() + time_limit * 0.75
     if nominal.route is None:
-        why = "; ".join(nominal.infeasible_subset) or "none was found within the time limit"
-        raise Conflict(f"there is no route: {why}; relax its constraints, or give more time")
+        if not nominal.infeasible:
+            raise Conflict("no route was found within the time limit: give more time")
+        why = "; ".join(nominal.infeasible_subset) or "the constraints contradict each other"
+        raise Conflict(f"there is no route: {why}; relax its constraints")
     search = _Search(problem, Draws(spread, SEARCH_SAMPLES, _rng(seed, 0)), confidence)
     search.consider(nominal.route)
     if search.is_perfect:

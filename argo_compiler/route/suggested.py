@@ -11,22 +11,26 @@ from argo_compiler.route.stop import SearchProgress, SolverTurn, gap
 class RouteSuggestion:
     """Route with its proven bounds, or requirements that cannot all be met.
 
-    If visits are optional, the prize is maximised first, and then the cost is minimised.
+    If visits are optional, the prize is maximised first, and then the cost is minimised. Without a
+    route, all that describes one is None, and `proven` is false.
     """
 
     route: Tour | None
-    """best route that was found; None: none was found"""
-    prize: int
+    """best route that was found; None: none was found, see `infeasible`"""
+    prize: int | None
+    """prize of the route; None without a route"""
     prize_bound: int
     """upper bound on the prize of any route"""
-    cost: int
-    """value that the problem's objective minimises, in units"""
+    cost: int | None
+    """value that the problem's objective minimises, in units; None without a route"""
     bound: int
     """lower bound on the cost of the routes that win `prize_bound`, in units"""
     proven: bool
-    """true if the route is proven to be the best one, or, without a route, that there is none"""
-    dropped: tuple[int, ...] = ()
-    """visits that the route leaves out"""
+    """true if the route is proven to be the best one"""
+    infeasible: bool = False
+    """true if it is proven that there is no route"""
+    dropped: tuple[int, ...] | None = None
+    """visits that the route leaves out; None without a route"""
     infeasible_subset: tuple[str, ...] = ()
     """without a route: requirements, in the mission's words, that cannot all be met although each
     smaller set of them can. If there was no time to check the smaller sets, `reasons` says so.
@@ -41,14 +45,14 @@ class RouteSuggestion:
     """turns of the solvers, by their begin"""
 
     @property
-    def order(self) -> tuple[int, ...]:
-        """Visits in the route's order; empty without a route."""
-        return () if self.route is None else self.route.order
+    def order(self) -> tuple[int, ...] | None:
+        """Visits in the route's order; None without a route."""
+        return None if self.route is None else self.route.order
 
     @property
-    def charges(self) -> Mapping[int, int]:
-        """Charges of the route, as in `Tour`; empty without a route."""
-        return {} if self.route is None else self.route.charges
+    def charges(self) -> Mapping[int, int] | None:
+        """Charges of the route, as in `Tour`; None without a route."""
+        return None if self.route is None else self.route.charges
 
     @property
     def gap(self) -> float | None:
@@ -57,6 +61,6 @@ class RouteSuggestion:
         It is the gap of the prize, until that is proven, and then the gap of the cost, as
         `argo_compiler.route.stop.gap` computes them.
         """
-        if self.route is None:
+        if self.prize is None or self.cost is None:
             return None
         return gap(self.prize, self.cost, self.prize_bound, self.bound)

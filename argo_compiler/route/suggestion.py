@@ -81,7 +81,13 @@ def suggest_route(
     _log.info(
         "%d visits: %s by %s",
         problem.size,
-        "no route" if suggestion.route is None else "proven" if suggestion.proven else "not proven",
+        "proven that there is no route"
+        if suggestion.infeasible
+        else "no route found"
+        if suggestion.route is None
+        else "proven"
+        if suggestion.proven
+        else "not proven",
         suggestion.method or "no search",
     )
     return suggestion

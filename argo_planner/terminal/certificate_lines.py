@@ -73,7 +73,7 @@ def _reason_text(found: SuggestedOrder, one: CheckedClaim) -> str:
     if one.shown is None:
         return one.why
     most, least = one.shown
-    if most > found.suggestion.prize:
+    if most > (found.suggestion.prize or 0):
         return f"{one.why}: it only shows that none is worth more than {most}"
     time = min_sec_text(found.to_seconds(least))
     return f"{one.why}: it only shows that none takes less than {time}"

@@ -80,7 +80,7 @@ def _table(found: SuggestedOrder) -> Table:
             table.add_row("", f"[italic]then {escape(', '.join(along))}[/]", "", "", "")
     for pause in stops.get(len(route.order), ()):
         table.add_row("", f"[italic]{escape(_pause(found, pause))}[/]", "", "", "")
-    for visit in found.suggestion.dropped:
+    for visit in found.suggestion.dropped or ():
         table.add_row(
             "-",
             escape(planned.visits.names[visit]),
@@ -103,7 +103,7 @@ def _lines(found: SuggestedOrder) -> Iterator[str]:
     share = f" ({(old - new) / old:.0%})" if new < old and old > 0.0 else ""
     yield f"Suggested:  {min_sec_text(new)}{change}{share}"
     if suggestion.dropped:
-        done, of = len(suggestion.order), problem.size
+        done, of = len(found.route.order), problem.size
         names = ", ".join(planned.visits.names[visit] for visit in suggestion.dropped)
         limit = problem.words.get("max_duration", "requirements")
         yield f"{done} of {of} tasks within the {limit}; left out: {names}"
@@ -178,9 +178,10 @@ def _proof(found: SuggestedOrder) -> str:
     method = f" ({suggestion.method})" if suggestion.method else ""
     if suggestion.proven:
         return f"Proven: no order is better{method}"
-    if suggestion.prize < suggestion.prize_bound:
+    prize = suggestion.prize or 0
+    if prize < suggestion.prize_bound:
         return (
-            f"Not proven: worth {suggestion.prize}, and no order is worth more than "
+            f"Not proven: worth {prize}, and no order is worth more than "
             f"{suggestion.prize_bound}{method}"
         )
     bound = min_sec_text(found.to_seconds(suggestion.bound))

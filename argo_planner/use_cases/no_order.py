@@ -21,7 +21,7 @@ def missing_order_error(found: SuggestedOrder) -> Conflict | None:
     """Return an error that explains why there is no order, or only one without tasks, else None."""
     if found.suggestion.route is None:
         why = _no_route_error(found)
-    elif not found.suggestion.order and found.planned.problem.size:
+    elif not found.route.order and found.planned.problem.size:
         why = _empty_order_error(found)
     else:
         return None
@@ -39,7 +39,7 @@ def _no_route_error(found: SuggestedOrder) -> Conflict:
         lines = [f"  - {words}" for words in suggestion.infeasible_subset]
         head = f"no order meets all of these{assumed}, but one does if any of them is left out:"
         text = "\n".join([head, *lines])
-    elif not suggestion.proven:
+    elif not suggestion.infeasible:
         text = "no order was found in time; search for longer"
         remedies += (Remedy.SEARCH_LONGER,)
     elif cut_off := _unreachable_names(problem):

@@ -61,7 +61,8 @@ class SuggestedOrder:
     def route(self) -> Tour:
         """The suggested order; raises Conflict if there is none (see `missing_order_error`)."""
         if self.suggestion.route is None:
-            raise Conflict("no order meets all requirements")
+            found = self.suggestion.infeasible
+            raise Conflict("no order meets all requirements" if found else "no order was found")
         return self.suggestion.route
 
     @property
@@ -227,7 +228,6 @@ def suggest_robust_order(
     problem = found.planned.problem
     robust = suggest_robust_route(problem, spread, time_limit, seed)
     nominal, route = robust.nominal, robust.route
-    visited = set(route.order)
     shortest = nominal.route == route
     text = f"robust: the best of {robust.tried} orders that were tried"
     if not shortest:
@@ -239,7 +239,7 @@ def suggest_robust_order(
         prize=robust.prize,
         cost=evaluate(problem, route).cost(problem.objective),
         proven=nominal.proven and shortest,
-        dropped=tuple(k for k in range(problem.size) if k not in visited),
+        dropped=route.left_out(problem.size),
         reasons=(*nominal.reasons, text),
     )
     return replace(found, suggestion=suggestion)

@@ -74,7 +74,8 @@ def search_order(
     reordered = found.mission
     visits = found.planned.visits
     left_out = tuple(
-        visits.chain.name(visits.task_units[visit].entry) for visit in found.suggestion.dropped
+        visits.chain.name(visits.task_units[visit].entry)
+        for visit in found.suggestion.dropped or ()
     )
     return OrderFound(
         reordering=found.reordering,

@@ -67,7 +67,7 @@ def test_wrong_claims_are_refuted_by_counterexamples() -> None:
         wrong = {
             Claim.BOUND: replace(best, bound=best.bound + 1),
             Claim.PRIZE_BOUND: replace(best, prize_bound=best.prize - 1),
-            Claim.NONE: replace(best, route=None, prize=0, cost=0),
+            Claim.NONE: replace(best, route=None, prize=None, cost=None, infeasible=True),
             Claim.ROUTE: replace(best, cost=best.cost - 1),
         }
         for claim, suggestion in wrong.items():
@@ -154,7 +154,7 @@ def test_large_rounds_count_with_one_repetition_at_least() -> None:
     visits = tuple(Visit(f"checkpoint {k}", 5) for k in range(10))
     for round_, least in ((Round("patrol", tuple(range(9)), 2), 160), (_timed(50), 75)):
         problem = RouteProblem(visits, travel, (), (round_,))
-        suggestion = RouteSuggestion(None, 0, 0, 0, least, proven=False)
+        suggestion = RouteSuggestion(None, None, 0, None, least, proven=False)
         assert judged(check(problem, suggestion), Claim.BOUND) is Judgement.CONFIRMED
         certificate = check(problem, replace(suggestion, bound=least + 1))
         assert judged(certificate, Claim.BOUND) is Judgement.OPEN
@@ -198,7 +198,7 @@ def test_waiting_counts_only_where_it_costs() -> None:
 
 def test_without_time_only_the_route_is_checked() -> None:
     ticks = iter(range(10**9))
-    problem, best = next(p for p in problems(500, 20, 8) if len(p[1].order) > 6)
+    problem, best = next(p for p in problems(500, 20, 8) if len(p[1].order or ()) > 6)
     certificate = certify(problem, replace(best, bound=best.cost), 1e-9, lambda: float(next(ticks)))
     assert judged(certificate, Claim.ROUTE) is Judgement.CONFIRMED
     assert not certificate.refuted

@@ -1,10 +1,14 @@
 """A problem without a route has a smallest infeasible subset, in the mission's words."""
 
+import json
+from dataclasses import replace
 from itertools import combinations
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from argo_compiler.files.route_problem_file import route_suggestion_text
 from argo_compiler.route import NEVER, Precedence, Round, RouteProblem, Visit, suggest_route
 from argo_compiler.route.infeasible_subset import requirements, with_only_requirements
 from tests.argo_compiler.route.random_problems import random_problem
@@ -28,7 +32,7 @@ def test_two_contradicting_precedences() -> None:
         ),
     )
     made = suggest_route(problem)
-    assert made.proven
+    assert made.infeasible
     assert made.route is None
     assert made.infeasible_subset == ("precise order 4, 8", "checkpoint 8 before checkpoint 4")
 
@@ -100,3 +104,28 @@ def test_an_infeasible_subset_is_infeasible_and_smaller_ones_are_not(seed: int) 
     for fewer in combinations(others, max(0, len(clash) - 1)):
         if len(clash):
             assert best_value(with_only_requirements(problem, [*visits, *fewer])) is not None
+
+
+def test_nothing_of_a_suggestion_without_a_route_reads_as_one() -> None:
+    made = suggest_route(hall(3, max_duration=1))
+    described = (made.route, made.order, made.charges, made.dropped, made.prize, made.cost)
+    assert described == (None,) * 6
+    assert (made.infeasible, made.proven, made.gap) == (True, False, None)
+    data = json.loads(route_suggestion_text(made))
+    assert [data[name] for name in ("route", "prize", "cost", "dropped")] == [None] * 4
+    assert (data["infeasible"], data["proven"]) == (True, False)
+
+
+def test_a_search_that_finds_nothing_in_time_proves_nothing() -> None:
+    unfit = SimpleNamespace(name="unfit", supports=lambda _: False)
+    made = suggest_route(hall(3), 0.5, solvers=(unfit,))  # type: ignore[arg-type]
+    assert (made.route, made.order, made.prize, made.cost) == (None,) * 4
+    assert (made.infeasible, made.proven) == (False, False)
+
+
+def test_a_route_without_visits_is_none_that_is_missing() -> None:
+    problem = hall(2, max_duration=10)
+    optional = tuple(replace(visit, mandatory=False, prize=1) for visit in problem.visits)
+    made = suggest_route(replace(problem, visits=optional))
+    assert (made.order, made.cost, made.dropped) == ((), 10, (0, 1))
+    assert (made.infeasible, made.proven) == (False, True)

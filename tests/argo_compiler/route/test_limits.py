@@ -59,7 +59,7 @@ def test_an_explanation_without_time_states_that() -> None:
     clock = Clock(0.001)
     made = suggest_route(clashing(60), 0.5, clock=clock)
     assert made.route is None
-    assert made.proven
+    assert made.infeasible
     assert "no time" in made.reasons[-1]
     assert clock.now <= 0.5 * 1.1 + 0.2
 

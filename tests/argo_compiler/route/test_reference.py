@@ -44,8 +44,10 @@ def numbered(number: int, timed: bool) -> RouteProblem:
 def error_in(problem: RouteProblem, suggestion: RouteSuggestion, best: Best | None) -> str:
     """Return the first false claim of a suggestion, or that it is not proven; empty: neither."""
     if suggestion.route is None:
-        if suggestion.proven and best is not None:
+        if suggestion.infeasible and best is not None:
             return "false infeasibility"
+        if suggestion.proven:
+            return "a proof of a route that there is not"
     else:
         reference = Reference(problem)
         end = reference.evaluate(suggestion.route)
@@ -72,7 +74,7 @@ def error_in(problem: RouteProblem, suggestion: RouteSuggestion, best: Best | No
             return "a route costs less than the bound"
         if any(p.prize_bound < best.prize or p.bound > best.cost for p in suggestion.history):
             return "a bound in the history is wrong"
-    return "" if suggestion.proven else UNPROVEN
+    return "" if suggestion.proven or suggestion.infeasible else UNPROVEN
 
 
 def require_true(problem: RouteProblem) -> None:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from argo_compiler.hfsm.conditions import CheckpointReading
 from argo_compiler.hfsm.tables import CompiledTransition, GroupNode, Guard, LeafNode, Tables
+from argo_compiler.hfsm.trace import TracedRound
 from argo_compiler.hfsm.visits import TaskVisit
 
 _NEVER = math.inf
@@ -188,6 +189,23 @@ class Configuration:
         """Time (s) at which the awaited round is due if no clock stops; infinite if none is."""
         frame = self.awaited_round
         return math.inf if frame is None else self._round_due(frame)
+
+    def rounds_from(self, depth: int) -> tuple[TracedRound, ...]:
+        """Return the present rounds of the active groups at this depth and deeper, for the trace.
+
+        Without those of the groups inside an awaited round, which have not begun either.
+        """
+        awaited = self.awaited_round
+        end = None if awaited is None else awaited.group.depth + 1
+        return tuple(
+            TracedRound(
+                frame.group.name,
+                frame.round,
+                self._round_due(frame) if frame.group.every else None,
+                frame is awaited,
+            )
+            for frame in self.frames[depth:end]
+        )
 
     def update_visit_due(self) -> None:
         """Compute `visit_due` anew, after a change of the visit's times."""

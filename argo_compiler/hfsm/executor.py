@@ -152,7 +152,11 @@ class Executor:
             if self._fresh:
                 mission.configuration.started_at = now
                 mission.configuration.enter_first_task_or_end(control.tables.initial, now)
-            mission.add_entry(Cause.START if self._fresh else Cause.RESTORE, source=None)
+            mission.add_entry(
+                Cause.START if self._fresh else Cause.RESTORE,
+                source=None,
+                rounds=mission.configuration.rounds_from(0),
+            )
             if control.outcome is None:
                 limit = control.tables.max_duration
                 if limit is not None and not mission.time_up:

@@ -10,7 +10,7 @@ from argo_compiler.hfsm.configuration import Configuration
 from argo_compiler.hfsm.kinds import Cause, Outcome, ReadingKind
 from argo_compiler.hfsm.progress import ByHand
 from argo_compiler.hfsm.tables import CompiledTransition, LeafNode, Tables
-from argo_compiler.hfsm.trace import RawEntry, StoredStep, new_tuple
+from argo_compiler.hfsm.trace import RawEntry, StoredStep, TracedRound, groups_left, new_tuple
 from argo_compiler.il import EventKind
 
 _VALUE = ReadingKind.VALUE
@@ -170,9 +170,7 @@ class MachineState:
         """
         configuration, visit = self.configuration, self.configuration.visit
         if configuration.awaited_round is not None:
-            frame = configuration.awaited_round
-            configuration.start_awaited_round(self.now)
-            self.add_entry(Cause.ROUND, detail=f"{frame.round} of '{frame.group.name}'")
+            self._start_awaited_round()
         elif visit.window_missed_at(configuration.started_at) <= self.now:
             self._fail_for_good(leaf, _OVER, leaf.missed or leaf.failure)
         elif visit.action_due <= self.now:
@@ -276,7 +274,9 @@ class MachineState:
         self.ended.append(leaf.ended_visit)
         configuration, now = self.configuration, self.now
         transition = configuration.take_first_possible_transition(leaf.transitions, now)
-        self.trace.append((now, leaf, configuration.visit.leaf, transition, detail))
+        kept = transition.kept_rounds
+        rounds = configuration.rounds_from(kept) if len(configuration.frames) > kept else ()
+        self.trace.append((now, leaf, configuration.visit.leaf, transition, detail, rounds))
 
     def record_success_after_leaving(self, leaf: LeafNode) -> None:
         """Count the success of an action that came after the mission had left its task."""
@@ -293,10 +293,11 @@ class MachineState:
     ) -> None:
         """End the mission at once, whatever it was doing."""
         source = self.active_task
+        left = tuple(frame.group.name for frame in reversed(self.configuration.frames))
         self.outcome = outcome
         self.configuration.leave_all_states()
         self.time_up_at = math.inf
-        self.add_entry(cause, source, event=event, failure=failure, detail=str(outcome))
+        self.add_entry(cause, source, event=event, failure=failure, detail=str(outcome), left=left)
 
     def add_entry(
         self,
@@ -305,6 +306,8 @@ class MachineState:
         event: EventKind | None = None,
         failure: str | None = None,
         detail: str = "",
+        left: tuple[str, ...] = (),
+        rounds: tuple[TracedRound, ...] = (),
     ) -> None:
         """Add an entry to the trace at the present time; its target is the active task.
 
@@ -313,7 +316,17 @@ class MachineState:
         target = self.active_task
         origin = target if source == "" else source
         self.trace.append(
-            RawEntry(self.now, origin, target, cause, failure=failure, event=event, detail=detail)
+            RawEntry(
+                self.now,
+                origin,
+                target,
+                cause,
+                left=left,
+                rounds=rounds,
+                failure=failure,
+                event=event,
+                detail=detail,
+            )
         )
 
     def _count_end(self, leaf: LeafNode, failure: str | None = None, by_hand: bool = False) -> None:
@@ -345,6 +358,8 @@ class MachineState:
                 transition.conditions,
                 timed_out,
                 None if repeated is None else repeated.name,
+                () if source is None else groups_left(source, transition),
+                configuration.rounds_from(transition.kept_rounds),
                 failure,
                 None,
                 by_hand is not None,
@@ -359,7 +374,7 @@ class MachineState:
         if not queue:
             del self.by_hand[leaf.name]
         if self.configuration.awaited_round is not None:
-            self.configuration.start_awaited_round(self.now)
+            self._start_awaited_round()
         self.configuration.advance_stopped_group_clocks(done.duration, self.now)
         if leaf.measures is not None:
             if done.value is None or done.skipped:
@@ -368,6 +383,18 @@ class MachineState:
                 self.set_reading(leaf.measures, done.value, done.abnormal, at)
         self._count_end(leaf, by_hand=True)
         self._take_transition(leaf.transitions, by_hand=done)
+
+    def _start_awaited_round(self) -> None:
+        """Start the awaited round of a group, and add that to the trace."""
+        configuration = self.configuration
+        frame = configuration.awaited_round
+        assert frame is not None
+        configuration.start_awaited_round(self.now)
+        self.add_entry(
+            Cause.ROUND,
+            detail=f"{frame.round} of '{frame.group.name}'",
+            rounds=configuration.rounds_from(frame.group.depth),
+        )
 
     def _time_out_group(self) -> None:
         """Take the time-out transition of the group whose time is up."""

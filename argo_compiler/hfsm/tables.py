@@ -47,6 +47,8 @@ class CompiledTransition:
     """next leaf; None for the final state, or with `completes`"""
     kept_groups: int
     """how many of the active groups, from the outermost, are not left"""
+    kept_rounds: int
+    """how many of the active groups, from the outermost, stay in their round"""
     domain: "GroupNode | None"
     """the innermost of the groups that are not left; None if all are left"""
     completes: "GroupNode | None"
@@ -167,15 +169,18 @@ def _build_tables(hfsm: Hfsm) -> Tables:
 
     def compile_transition(transition: StateTransition) -> CompiledTransition:
         domain = None if transition.domain is None else groups.get(transition.domain)
+        kept_groups = 0 if domain is None else domain.depth + 1
+        repeats = domain if transition.kind is TransitionKind.REPEAT else None
         return CompiledTransition(
             cause=_CAUSES[transition.kind],
             guards=compile_guards(transition.conditions),
             conditions=transition.conditions,
             target=None if transition.target is None else leaves.get(transition.target),
-            kept_groups=0 if domain is None else domain.depth + 1,
+            kept_groups=kept_groups,
+            kept_rounds=kept_groups if repeats is None else repeats.depth,
             domain=domain,
             completes=None if transition.completes is None else groups[transition.completes],
-            repeats=domain if transition.kind is TransitionKind.REPEAT else None,
+            repeats=repeats,
             always_possible=transition.kind is not TransitionKind.REPEAT
             and not transition.conditions,
         )

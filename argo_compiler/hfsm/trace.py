@@ -12,6 +12,18 @@ new_tuple = tuple.__new__
 """creates a NamedTuple in half the time that its class needs"""
 
 
+class TracedRound(NamedTuple):
+    """Round of a group that begins, or that is awaited because it is not due yet."""
+
+    group: str
+    number: int
+    """from 1"""
+    due: float | None
+    """time (s) at which it is due, or was; None for a group without `every`"""
+    awaited: bool
+    """whether it is awaited: an entry with the cause ROUND follows when it begins"""
+
+
 @dataclass(frozen=True, slots=True)
 class TraceEntry:
     """Entry of the trace: at a time (s), the mission went from task `source` to task `target`.
@@ -30,6 +42,11 @@ class TraceEntry:
     """the group whose time was up, for TIMEOUT"""
     repeated: str | None = None
     """the group that started another round, for REPEAT and perhaps TIMEOUT"""
+    left: tuple[str, ...] = ()
+    """the groups that were left, innermost first; some may have been entered again at once"""
+    rounds: tuple[TracedRound, ...] = ()
+    """the rounds of groups that begin or are awaited, outermost first; for RESTORE, those that
+    continue. The groups inside an awaited round begin theirs together with it"""
     failure: str | None = None
     """why the action of `source` or of the reaction failed; None if it did not"""
     event: EventKind | None = None
@@ -76,6 +93,8 @@ class RawEntry(NamedTuple):
     conditions: tuple[Condition, ...] = ()
     timed_out: str | None = None
     repeated: str | None = None
+    left: tuple[str, ...] = ()
+    rounds: tuple[TracedRound, ...] = ()
     failure: str | None = None
     event: EventKind | None = None
     by_hand: bool = False
@@ -83,16 +102,18 @@ class RawEntry(NamedTuple):
     detail: str = ""
 
 
-StoredStep = tuple[float, LeafNode, LeafNode | None, CompiledTransition, str]
+StoredStep = tuple[
+    float, LeafNode, LeafNode | None, CompiledTransition, str, tuple[TracedRound, ...]
+]
 """compact form in which the executor stores most entries: the time at which a task ended well, the
-task, the next one, the transition between them, and the detail"""
+task, the next one, the transition between them, the detail, and the rounds that begin"""
 
 
 def raw_entry(stored: RawEntry | StoredStep) -> RawEntry:
     """Return an entry of the trace with all its fields; its conditions are no text yet."""
     if isinstance(stored, RawEntry):
         return stored
-    time, source, target, transition, detail = stored
+    time, source, target, transition, detail, rounds = stored
     return RawEntry(
         time,
         source.name,
@@ -100,8 +121,16 @@ def raw_entry(stored: RawEntry | StoredStep) -> RawEntry:
         transition.cause,
         transition.conditions,
         repeated=None if transition.repeats is None else transition.repeats.name,
+        left=groups_left(source, transition),
+        rounds=rounds,
         detail=detail,
     )
+
+
+def groups_left(source: LeafNode, transition: CompiledTransition) -> tuple[str, ...]:
+    """Return the names of the groups that a transition from a task leaves, innermost first."""
+    kept = transition.kept_groups
+    return tuple(group.name for group in source.groups_outward if group.depth >= kept)
 
 
 def trace_entry(stored: RawEntry | StoredStep) -> TraceEntry:

@@ -51,7 +51,7 @@ def _planned(record: RunRecord) -> Iterator[Wait]:
             what = f"the time window ({run.task})"
             yield Wait(what, *run.early, _ended(run.early[1] < end))
     for round_run in record.rounds:
-        until = min(filter(None, (round_run.began, round_run.ended, end)))
+        until = round_run.awaited_until(end)
         if (
             round_run.due is not None
             and round_run.due > round_run.since
@@ -193,7 +193,9 @@ def rounds_with_condition_values(record: RunRecord) -> list[tuple[RoundRun, str]
     return [
         (
             round_run,
-            _values(record, until[round_run.group], round_run.ended) if round_run.ended else "",
+            ""
+            if round_run.ended is None
+            else _values(record, until[round_run.group], round_run.ended),
         )
         for round_run in record.rounds
         if round_run.due is not None or until[round_run.group]

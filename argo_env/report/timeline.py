@@ -111,9 +111,10 @@ def _waits(record: RunRecord) -> Iterator[tuple[str, float, float, str]]:
     first = {c.name: c.initial for c in record.hfsm.composites[1:]}
     names = {leaf.id: leaf.task.name for leaf in record.hfsm.leaves}
     for round_run in record.rounds:
-        until = round_run.began or round_run.ended or record.result.duration
-        if until > round_run.since:
-            title = f"round {round_run.number} of {round_run.group} is due at {min_sec_text(until)}"
+        until = round_run.awaited_until(record.result.duration)
+        if until > round_run.since and round_run.due is not None:
+            due = min_sec_text(round_run.due)
+            title = f"round {round_run.number} of {round_run.group} is due at {due}"
             yield names[first[round_run.group]], round_run.since, until, title
 
 

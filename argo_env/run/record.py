@@ -322,13 +322,20 @@ class RoundRun(Model):
     number: int
     """from 1"""
     since: float
-    """s, when the group was entered or the previous round ended"""
+    """s, when the group was entered or the previous round ended; a group inside an awaited round
+    is entered when that round begins"""
     due: float | None = None
-    """s, for groups with `every`"""
+    """s, for groups with `every`; while the round is awaited, as planned at `since`"""
     began: float | None = None
     """s; None: the mission left the group or the run ended before the round was due"""
     ended: float | None = None
     """s; None: the run ended before"""
+
+    def awaited_until(self, now: float) -> float:
+        """Return the time (s) until which the round was awaited; `now` (s) if it still is."""
+        if self.began is not None:
+            return self.began
+        return now if self.ended is None else self.ended
 
 
 class GivenValue(Model):

@@ -27,8 +27,8 @@ from argo_env.run.spec import RunSpec
 from argo_env.run.verdict_line import AS_PLANNED
 from argo_env.run.visits_and_rounds import (
     InterruptionTracker,
-    RoundTracker,
     VisitRun,
+    rounds_from_trace,
     visits_from_trace,
     visits_with_windows,
     wait_runs,
@@ -204,9 +204,8 @@ def make_record(
     machine: Machine,
     log: RunLog,
     interruptions: InterruptionTracker,
-    rounds: RoundTracker,
 ) -> RunRecord:
-    """Make the record of a run from its log, the state of its machine and its trackers."""
+    """Make the record of a run from its log, the state of its machine and the interruptions."""
     site = setup.navigator.site
     assert log.last is not None
     trace = tuple(machine.trace)
@@ -243,7 +242,7 @@ def make_record(
         interruptions=interruptions.interruptions(log.last.t),
         waits=wait_runs(spec.mission, visits, log.last.t),
         windows=windows,
-        rounds=rounds.rounds(),
+        rounds=rounds_from_trace(trace),
         given_values=tuple(log.given_values),
         mishaps=tuple(log.mishaps),
         anomalies=tuple(log.anomalies),

@@ -25,7 +25,7 @@ from argo_env.run.robot import ActionEnd, AnyRobot, RobotAction
 from argo_env.run.run_commands import Supervision, mark_abnormal
 from argo_env.run.spec import RunSpec
 from argo_env.run.vehicle import find_last_path_part
-from argo_env.run.visits_and_rounds import InterruptionTracker, RoundTracker
+from argo_env.run.visits_and_rounds import InterruptionTracker
 
 
 class ScheduledEvents:
@@ -109,7 +109,6 @@ class SimulationState:
         self._time_step = vehicle.setup.drive.time_step
         self._vehicle = vehicle
         self._interruptions = InterruptionTracker()
-        self._rounds = RoundTracker()
         self._arrival_path: Path | None = None
 
     @property
@@ -159,7 +158,7 @@ class SimulationState:
         for event in entry.events:
             if not self.machine.finished:
                 self.execute(self.machine.handle(event.to_event(), self.now))
-                self._update_trackers()
+                self._interruptions.update(self.machine, self.now)
                 self.supervision.update(event.kind, self.machine)
         if entry.by_hand:
             self.supervision.acting = True
@@ -172,7 +171,7 @@ class SimulationState:
     def start(self) -> None:
         """Start the machine and execute its first commands."""
         self.execute(self.machine.start(self.now))
-        self._update_trackers()
+        self._interruptions.update(self.machine, self.now)
 
     def execute(self, commands: Sequence[Command]) -> None:
         """Execute the machine's commands: start actions and cancel them."""
@@ -259,19 +258,13 @@ class SimulationState:
         That entry is of the present moment and not in the log.
         """
         log = self.log if present is None else self.log.with_entry(present)
-        return make_record(
-            spec, self._vehicle.setup, self.machine, log, self._interruptions, self._rounds
-        )
+        return make_record(spec, self._vehicle.setup, self.machine, log, self._interruptions)
 
     def _start_action(self, command: StartAction) -> None:
         self.action = self._vehicle.prepare_action(command, self.now, self._arrival_path)
 
     def _with_abnormality(self, event: Event) -> Event:
         return mark_abnormal(self.log.site, self._mission, event)
-
-    def _update_trackers(self) -> None:
-        for tracker in (self._interruptions, self._rounds):
-            tracker.update(self.machine, self.now)
 
     @property
     def _running_task(self) -> str | None:

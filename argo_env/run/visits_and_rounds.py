@@ -3,9 +3,8 @@
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 
-from argo_compiler.hfsm import Cause, Hfsm, RepeatRule, TraceEntry
+from argo_compiler.hfsm import Cause, TraceEntry
 from argo_compiler.hfsm.conditions import wait_end_text
-from argo_compiler.hfsm.progress import GroupProgress
 from argo_compiler.il import Action, EventKind, Mission, Task
 from argo_env.run.machine import Machine
 from argo_env.run.record import Interruption, RoundRun, WaitRun, WindowOutcome, WindowVisit
@@ -23,8 +22,6 @@ VISIT_ENDS = frozenset(
     }
 )
 """causes of trace entries that end a visit"""
-VISIT_STARTS = VISIT_ENDS | {Cause.START, Cause.RESTORE}
-"""causes of trace entries that can start a visit"""
 
 
 @dataclass(frozen=True)
@@ -47,10 +44,11 @@ class VisitRun:
 
         A failure, a group's time limit or the end of the mission can end a visit before that.
         """
-        by_itself = self.end_entry is not None and self.end_entry.cause not in (
-            Cause.TIMEOUT,
-            Cause.CANCEL,
-            Cause.END,
+        entry = self.end_entry
+        by_itself = (
+            entry is not None
+            and entry.event is None
+            and entry.cause not in (Cause.TIMEOUT, Cause.CANCEL, Cause.END)
         )
         return by_itself and self.failure is None
 
@@ -60,21 +58,30 @@ def visits_from_trace(
 ) -> Iterator[VisitRun]:
     """Yield the visits of all tasks in a trace, in the order of time.
 
-    The visit of a task that waits for its group's round to be due begins with the round. The first
-    visit of a restored machine had begun `seconds_before_restore` earlier than it was restored.
+    The visit of a task that waits for its group's round to be due begins with the round. Without
+    the round there is no visit. The first visit of a restored machine had begun
+    `seconds_before_restore` earlier than it was restored.
     """
     task: str | None = None
-    start = 0.0
+    start: float | None = None  # None: the visit has not begun, as its group's round is awaited
     for entry in trace:
-        if entry.cause in (Cause.START, Cause.RESTORE):
-            task, start = entry.target, entry.time - seconds_before_restore
-        elif entry.cause is Cause.ROUND:
+        if entry.cause is Cause.ROUND:
             start = entry.time
-        elif entry.cause in VISIT_ENDS:
-            if task is not None:
-                yield VisitRun(task, start, entry.time, entry.failure, entry)
-            task, start = entry.target, entry.time
-    if task is not None:
+            continue
+        if entry.cause in VISIT_ENDS:
+            if task is not None and start is not None:
+                # An entry with an event has the failure of the reaction to it.
+                failure = None if entry.event else entry.failure
+                yield VisitRun(task, start, entry.time, failure, entry)
+            start = entry.time
+        elif entry.cause in (Cause.START, Cause.RESTORE):
+            start = entry.time - seconds_before_restore
+        else:
+            continue
+        task = entry.target
+        if any(begun.awaited for begun in entry.rounds):
+            start = None
+    if task is not None and start is not None:
         yield VisitRun(task, start, None)
 
 
@@ -165,93 +172,33 @@ def _window_run(task: Task, visit: VisitRun | None) -> WindowVisit:
     )
 
 
-@dataclass(frozen=True)
-class _KnownRound:
-    """Round of a group at the last update."""
+def rounds_from_trace(trace: Sequence[TraceEntry]) -> tuple[RoundRun, ...]:
+    """Return the rounds of all groups in a trace, in the order in which they could begin.
 
-    round: int
-    elapsed: float
-    """s on the group's clock"""
-    index: int
-    """index of the round in the tracker's list"""
-
-
-class RoundTracker:
-    """Tracker of the rounds of all groups; holds the rounds seen so far."""
-
-    def __init__(self) -> None:
-        self._rounds: list[RoundRun] = []
-        self._groups: dict[str, _KnownRound] = {}
-        self._trace_length = 0  # entries of the trace that were handled
-        self._hfsm: Hfsm | None = None
-        self._rules: dict[str, RepeatRule] = {}
-
-    def update(self, machine: Machine, now: float) -> None:
-        """Record the machine's state at time `now` (s); to be called after each of its steps."""
-        new = machine.trace[self._trace_length :]
-        self._trace_length += len(new)
-        if machine.hfsm is not self._hfsm:
-            self._hfsm = machine.hfsm
-            self._rules = {c.name: c.repeat for c in machine.hfsm.composites[1:] if c.repeat}
-        moved = max((e.time for e in new if e.cause in VISIT_STARTS), default=None)
-        begun = max((e.time for e in new if e.cause is Cause.ROUND), default=None)
-        if not self._rules or (moved is None and begun is None):
-            return
-        progress = machine.progress()
-        inside = {} if progress.outcome else {g.group: g for g in progress.groups}
-        first = next(e for e in new if e.cause in VISIT_STARTS or e.cause is Cause.ROUND)
-        # The awaited round may have ended at the same time at which it began.
-        awaited_start = first.time if first.cause is Cause.ROUND else None
-        for name in [name for name in self._groups if name not in inside]:
-            self._end(self._groups.pop(name).index, now if moved is None else moved, awaited_start)
-        for name, group in inside.items():
-            known, waits = self._groups.get(name), progress.round_of == name
-            if moved is not None and (
-                known is None or group.round != known.round or group.elapsed < known.elapsed
-            ):
-                if known is not None:
-                    self._end(known.index, moved, awaited_start)
-                self._rounds.append(_new_round(group, self._rules[name], moved, now, waits))
-                index = len(self._rounds) - 1
-            elif known is None:
-                continue
-            else:
-                index = known.index
-                if self._rounds[index].began is None and not waits and begun is not None:
-                    self._set_times(index, due=begun, began=begun)
-            self._groups[name] = _KnownRound(group.round, group.elapsed, index)
-
-    def rounds(self) -> tuple[RoundRun, ...]:
-        """Return all rounds of groups, by their `since`; also those that still wait to begin."""
-        return tuple(self._rounds)
-
-    def _end(self, index: int, now: float, begun: float | None) -> None:
-        if begun is not None and self._rounds[index].began is None:
-            self._set_times(index, due=begun, began=begun)
-        self._set_times(index, ended=now)
-
-    def _set_times(self, index: int, **times: float) -> None:
-        self._rounds[index] = self._rounds[index].model_copy(update=times)
-
-
-def _new_round(
-    group: GroupProgress, rule: RepeatRule, since: float, now: float, waits: bool
-) -> RoundRun:
-    """Return the present round of a group, as the record has it, at time `now` (s).
-
-    The round could begin at `since` (s), when the previous one had ended. `waits` states that the
-    machine still waits until the round is due.
+    A round that waits to begin is one of them. The rounds of the groups inside it follow when it
+    begins.
     """
-    # Seconds since the round was due, on the group's clock; negative before.
-    overdue = group.elapsed - (group.round - 1) * rule.every
-    due = now - overdue if waits else min(now - overdue, since)
-    return RoundRun(
-        group=group.group,
-        number=group.round,
-        since=since,
-        due=round(due, 6) if rule.every else None,
-        began=None if waits else since,
-    )
+    rounds: list[RoundRun] = []
+    present: dict[str, int] = {}  # index of the round of each active group
+    for entry in trace:
+        for group in (*entry.left, *([] if entry.repeated is None else [entry.repeated])):
+            # A group inside an awaited round has no round yet.
+            if (index := present.pop(group, None)) is not None:
+                rounds[index] = rounds[index].model_copy(update={"ended": entry.time})
+        for begun in entry.rounds:
+            times = {
+                "due": None if begun.due is None else round(begun.due, 6),
+                "began": None if begun.awaited else entry.time,
+            }
+            if begun.group in present:
+                index = present[begun.group]
+                rounds[index] = rounds[index].model_copy(update=times)
+            else:
+                present[begun.group] = len(rounds)
+                rounds.append(
+                    RoundRun(group=begun.group, number=begun.number, since=entry.time, **times)
+                )
+    return tuple(rounds)
 
 
 class InterruptionTracker:

@@ -92,8 +92,16 @@ def test_restored_machine_goes_on_alike(case, count, away):
             break
         assert rest.seen == [(at + shift, *what) for at, *what in world.seen]
         assert other.progress() == executor.progress()
-    expected = [replace(entry, time=entry.time + shift) for entry in executor.trace[before[0] :]]
+    expected = [shifted(entry, shift) for entry in executor.trace[before[0] :]]
     assert list(other.trace[before[1] :]) == expected
+
+
+def shifted(entry, seconds):
+    """Return an entry of the trace with all its times some seconds later."""
+    rounds = tuple(
+        one if one.due is None else one._replace(due=one.due + seconds) for one in entry.rounds
+    )
+    return replace(entry, time=entry.time + seconds, rounds=rounds)
 
 
 @settings(max_examples=60)

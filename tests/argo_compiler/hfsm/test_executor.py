@@ -19,8 +19,9 @@ from argo_compiler.hfsm import (
     lower,
 )
 from argo_compiler.hfsm.progress import Waiting
+from argo_compiler.hfsm.trace import TracedRound
 from argo_compiler.il import EventKind, Group, Stop
-from tests.argo_compiler.hfsm.play import build, started
+from tests.argo_compiler.hfsm.play import build, drive, started
 
 
 @pytest.fixture
@@ -102,6 +103,22 @@ class TestViews:
         assert executor.rounds == {"G": 1, "G/H": 2}
         executor.handle(ActionSucceeded("A"), 2)
         assert executor.configuration == ("mission", "group:G", "task:B")
+
+    def test_trace_names_groups_left_and_rounds_that_begin(self):
+        outer = Group(name="G", start="A", end="B", max_repeat_count=2, every=10)
+        inner = Group(name="G/H", start="A", end="A", max_repeat_count=1)
+        trace = drive(build("A B C", outer, inner), takes={"B": 2}).trace
+        assert [(e.time, e.left, e.repeated, [r[:2] for r in e.rounds]) for e in trace] == [
+            (0, (), None, [("G", 1), ("G/H", 1)]),
+            (1, ("G/H",), None, []),
+            (3, (), "G", [("G", 2)]),
+            (10, (), None, [("G", 2), ("G/H", 1)]),
+            (11, ("G/H",), None, []),
+            (13, ("G",), None, []),
+            (14, (), None, []),
+        ]
+        assert trace[2].rounds == (TracedRound("G", 2, due=10, awaited=True),)
+        assert trace[3].rounds[0] == TracedRound("G", 2, due=10, awaited=False)
 
     def test_deadline_is_the_earliest_of_all_hard_groups(self):
         groups = (

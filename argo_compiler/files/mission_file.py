@@ -14,6 +14,7 @@ from argo_compiler.diagnostics import (
     by_position,
 )
 from argo_compiler.files.atomic_write import write_atomically
+from argo_compiler.files.foreign import ForeignFile, find_foreign_json
 from argo_compiler.files.json_places import (
     JsonPath,
     JsonText,
@@ -36,7 +37,7 @@ from argo_compiler.files.mission_data import (
     unplaced,
     validate_mission,
 )
-from argo_compiler.il import Mission
+from argo_compiler.il import Mission, Task
 from argo_compiler.il.subjects import Subjects
 
 MAX_BYTES = 50_000_000
@@ -109,13 +110,14 @@ def decode_mission(content: bytes, source_name: str) -> MissionFile:
         _refuse(source_name, text, [*faults, _not_a_mission()])
     if _RECORD_FIELDS.issubset(data):
         _refuse(source_name, text, [*faults, _run_record()])
+    if foreign := find_foreign_json(data):
+        _refuse(source_name, text, [_foreign(foreign)])
+    if reason := _why_other_json(data):
+        _refuse(source_name, text, [_other_json(reason)])
     current, written_as = copy_with_current_version(data)
     version = current.get("version", VERSION)
     if version != VERSION or isinstance(version, bool):
         _refuse(source_name, text, [*faults, _unsupported_version(version)])
-    unknown = [name for name in current if name not in Mission.model_fields]
-    if len(unknown) >= _MIN_UNKNOWN and "tasks" not in current:
-        _refuse(source_name, text, [*faults, _other_json(unknown[0])])
     result = validate_mission(current)
     if isinstance(result, list) or faults:
         _refuse(source_name, text, faults + (result if isinstance(result, list) else []))
@@ -219,17 +221,39 @@ def _parse(source_name: str, text: str) -> tuple[Any, bool]:
 def _not_a_mission() -> UnplacedDiagnostic:
     return unplaced(
         "file.not-a-mission",
-        "the file is not a mission: its JSON is not an object",
-        f'a mission begins with {{"version": {VERSION}, "tasks": [',
+        "the file is not a mission: its JSON is not an object; a mission begins with "
+        f'{{"version": {VERSION}, "tasks": [',
+        None,
     )
 
 
-def _other_json(unknown_field: str) -> UnplacedDiagnostic:
+def _why_other_json(data: dict[str, Any]) -> str | None:
+    """Return why an object is no mission of Argo, not even one with mistakes; None: it may be."""
+    unknown = [name for name in data if name not in Mission.model_fields]
+    known = [name for name in data if name in Mission.model_fields and name != "version"]
+    many = 2 if not known else _MIN_UNKNOWN
+    if len(unknown) >= many and "tasks" not in data:
+        return f"it has {unknown[0][:40]!r}, but no 'tasks'"
+    tasks = data.get("tasks")
+    if not isinstance(tasks, list) or not tasks or not all(isinstance(t, dict) for t in tasks):
+        return None
+    names = {name for task in tasks for name in task}
+    other = sorted(names - Task.model_fields.keys())
+    if other and not names & {"action", "transitions"}:
+        return f"its tasks have {other[0][:40]!r}, but no 'action'"
+    return None
+
+
+def _other_json(reason: str) -> UnplacedDiagnostic:
     return unplaced(
         "file.not-a-mission",
-        f"the file is not a mission: it has {unknown_field[:40]!r}, but no 'tasks'",
-        "choose the mission's file",
+        f"the file is not a mission: {reason}; choose the mission's file",
+        None,
     )
+
+
+def _foreign(foreign: ForeignFile) -> UnplacedDiagnostic:
+    return unplaced("file.not-a-mission", f"the file {foreign.message}", None)
 
 
 def _run_record() -> UnplacedDiagnostic:
@@ -242,10 +266,12 @@ def _run_record() -> UnplacedDiagnostic:
 
 def _unsupported_version(version: object) -> UnplacedDiagnostic:
     text = json.dumps(version)
+    is_newer = isinstance(version, int) and version > VERSION and not isinstance(version, bool)
     return unplaced(
         "file.unsupported-version",
         f"the file has version {text if len(text) < 40 else '...'} of the mission format",
-        f"this Argo reads versions up to {VERSION}: use a newer Argo, or save the mission again",
+        f"this Argo reads versions up to {VERSION}: "
+        + ("use a newer Argo, or save the mission again" if is_newer else "write one of them"),
         ("version",),
     )
 

@@ -29,12 +29,15 @@ def find_isar_data(content: bytes) -> dict[str, Any] | None:
 def _is_definition(data: Any) -> bool:
     """Return True if the data look like isar's definition and not like a mission of Argo.
 
-    Only tasks of Argo have actions.
+    Only tasks of Argo have actions, and only those of older formats of isar have lists.
     """
     if not isinstance(data, dict) or "version" in data:
         return False
     definition = data.get(WRAPPED, data)
     tasks = definition.get("tasks") if isinstance(definition, dict) else None
     return isinstance(tasks, list) and any(
-        isinstance(task, dict) and "action" not in task and "pose" in task for task in tasks
+        isinstance(task, dict)
+        and not {"action", "inspections", "steps"} & task.keys()
+        and "pose" in task
+        for task in tasks
     )

@@ -8,6 +8,7 @@ from pydantic import ValidationError
 from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity, Span, with_excerpts
 from argo_compiler.files.fields import unknown_field_hint
+from argo_compiler.files.foreign import find_foreign_yaml
 from argo_compiler.files.json_places import JsonPath, format_path
 from argo_compiler.files.yaml_text import (
     MappingNode,
@@ -72,6 +73,10 @@ def parse_yaml(
     try:
         parsed = model.model_validate(data)
     except ValidationError as error:
+        if foreign := find_foreign_yaml(data):
+            message = f"the file has no {things}, but {foreign.kind}: choose another file"
+            flaw = _Flaw(message, None, None, None)
+            raise _error(source_name, text, [_diagnostic(wrong_field, flaw)]) from None
         for flaw in _wrong_fields(error, model, things, no_field or {}, tree, data):
             diagnostics.append(_diagnostic(wrong_field, flaw))
     if diagnostics:

@@ -20,6 +20,7 @@ from argo_compiler.diagnostics import (
     has_errors,
     with_excerpts,
 )
+from argo_compiler.files.foreign import require_no_foreign_file
 from argo_compiler.files.loading import open_file
 from argo_compiler.files.mission_file import MissionFile, decode_mission
 from argo_compiler.il import Mission
@@ -35,12 +36,18 @@ _BRACE = re.compile(rb"(\xef\xbb\xbf|\xff\xfe|\xfe\xff)?[\s\0]*\{")
 """beginning of a JSON object, in any encoding"""
 _PLAN = re.compile(rb'[0-9a-f]{8} \{"n":0,"format":"argo plan"')
 """beginning of a mission plan of the planning service"""
-_XML = re.compile(rb"(\xef\xbb\xbf)?\s*<[?!a-zA-Z]")
-"""beginning of an XML or HTML file"""
+_BEGINNING = 1 << 16
+"""number of bytes in which a file of another program is recognised, if it may be a bag"""
 _JOURNAL = re.compile(rb'[0-9a-f]{8} \{"n":0,')
 """beginning of the journal of a run"""
 _RECORDING = re.compile(rb"\x89MCAP0.{11,16}\x04\x00\x00\x00argo", re.DOTALL)
 """beginning of the recording of a run"""
+
+
+_TABLES = (".csv", ".tsv")
+"""suffixes of tables; some have steps in their cells, and are read as scripts"""
+_NO_TASK = "script.nothing-to-do"
+"""code of the error of a script without any task"""
 
 
 class SourceKind(StrEnum):
@@ -115,8 +122,10 @@ def load_unchecked_mission(
         Invalid: It is a file of another kind, such as the journal of a run, or areas are given for
             a mission that has its own.
     """
+    name = upload.name
     _require_no_plan_or_run(upload)
-    kind, name = guess_source_kind(upload), upload.name
+    require_no_foreign_file(name, _beginning(upload, _BEGINNING))
+    kind = guess_source_kind(upload)
     _log.info("%s is read as a %s", name, kind)
     if kind is not SourceKind.SCRIPT:
         require_no_areas(name, start_area, end_area)
@@ -131,30 +140,22 @@ def load_unchecked_mission(
             file = decode_mission(upload.content, name)
             return LoadedMission(file.mission, file.diagnostics_with_positions(file.changes), file)
         case SourceKind.SCRIPT:
-            _require_script(upload)
             return _load_script(upload.content, name, catalog, start_area, end_area)
 
 
-def _require_script(upload: Upload) -> None:
-    """Raise Invalid if an upload can't be a script: XML, HTML or YAML."""
-    assert isinstance(upload.content, bytes)
-    if _XML.match(upload.content):
-        kind = "XML or HTML"
-    elif Path(upload.name).suffix.lower() in (".yaml", ".yml"):
-        kind = "YAML, in which sites, faults and evaluations are written"
-    else:
-        return
-    raise Invalid(f"{upload.name} is no mission, but {kind}: choose the mission's file")
+def _beginning(upload: Upload, size: int) -> bytes:
+    """Return the content of a file, of a bag on this machine only its first `size` bytes."""
+    if isinstance(upload.content, bytes):
+        return upload.content
+    if isinstance(upload.content, Path) and os.path.isfile(upload.content):
+        with open_file(upload.content, "bag") as file:
+            return file.read(size)
+    return b""
 
 
 def _require_no_plan_or_run(upload: Upload) -> None:
     """Raise Invalid if an upload is a plan, or the journal or recording of a run."""
-    beginning = b""
-    if isinstance(upload.content, bytes):
-        beginning = upload.content[:64]
-    elif isinstance(upload.content, Path) and os.path.isfile(upload.content):
-        with open_file(upload.content, "bag") as file:
-            beginning = file.read(64)
+    beginning = _beginning(upload, 64)
     for pattern, kind, remedies in (
         (_PLAN, "a plan of the planning service, which exports its mission", ()),
         (_JOURNAL, "the journal of a run", (Remedy.RESUME,)),
@@ -190,9 +191,17 @@ def _load_script(
         from argo_compiler.script import decode_script, import_script
 
     text = decode_script(content, name)
-    resolved = import_script(
-        text, catalog, source_name=name, start_area=start_area, end_area=end_area
-    )
+    try:
+        resolved = import_script(
+            text, catalog, source_name=name, start_area=start_area, end_area=end_area
+        )
+    except DiagnosticError as error:
+        if Path(name).suffix.lower() in _TABLES and _NO_TASK in {d.code for d in error.diagnostics}:
+            raise Invalid(
+                f"{name} is no mission, but a table (CSV): write its rows as steps, such as "
+                "`Check checkpoint 4`"
+            ) from None
+        raise
     return LoadedMission(resolved.mission, resolved.diagnostics, Script(text, name))
 
 

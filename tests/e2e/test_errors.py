@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.argo_planner.use_cases.foreign_files import FOREIGN
+
 SHEET = (
     "Mission's designation:\tMission #9\n"
     "Main mode:\tAutonomous\n"
@@ -57,6 +59,20 @@ def test_a_bad_script_is_refused(argo, tmp_path: Path, command, name, content, e
     assert name in message
     assert expected in message
     assert not (tmp_path / "out.json").exists()
+
+
+@pytest.mark.physics
+def test_each_command_names_a_file_of_another_program(argo, tmp_path: Path) -> None:
+    files = [f for f in FOREIGN if f.name in ("order.json", "tree4.xml", "site.sqlite")]
+    assert len(files) == 3
+    for command in ("check", "run", "route", "explain", "plan", "evaluate"):
+        for file in files:
+            (tmp_path / file.name).write_bytes(file.content)
+            result = argo(command, tmp_path / file.name)
+            said = result.stdout + result.stderr
+            assert result.returncode != 0
+            assert f"is no mission, but {file.named}" in said
+            assert "Traceback" not in said
 
 
 @pytest.mark.physics

@@ -1,0 +1,354 @@
+"""Recognition of files of other programs, so that a message can name what they are.
+
+Nothing here is read as a mission. Only what a format itself states is trusted: its first bytes, its
+root element, its own fields; a name's suffix never suffices.
+"""
+
+import io
+import re
+import zipfile
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from argo_compiler.base.errors import Invalid
+from argo_compiler.files.encodings import detect_encoding
+
+_HEAD = 4096
+"""number of bytes in which the formats that are texts are recognised"""
+_MAX_YAML = 1_000_000
+CHOOSE = "choose the mission's file"
+_STEPS = "write its steps as a script, as Argo can't import it"
+_STOPS = "write its stops as a script, as Argo can't import it"
+_UNPACK = "unpack it, and choose the mission in it"
+_TEXT = "save it as plain text"
+_CHART = "choose the mission of which it was made, or write its steps as a script"
+
+
+class ForeignFile(NamedTuple):
+    """Kind of file of another program, and what to do instead."""
+
+    kind: str
+    """noun with its article, such as `a VDA 5050 order`"""
+    way_out: str = CHOOSE
+
+    @property
+    def message(self) -> str:
+        return f"is no mission, but {self.kind}: {self.way_out}"
+
+
+def require_no_foreign_file(name: str, content: bytes) -> None:
+    """Raise Invalid if the content is a file of another program; JSON is not looked at here."""
+    if found := find_foreign_file(name, content):
+        raise Invalid(f"{name} {found.message}")
+
+
+def find_foreign_file(name: str, content: bytes) -> ForeignFile | None:
+    """Return what a file of another program is, or None if it may be a script or JSON."""
+    if found := _find_by_first_bytes(content):
+        return found
+    encoding = detect_encoding(content)
+    if encoding is None:
+        return None  # binary; the readers report that
+    head = content[:_HEAD].decode(encoding, "replace").removeprefix("\ufeff")
+    if root := _XML_ROOT.match(head):
+        return _find_by_root(root[1], head)
+    for pattern, found in _TEXTS:
+        if pattern.search(head):
+            return found
+    if Path(name).suffix.lower() in (".yaml", ".yml"):
+        return _find_in_yaml(content.decode(encoding, "replace"))
+    return None
+
+
+# ---- binary files and archives
+
+_MAGIC = (
+    (b"%PDF-", ForeignFile("a document (PDF)", _TEXT)),
+    (rb"{\rtf", ForeignFile("a document (RTF)", _TEXT)),
+    (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", ForeignFile("an old Office document", _TEXT)),
+    (b"\x89PNG\r\n", ForeignFile("a picture (PNG)")),
+    (b"\xff\xd8\xff", ForeignFile("a picture (JPEG)")),
+    (b"GIF8", ForeignFile("a picture (GIF)")),
+    (b"II*\0", ForeignFile("a picture (TIFF)")),
+    (b"MM\0*", ForeignFile("a picture (TIFF)")),
+    (b"\x1f\x8b", ForeignFile("a compressed file (gzip)", _UNPACK)),
+    (b"BZh", ForeignFile("a compressed file (bzip2)", _UNPACK)),
+    (b"\xfd7zXZ\0", ForeignFile("a compressed file (xz)", _UNPACK)),
+    (b"\x28\xb5\x2f\xfd", ForeignFile("a compressed file (Zstandard)", _UNPACK)),
+    (b"7z\xbc\xaf\x27\x1c", ForeignFile("an archive (7z)", _UNPACK)),
+    (b"Rar!", ForeignFile("an archive (RAR)", _UNPACK)),
+    (b"PAR1", ForeignFile("a Parquet file")),
+    (b"ARROW1", ForeignFile("an Arrow file")),
+    (b"\x89HDF\r\n", ForeignFile("an HDF5 file")),
+    (b"\x93NUMPY", ForeignFile("a NumPy array")),
+    (b"glTF", ForeignFile("a mesh (glTF)")),
+    (b"\x7fELF", ForeignFile("a program (ELF)")),
+    (b"MZ\x90\0", ForeignFile("a program of Windows")),
+)
+_PICKLE = re.compile(rb"\x80[\x02-\x05].*\.\Z", re.DOTALL)
+_TAR = slice(257, 262)
+_SQLITE = b"SQLite format 3\0"
+_BAG_TABLE = b"CREATE TABLE topics"
+"""table of each rosbag2 that is an SQLite database"""
+_PARTS_OF_ZIP = (
+    ("word/document.xml", ForeignFile("a Word document", _TEXT)),
+    ("xl/workbook.xml", ForeignFile("an Excel spreadsheet", "save its cells as plain text")),
+    ("ppt/presentation.xml", ForeignFile("a PowerPoint presentation", _TEXT)),
+    ("modelDescription.xml", ForeignFile("an FMU (FMI)")),
+    ("doc.kml", ForeignFile("places and ways of a map (KMZ)", _STOPS)),
+    ("wpmz/template.kml", ForeignFile("a flight of a drone (KMZ)", _STOPS)),
+)
+
+
+def _find_by_first_bytes(content: bytes) -> ForeignFile | None:
+    for magic, found in _MAGIC:
+        if content.startswith(magic):
+            return found
+    if content.startswith(b"PK\x03\x04"):
+        return _find_in_zip(content)
+    if content[_TAR] == b"ustar":
+        return ForeignFile("an archive (tar)", _UNPACK)
+    if content.startswith(_SQLITE) and _BAG_TABLE not in content[: 1 << 16]:
+        return ForeignFile("an SQLite database, and no bag of ROS 2")
+    if _PICKLE.match(content):
+        return ForeignFile("a pickled Python object")
+    return None
+
+
+def _find_in_zip(content: bytes) -> ForeignFile:
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            names = set(archive.namelist())
+    except (zipfile.BadZipFile, ValueError, OSError, NotImplementedError):
+        return ForeignFile("a damaged ZIP archive")
+    for part, found in _PARTS_OF_ZIP:
+        if part in names:
+            return found
+    if {"mimetype", "content.xml"} <= names:
+        return ForeignFile("an OpenDocument file", _TEXT)
+    return ForeignFile("a ZIP archive", _UNPACK)
+
+
+# ---- XML
+
+_XML_ROOT = re.compile(
+    r"\s*(?>(?><\?[^>]*>|<!--.*?-->|<!(?!doctype\s+html)[a-z][^>\[]*(?:\[[^\]]*\]\s*)?>)\s*)*+"
+    r"<(!doctype\s+html|[a-z_][\w.:-]*)",
+    re.IGNORECASE | re.DOTALL,
+)
+_WEB_PAGE = ForeignFile("a web page (HTML)")
+_ROOTS = {
+    "launch": ForeignFile("a launch file of ROS"),
+    "robot": ForeignFile("a model of a robot (URDF)"),
+    "sdf": ForeignFile("a simulated world or model (SDF)"),
+    "mujoco": ForeignFile("a simulated model (MuJoCo)"),
+    "package": ForeignFile("the description of a ROS package"),
+    "kml": ForeignFile("places and ways of a map (KML)", _STOPS),
+    "gpx": ForeignFile("tracks and waypoints (GPX)", _STOPS),
+    "scxml": ForeignFile("a state chart (SCXML)", _CHART),
+    "opendrive": ForeignFile("a map of roads (OpenDRIVE)"),
+    "openscenario": ForeignFile("a traffic scenario (OpenSCENARIO)"),
+    "fmimodeldescription": ForeignFile("the description of an FMU (FMI)"),
+    "collada": ForeignFile("a mesh (COLLADA)"),
+    "svg": ForeignFile("a picture (SVG)"),
+    "html": _WEB_PAGE,
+    "body": _WEB_PAGE,
+    "osm": ForeignFile("a map (OpenStreetMap)"),
+    "ifcxml": ForeignFile("a model of a building (IFC)"),
+    "treenodesmodel": ForeignFile("a list of nodes of BehaviorTree.CPP", _CHART),
+}
+
+
+def _find_by_root(name: str, head: str) -> ForeignFile:
+    local = name.lower().rpartition(":")[2]
+    if local.startswith("!doctype"):
+        return _WEB_PAGE
+    if "<BehaviorTree" in head or "BTCPP_format" in head or "main_tree_to_execute" in head:
+        return ForeignFile("a behaviour tree of BehaviorTree.CPP", _CHART)
+    return _ROOTS.get(local, ForeignFile(f"XML, with <{name[:40]}>"))
+
+
+# ---- plain text
+
+_BLANK = r"(?>[ \t]*(?:[#;].*)?\r?\n)*+"
+"""empty lines and comments"""
+_TEXTS = (
+    (
+        re.compile(r"\AQGC WPL \d+"),
+        ForeignFile("a list of MAVLink waypoints (QGroundControl, Mission Planner)", _STOPS),
+    ),
+    (re.compile(r"\ABEGIN:VCALENDAR\b"), ForeignFile("a calendar (iCalendar)", _STEPS)),
+    (re.compile(r"\ABEGIN:VCARD\b"), ForeignFile("a contact (vCard)")),
+    (
+        re.compile(r"\AISO-10303-21;.*FILE_SCHEMA\s*\(\s*\(\s*'IFC", re.DOTALL),
+        ForeignFile("a model of a building (IFC)"),
+    ),
+    (re.compile(r"\AISO-10303-21;"), ForeignFile("a CAD model (STEP)")),
+    (re.compile(rf"\A{_BLANK}[ \t]*\(define\s*\("), ForeignFile("a planning problem (PDDL)")),
+    (
+        re.compile(
+            rf"\A{_BLANK}(?:[ \t]*(?:[\d.]+[ \t]*:[ \t]*)?\([a-z][\w-]*(?:[ \t]+[a-z][\w-]*)*\)"
+            rf"[ \t]*(?:\[[\d.]+\])?[ \t]*\r?\n)+{_BLANK}\Z",
+            re.IGNORECASE,
+        ),
+        ForeignFile("a plan of a PDDL planner", _STEPS),
+    ),
+    (re.compile(r"\A[$!][A-Z]{5},"), ForeignFile("a track of positions (NMEA)")),
+    (re.compile(r"\A# \.PCD "), ForeignFile("a point cloud (PCD)")),
+    (re.compile(r"\Aply\r?\nformat "), ForeignFile("a mesh or point cloud (PLY)")),
+    (re.compile(r"\Asolid\b.*\n\s*facet normal "), ForeignFile("a mesh (STL)")),
+    (
+        re.compile(r"^(?:from [\w.]+ import \w|def \w+\(.*:[ \t]*\r?$)|\A#!.*python", re.M),
+        ForeignFile("a Python program"),
+    ),
+    (
+        re.compile(
+            rf"\A(?>{_BLANK}[\w.-]+[ \t]*=.*\n)*+{_BLANK}\[\[?[\w.\" -]+\]\]?[ \t]*\r?\n"
+            rf"{_BLANK}[\w.\"-]+[ \t]*="
+        ),
+        ForeignFile("a file of settings (TOML or INI)"),
+    ),
+)
+
+
+# ---- YAML
+
+_SITES = "YAML, in which sites, faults and evaluations are written"
+
+
+def _find_in_yaml(text: str) -> ForeignFile:
+    from argo_compiler.files.yaml_text import load_yaml  # importing it takes long
+
+    try:
+        data = load_yaml(text, "") if len(text) <= _MAX_YAML else None
+    except Invalid:
+        data = None
+    return find_foreign_yaml(data) or ForeignFile(_SITES)
+
+
+def find_foreign_yaml(data: Any) -> ForeignFile | None:
+    """Return what the data of a YAML file of another program are, or None if they are not known."""
+    for item in data if isinstance(data, list) else [data]:
+        if isinstance(item, Mapping) and _is_waypoint(item):
+            return ForeignFile("a list of waypoints, as Nav2 follows them", _STOPS)
+    fields = data if isinstance(data, Mapping) else {}
+    return next((found for is_kind, found in _YAMLS if is_kind(fields)), None)
+
+
+def _is_waypoint(fields: Mapping[Any, Any]) -> bool:
+    return bool({"waypoints", "poses"} & fields.keys()) or (
+        "pose" in fields and bool({"header", "orientation"} & fields.keys())
+    )
+
+
+def _has(*names: str) -> Callable[[Mapping[Any, Any]], bool]:
+    return lambda fields: set(names) <= fields.keys()
+
+
+def _has_ros_parameters(fields: Mapping[Any, Any]) -> bool:
+    """Return True if a node in any namespace has parameters."""
+    pending: list[Any] = [*fields.values()]
+    for value in pending:  # grows
+        if isinstance(value, Mapping):
+            if "ros__parameters" in value:
+                return True
+            if len(pending) < 10_000:
+                pending += value.values()
+    return False
+
+
+_OPENAPI = ForeignFile("the description of a web service (OpenAPI)")
+_YAMLS = (
+    (_has_ros_parameters, ForeignFile("parameters of ROS nodes")),
+    (_has("image", "resolution", "origin"), ForeignFile("a map of ROS")),
+    (
+        _has("rosbag2_bagfile_information"),
+        ForeignFile("the metadata of a bag", "choose the bag's folder"),
+    ),
+    (_has("openapi"), _OPENAPI),
+    (_has("swagger"), _OPENAPI),
+    (_has("apiVersion", "kind"), ForeignFile("a resource of Kubernetes")),
+    (_has("jobs", "on"), ForeignFile("a workflow of a CI service")),
+    (_has("services"), ForeignFile("a list of containers (Compose)")),
+)
+
+
+# ---- JSON
+
+_ISAR_1_34 = "write it again in the format of isar 1.34"
+_GEOJSON = ForeignFile("places of a map (GeoJSON)", _STOPS)
+
+
+def find_foreign_json(data: Mapping[str, Any]) -> ForeignFile | None:
+    """Return what a JSON object of another program is, or None if it is not known."""
+    if {"headerId", "manufacturer", "serialNumber"} <= data.keys() or _has(
+        "orderId", "nodes", "edges"
+    )(data):
+        return _vda5050(data)
+    if isar := _find_isar(data):
+        return isar
+    return next((found for is_kind, found in _JSONS if is_kind(data)), None)
+
+
+def _vda5050(data: Mapping[str, Any]) -> ForeignFile:
+    if {"orderId", "nodes"} <= data.keys():
+        return ForeignFile("a VDA 5050 order", _STOPS)
+    for field, kind in (
+        ("actions", "VDA 5050 instant actions"),
+        ("nodeStates", "a VDA 5050 state"),
+        ("connectionState", "a VDA 5050 connection"),
+        ("agvPosition", "a VDA 5050 visualization"),
+        ("typeSpecification", "a VDA 5050 factsheet"),
+    ):
+        if field in data:
+            return ForeignFile(kind)
+    return ForeignFile("a VDA 5050 message")
+
+
+def _find_isar(data: Mapping[str, Any]) -> ForeignFile | None:
+    """Return an isar mission in a format that Argo does not read, by its first task."""
+    definition = data.get("mission_definition", data)
+    tasks = definition.get("tasks") if isinstance(definition, Mapping) else None
+    first = tasks[0] if isinstance(tasks, list) and tasks else None
+    if not isinstance(first, Mapping) or "action" in first:
+        return None
+    if isinstance(first.get("steps"), list) or isinstance(first.get("inspections"), list):
+        return ForeignFile("an isar mission of an older format", _ISAR_1_34)
+    if "robot_pose" in first or "inspection" in first or "inspection_target" in first:
+        return ForeignFile("an isar mission of another format", _ISAR_1_34)
+    return None
+
+
+def _is_geojson(data: Mapping[str, Any]) -> bool:
+    return data.get("type") in {
+        "FeatureCollection", "Feature", "Point", "MultiPoint", "LineString", "MultiLineString",
+        "Polygon", "MultiPolygon", "GeometryCollection",
+    } and bool({"features", "geometry", "coordinates", "geometries"} & data.keys())  # fmt: skip
+
+
+_JSONS = (
+    (_has("fileType", "groundStation"), ForeignFile("a plan of QGroundControl", _STOPS)),
+    (
+        _has("items", "plannedHomePosition"),
+        ForeignFile("mission items of QGroundControl", _STOPS),
+    ),
+    (_has("mission_items"), ForeignFile("a mission of MAVSDK", _STOPS)),
+    (_has("category", "description"), ForeignFile("a task of Open-RMF", _STOPS)),
+    (_is_geojson, _GEOJSON),
+    (_has("openapi"), _OPENAPI),
+    (_has("swagger"), _OPENAPI),
+    (
+        lambda data: "json-schema.org" in str(data.get("$schema"))[:100],
+        ForeignFile("a JSON Schema"),
+    ),
+    (_has("nbformat", "cells"), ForeignFile("a Jupyter notebook")),
+    (
+        lambda data: (
+            {"name", "version"} <= data.keys()
+            and bool({"dependencies", "devDependencies", "scripts", "main"} & data.keys())
+        ),
+        ForeignFile("the description of a package of Node.js"),
+    ),
+    (_has("asset", "scenes"), ForeignFile("a mesh (glTF)")),
+)

@@ -2,7 +2,7 @@
 
 from pydantic import Field, StrictInt
 
-from argo_compiler.base.errors import ArgoError, Invalid, NotFound
+from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.base.model import Model
 from argo_env.closing import Closing
 from argo_env.drives.tracked.body import TrackedBody
@@ -165,7 +165,7 @@ class DriveSites:
                     site = added.pop(name, None) or DriveSite(name, options.faults)
                     _add_to_cache(added, name, site)
                 check_floors(name, site.guide.floors, options.given_floors)
-        except ArgoError:
+        except BaseException:
             for site in added.values():
                 site.close()
             raise

@@ -8,8 +8,9 @@ import pytest
 
 import argo_env  # noqa: F401
 from argo_compiler.base.errors import ArgoError
-from argo_env.envs import lidar
+from argo_env.envs import drive_site, lidar
 from argo_env.envs.drive import CONTACT, GOAL, PROGRESS, TIME, TIPPING
+from argo_env.envs.drive_site import DriveOptions, DriveSite, DriveSites
 from argo_env.envs.expert import Expert
 from tests.argo_env.envs.rollouts import digest
 
@@ -238,6 +239,30 @@ def test_start_and_goal_are_on_the_floors_asked_for(env, navigator):
         _, info = env.reset(seed=seed, options={"floor": [2, 5]})
         assert min(abs(info["goal"][2] - heights[f]) for f in (2, 5)) < 0.05
         assert min(abs(env.get_state()["start"][2] - heights[f]) for f in (2, 5)) < 0.05
+
+
+def test_sites_that_were_built_are_closed_after_any_error(monkeypatch):
+    """A site can fail to be built for other reasons than wrong options, such as lack of memory."""
+    built, closed = [], []
+
+    class BuiltSite(DriveSite):
+        def __init__(self, name, faults):
+            if built:
+                raise MemoryError
+            super().__init__(name, faults)
+            built.append(self)
+
+        def close(self):
+            closed.append(self)
+            super().close()
+
+    monkeypatch.setattr(drive_site, "DriveSite", BuiltSite)
+    sites = DriveSites(("darmstadt", "umad"))
+    with pytest.raises(MemoryError):
+        sites.apply_options(DriveOptions())
+    assert len(built) == 1
+    assert closed == built
+    sites.close()
 
 
 def test_unsupported_faults_are_refused(env):

@@ -32,6 +32,7 @@ class Remedy(StrEnum):
     REPLACE = "replace"
     REPLAY = "replay"
     SHOW_REST = "show-rest"
+    TRUST = "trust"
 
 
 @dataclass(frozen=True)

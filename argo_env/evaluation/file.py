@@ -2,13 +2,14 @@
 
 from pydantic import Field, field_validator, model_validator
 
-from argo_compiler.base.errors import Invalid
+from argo_compiler.base.errors import Invalid, Remedy
 from argo_compiler.base.model import Model
 from argo_compiler.files.loading import decode_text, require_size
 from argo_env.evaluation.case import AS_WRITTEN, NO_FAULTS
 from argo_env.evaluation.plan import parse_seeds
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.worlds import NO_VARIATION, Variation
+from argo_env.files.folders import leaves_folder
 from argo_env.files.yaml_file import parse_yaml
 from argo_env.run.drives_and_sensors import IDEAL, SENSORS, drive_names
 
@@ -132,15 +133,16 @@ class EvaluationFile(Model):
         return isinstance(self.faults, DrawnFaults) and self.faults.strata
 
 
-def decode_evaluation(content: bytes, source_name: str) -> EvaluationFile:
+def decode_evaluation(content: bytes, source_name: str, trusted: bool = False) -> EvaluationFile:
     """Parse an evaluation in YAML; messages refer to it as `source_name`.
 
-    Raises ArgoError if the content is no text or too large, and DiagnosticError, with positions in
-    the text, if it is no evaluation.
+    Unless it is `trusted`, it names no code, and no files outside of its folder. Raises ArgoError
+    if the content is no text or too large, or is not trusted, and DiagnosticError, with positions
+    in the text, if it is no evaluation.
     """
     require_size(content, source_name, "evaluation", MAX_BYTES)
     text = decode_text(content, source_name, "evaluation")
-    return parse_yaml(
+    file = parse_yaml(
         text,
         source_name,
         EvaluationFile,
@@ -149,6 +151,29 @@ def decode_evaluation(content: bytes, source_name: str) -> EvaluationFile:
         duplicate_key="evaluation.duplicate-key",
         wrong_field="evaluation.wrong-field",
     )
+    if not trusted:
+        _require_harmless(file, source_name)
+    return file
+
+
+def _require_harmless(file: EvaluationFile, source_name: str) -> None:
+    """Raise Invalid if an evaluation names code, or files outside of its folder."""
+    for policy in file.policies:
+        if ":" in policy:
+            raise Invalid(
+                f"{source_name}: the policy `{policy}` is code, which would be run: read it, and "
+                "trust the file only if you trust that code",
+                remedies=(Remedy.TRUST,),
+            )
+    faults = (file.faults.file,) if isinstance(file.faults, DrawnFaults) else file.faults
+    missions = [one if isinstance(one, str) else one.file for one in file.missions]
+    for name in (*missions, *file.sites, *faults):
+        if leaves_folder(name):
+            raise Invalid(
+                f"{source_name}: `{name}` is outside of the folder of the file: copy it into that "
+                "folder, or trust the file",
+                remedies=(Remedy.TRUST,),
+            )
 
 
 def _require_known(names: tuple[str, ...], known: tuple[str, ...], what: str) -> tuple[str, ...]:

@@ -29,6 +29,15 @@ def require_folder_or_creatable(path: Path) -> None:
         raise Unavailable(f"{path} can't be made a folder: {os.strerror(errno.EACCES)}")
 
 
+def leaves_folder(name: str) -> bool:
+    """Return True if a relative path may lead out of the folder that it is relative to.
+
+    That is so for an absolute path, one with a drive of Windows, and one with `..`.
+    """
+    parts = name.replace("\\", "/").split("/")
+    return ".." in parts or (len(parts) > 1 and not parts[0]) or parts[0][1:] == ":"
+
+
 def make_folder(path: Path) -> None:
     """Make the folder and its parents if they do not exist.
 
@@ -39,6 +48,15 @@ def make_folder(path: Path) -> None:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise Unavailable(f"{path} can't be made a folder: {error.strerror}") from error
+
+
+def make_private_folder(path: Path) -> None:
+    """Make a folder that only its owner can open, or make an existing one so; raises OSError.
+
+    Folders above it are made as usual.
+    """
+    path.mkdir(mode=0o700, parents=True, exist_ok=True)
+    path.chmod(0o700)
 
 
 @contextmanager

@@ -6,12 +6,13 @@ the robot really reaches follow.
 
 import math
 import os
+import re
 from enum import StrEnum
 from functools import lru_cache
 from pathlib import Path
 from typing import TypeVar
 
-from pydantic import BaseModel, Field, ValidationError, model_validator
+from pydantic import BaseModel, Field, ValidationError, field_validator, model_validator
 
 from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.base.model import Model
@@ -160,6 +161,13 @@ class RobotSpec(Model):
     calibration: Calibration = Calibration()
     """from `<name>.calibration.yaml`, if that file exists"""
 
+    @field_validator("urdf")
+    @classmethod
+    def _check_urdf(cls, name: str) -> str:
+        if not re.fullmatch(r"\w[\w.-]*", name):
+            raise ValueError(f"{name!r} is not the name of a file beside the description")
+        return name
+
     @model_validator(mode="after")
     def _check_arm_joints(self) -> "RobotSpec":
         if odd := self.arm_stowed.keys() ^ self.arm_raised.keys():
@@ -243,7 +251,7 @@ def load_robot(name: str = "tracker") -> RobotSpec:
     Raises NotFound if there is no such robot, and Invalid if its description makes no sense.
     """
     path, calibrated = robot_folder() / f"{name}.yaml", calibration_file(name)
-    if not os.path.isfile(path):
+    if not re.fullmatch(r"[\w-]+", name) or not os.path.isfile(path):
         known = sorted(p.stem for p in robot_folder().glob("*.yaml") if "." not in p.stem)
         raise NotFound(f"no robot `{name}`; there are: {', '.join(known)}")
     spec: RobotSpec = _parse_description(RobotSpec, path, path.read_text(encoding="utf-8"))

@@ -168,6 +168,14 @@ def evaluate_command(
             "both evaluations, or once for each",
         ),
     ] = None,
+    trust: Annotated[
+        bool,
+        typer.Option(
+            "--trust",
+            help="let FILE.yaml name policies as module:function, whose code is run, and files "
+            "outside of its folder",
+        ),
+    ] = False,
     force: Force = False,
 ) -> None:
     """Estimate the success rate of missions by many runs, or compare two evaluations."""
@@ -183,7 +191,7 @@ def evaluate_command(
     rules = read_scoring(scoring)
     file, folder, content = read_evaluation_request(
         context, sources or [], seeds, site, drive, sensor, faults, policy, require, width,
-        control, start_area, end_area,
+        control, start_area, end_area, trust,
     )  # fmt: skip
     target = out or Path("out") / "evaluations" / _folder_name(file.name)
     continues = os.path.exists(target / PLAN)
@@ -197,6 +205,8 @@ def evaluate_command(
     with open_rows(
         target, plan, digest, replace_and_keep_fitting=force, cheap_plan=cheap_plan
     ) as store:
+        if store.loss:
+            print(f"argo: {store.loss}: the lost runs are repeated", file=sys.stderr)
         results, means = _run_evaluation(
             plan, file.control, store, make_workers(plan, backend, workers, address), limit
         )

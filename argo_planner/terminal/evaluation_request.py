@@ -52,11 +52,13 @@ def read_evaluation_request(
     control: str | None,
     start_area: int | None,
     end_area: int | None,
+    trust: bool,
 ) -> tuple[EvaluationFile, Path, bytes]:
     """Return the evaluation, the folder its paths are relative to, and the content of its file.
 
     `sources` are one evaluation file, or missions. For missions, the other arguments describe the
-    evaluation, the folder is the current one, and the content is empty.
+    evaluation, the folder is the current one, and the content is empty. With `trust`, the file may
+    name code, and files outside of its folder.
 
     Raises:
         Invalid: There are no sources, an evaluation file is combined with other sources or with
@@ -80,7 +82,7 @@ def read_evaluation_request(
                     "instead of the command line"
                 )
         content = read_bytes(path, "evaluation", MAX_BYTES)
-        return decode_evaluation(content, str(path)), path.parent, content
+        return decode_evaluation(content, str(path), trust), path.parent, content
     missions = tuple(
         MissionEntry(file=str(source), start_area=start_area, end_area=end_area)
         for source in sources

@@ -28,6 +28,7 @@ _REMEDY_TEXTS = {
     Remedy.RECORD: "argo run --record",
     Remedy.REPLACE: "--force",
     Remedy.SHOW_REST: "argo replay without options",
+    Remedy.TRUST: "--trust",
 }
 
 

@@ -41,7 +41,8 @@ def write_evaluation(folder: Path, last: int = 4) -> Path:
     """Write an evaluation with the seeds from 0 to `last` into a folder; return its file."""
     (folder / "stop.yaml").write_text(STOP)
     path = folder / "evaluation.yaml"
-    path.write_text(FILE.format(mission=ROOT / MISSION, last=last))
+    shutil.copy(ROOT / MISSION, folder / "mission_1.txt")
+    path.write_text(FILE.format(mission="mission_1.txt", last=last))
     return path
 
 
@@ -166,6 +167,30 @@ def test_errors_in_an_evaluation_file_name_the_place(argo, tmp_path, text, messa
     assert "wrong.yaml:" in errors
     assert message in errors
     assert not (tmp_path / "out").exists()
+
+
+def test_code_in_a_file_is_run_only_if_the_file_is_trusted(argo, tmp_path):
+    path = write_evaluation(tmp_path, 0)
+    path.write_text(path.read_text() + "policies: ['os:getcwd']\n")
+    errors = require_refusal(argo("evaluate", path, "--out", tmp_path / "out"))
+    assert "the policy `os:getcwd` is code" in errors
+    assert errors.rstrip().endswith("(--trust)")
+    trusted = require_refusal(argo("evaluate", path, "--trust", "--out", tmp_path / "out"))
+    assert "policy `os:getcwd`: TypeError" in trusted
+
+
+def test_a_file_outside_of_the_folder_is_refused_unless_the_file_is_trusted(argo, tmp_path):
+    path = write_evaluation(tmp_path, 0)
+    (tmp_path / "below").mkdir()
+    path = path.rename(tmp_path / "below" / path.name)
+    text = path.read_text().replace("stop.yaml", "../stop.yaml")
+    path.write_text(text.replace("mission_1.txt", "../mission_1.txt"))
+    errors = require_refusal(argo("evaluate", path, "--out", tmp_path / "out"))
+    assert "`../mission_1.txt` is outside of the folder of the file" in errors
+    argo("evaluate", path, "--trust", "--out", tmp_path / "out", status=0)
+    path.write_text(path.read_text() + "robots: ['../../x']\n")
+    robot = require_refusal(argo("evaluate", path, "--trust", "--out", tmp_path / "other"))
+    assert "no robot `../../x`; there are: tracker" in robot
 
 
 def test_another_evaluation_is_not_overwritten(argo, out):

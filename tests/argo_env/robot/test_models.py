@@ -12,14 +12,14 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 
 from argo_compiler.base.catalog import CheckpointKind
-from argo_compiler.base.errors import ArgoError, Invalid
+from argo_compiler.base.errors import ArgoError, Invalid, NotFound
 from argo_compiler.il import Mission, Task
 from argo_env.files import cache, resources
 from argo_env.planning.opening import open_site
 from argo_env.recording.messages import attitude
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.robot_model import add_vectors, from_rpy, multiply, read_model, rotate
-from argo_env.robot.spec import RobotSpec, load_robot, robot_folder
+from argo_env.robot.spec import RobotSpec, load_robot, revalidated_robot, robot_folder
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
 from argo_env.world.pybullet_client import pybullet
@@ -172,6 +172,21 @@ def test_camera_of_the_robot_in_pybullet(client, robot):
 def test_the_error_of_an_unknown_robot_lists_the_known_ones():
     with pytest.raises(ArgoError, match="no robot `rover`; there are: tracker"):
         load_robot("rover")
+
+
+@pytest.mark.parametrize("name", ["../../x", "../robot/tracker", "/x", "", ".", "tracker.yaml"])
+def test_the_name_of_a_robot_stays_in_its_folder(name, tmp_path, monkeypatch):
+    shutil.copytree(robot_folder(), tmp_path / "a" / "robot")
+    shutil.copy(robot_folder() / "tracker.yaml", tmp_path / "x.yaml")
+    monkeypatch.setattr("argo_env.robot.spec.robot_folder", lambda: tmp_path / "a" / "robot")
+    with pytest.raises(NotFound, match="there are: tracker"):
+        load_robot(name)
+
+
+@pytest.mark.parametrize("model", ["../tracker.urdf", "/tracker.urdf", "a/b.urdf", "..", ""])
+def test_the_model_of_a_robot_is_a_file_beside_its_description(model, robot):
+    with pytest.raises(Invalid, match="is not the name of a file beside the description"):
+        revalidated_robot(robot.model_copy(update={"urdf": model}))
 
 
 @pytest.mark.parametrize("name", ["name: tracker", "name: !!binary VMOkbmtjaGVu"])

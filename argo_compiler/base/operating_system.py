@@ -55,6 +55,11 @@ def try_lock(file: int) -> bool:
     return True
 
 
+def open_private(path: str, flags: int) -> int:
+    """Open a file like `os.open`, as the `opener` of `open`; a new one is its owner's alone."""
+    return os.open(path, flags | OPEN_FLAGS, 0o600)
+
+
 def sync_content(file: int) -> None:
     """Sync an open file's content and size, but no other properties where the system allows that.
 

@@ -54,25 +54,26 @@ def check_writable(file: Path) -> None:
         ) from None
 
 
-def write_atomically(path: Path, content: str | bytes) -> None:
+def write_atomically(path: Path, content: str | bytes, private: bool = False) -> None:
     """Write bytes or text to a file; on an error, the old file stays.
 
     Text is written as UTF-8 with unchanged line ends. The content is written to a draft on the same
     disk, which then replaces the file, so nobody ever sees a part of it. A symbolic link stays, and
-    the file that it leads to is replaced. A stream such as a terminal is written to directly.
-    Raises OSError.
+    the file that it leads to is replaced. A stream such as a terminal is written to directly. With
+    `private`, only the owner can read the file. Raises OSError.
     """
     data = content.encode("utf-8") if isinstance(content, str) else content
-    with atomic_draft(path) as draft, draft.open("ab") as file:
+    with atomic_draft(path, private) as draft, draft.open("ab") as file:
         file.write(data)
 
 
 @contextmanager
-def atomic_draft(path: Path) -> Iterator[Path]:
+def atomic_draft(path: Path, private: bool = False) -> Iterator[Path]:
     """Yield the path of a draft, which replaces the file if the block ends without an error.
 
-    The caller creates the draft. It has the file's name and lies in a folder of its own. For a
-    stream (see `is_stream`), the path itself is yielded. Raises OSError.
+    The caller creates the draft. It has the file's name and lies in a folder of its own. With
+    `private`, only the owner can read the file. For a stream (see `is_stream`), the path itself is
+    yielded. Raises OSError.
     """
     if is_stream(path):
         yield path
@@ -81,7 +82,7 @@ def atomic_draft(path: Path) -> Iterator[Path]:
     with _draft_folder(path.parent) as folder:
         draft = folder / path.name
         yield draft
-        _finish(draft, path)
+        _finish(draft, path, private)
         draft.replace(path)
 
 
@@ -172,17 +173,22 @@ def _draft_folder(folder: Path) -> Iterator[Path]:
     """Yield a hidden folder for drafts, on the same disk as `folder`, and delete it afterwards."""
     drafts = folder / f".argo-{secrets.token_hex(6)}.tmp"
     try:
-        drafts.mkdir()
+        drafts.mkdir(mode=0o700)
         yield drafts
     finally:
         _complete(lambda: shutil.rmtree(drafts, ignore_errors=True))
 
 
-def _finish(draft: Path, path: Path) -> None:
-    """Flush a draft to the disk, and give it the permissions of the file that it replaces."""
+def _finish(draft: Path, path: Path, private: bool = False) -> None:
+    """Flush a draft to the disk, and give it the permissions of the file that it replaces.
+
+    With `private`, give it those of a file that only its owner can read.
+    """
     with draft.open("rb") as file:
         os.fsync(file.fileno())
-    if os.path.exists(path):
+    if private:
+        draft.chmod(0o600)
+    elif os.path.exists(path):
         draft.chmod(path.stat().st_mode & 0o7777)
 
 

@@ -27,6 +27,8 @@ from argo_env.evaluation.estimates.rates import Estimate, weighted_means_of_comp
 from argo_env.evaluation.plan import EvaluationPlan, Stopping
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunRow
+from argo_env.files.checked_files import checked_json, read_checked
+from argo_env.files.folders import reporting_write_errors
 from argo_env.planning.opening import open_site
 from argo_env.robot.spec import load_robot
 from argo_env.run.drives_and_sensors import IDEAL, ROUTE
@@ -39,6 +41,7 @@ MOST_CHEAP = 20_000
 _MIN_COUNT = 10
 """smallest number of successes, and of failures, for which a rate is about normally distributed"""
 _COST_FILE = "control.json"
+_REMEDY = "restore it from a copy, or evaluate into another folder, where it is measured anew"
 _QUANTITIES: dict[str, Callable[[RunRow], float]] = {
     "success": lambda row: float(row.success),
     "duration": lambda row: row.duration or 0.0,
@@ -150,10 +153,12 @@ def _relative_cost(folder: Path, expensive: float, cheap: float) -> float:
     """
     path = folder / _COST_FILE
     try:
-        return _MeasuredCost.model_validate_json(read_bytes(path, "measured cost", 1_000)).cost
+        content = read_bytes(path, "measured cost", 1_000)
+        return read_checked(_MeasuredCost, content, path, _REMEDY).cost
     except (NotFound, ValidationError):
         cost = max(cheap, 1e-6) / max(expensive, 1e-6)
-        write_atomically(path, _MeasuredCost(cost=cost).model_dump_json().encode())
+        with reporting_write_errors(path):
+            write_atomically(path, checked_json(_MeasuredCost(cost=cost).model_dump_json()))
         return cost
 
 

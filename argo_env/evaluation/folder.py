@@ -17,6 +17,7 @@ from argo_env.evaluation.rates import should_stop
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunRow
 from argo_env.evaluation.store import RowStore, read_rows
+from argo_env.files.checked_files import checked_json, read_checked
 from argo_env.files.folders import make_folder, reporting_write_errors
 
 PLAN = "evaluation.json"
@@ -27,6 +28,7 @@ _SPEC_NAME = re.compile(r"[0-9a-f]{24}\.json")
 _MAX_FAILING = 1_000
 """largest number of specs that are written; the rows of all runs are in the folder"""
 _MAX_BYTES = 1_000_000_000
+_REMEDY = "restore it from a copy, or delete it and evaluate again, which keeps the rows that fit"
 
 
 class _StoredPlan(Model):
@@ -97,16 +99,17 @@ def write_plan(folder: Path, plan: EvaluationPlan, digest: str) -> None:
     Raises Unavailable if the file can't be written.
     """
     make_folder(folder)
-    write_file(folder / PLAN, _StoredPlan(digest=digest, plan=plan).model_dump_json(indent=1))
+    stored = _StoredPlan(digest=digest, plan=plan)
+    write_file(folder / PLAN, checked_json(stored.model_dump_json(indent=1)), private=True)
 
 
-def write_file(path: Path, text: str) -> Path:
+def write_file(path: Path, text: str, private: bool = False) -> Path:
     """Write a file of an evaluation and return its path.
 
-    Raises Unavailable if the file can't be written.
+    With `private`, only the owner can read it. Raises Unavailable if the file can't be written.
     """
     with reporting_write_errors(path):
-        write_atomically(path, text)
+        write_atomically(path, text, private)
     return path
 
 
@@ -115,13 +118,14 @@ def find_stored_plan(folder: Path, digest: str | None = None) -> EvaluationPlan 
 
     With a `digest` (of `digest_contents`), a plan that was made from other contents also gives
     None, as does a plan of another version of Argo. Without a `digest`, the latter raises Invalid.
+    A damaged file raises Unavailable.
     """
     try:
         content = read_bytes(folder / PLAN, "evaluation", _MAX_BYTES)
     except NotFound:
         return None
     try:
-        stored = _StoredPlan.model_validate_json(content)
+        stored = read_checked(_StoredPlan, content, folder / PLAN, _REMEDY)
     except ValidationError:
         if digest is not None:
             return None  # of another version of Argo; the caller makes the plan again
@@ -168,7 +172,7 @@ def replace_failing_specs(folder: Path, results: EvaluationResults) -> dict[str,
         path = folder / FAILING / f"{row.key}.json"
         if not paths:
             make_folder(folder / FAILING)
-        write_file(path, run.spec.model_dump_json(indent=1))
+        write_file(path, checked_json(run.spec.model_dump_json(indent=1)))
         paths[row.key] = path
     _remove_others(folder / FAILING, {path.name for path in paths.values()})
     return paths

@@ -1,22 +1,34 @@
-"""Parquet files of rows. They need pyarrow, which is not part of the base install."""
+"""Parquet files of rows. They need pyarrow, which is not part of the base install.
 
+The name of a file ends with its checksum. Parquet's own checksums, which are written as well, cover
+the pages of data, but neither their headers nor the footer.
+"""
+
+import io
 import os
 import re
+import zlib
 from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pydantic import ValidationError
+
 from argo_compiler.base.errors import Unavailable
 from argo_compiler.base.extras import install_line
-from argo_compiler.base.operating_system import sync_folder
+from argo_compiler.base.operating_system import open_private, sync_folder
+from argo_compiler.files.json_places import format_path
 from argo_env.evaluation.row import RunRow
+from argo_env.files.checked_files import damaged
 
 if TYPE_CHECKING:
     import pyarrow
 
 PARTS = "parts"
-_PART_NAME = re.compile(r"part-(\d+)\.parquet")
+_PART_NAME = re.compile(r"part-(\d+)(?:-([0-9a-f]{8}))?\.parquet")
+"""number and checksum; older versions of Argo wrote none"""
+_REMEDY = "restore it from a copy, or delete it and evaluate again, which repeats its runs"
 
 
 def can_write_parts() -> bool:
@@ -26,7 +38,7 @@ def can_write_parts() -> bool:
 
 def has_parts(folder: Path) -> bool:
     """Return True if the folder of an evaluation has Parquet files of rows."""
-    return bool(_part_numbers(folder))
+    return bool(_numbered_parts(folder))
 
 
 def write_part(folder: Path, rows: Sequence[RunRow]) -> Path:
@@ -38,13 +50,18 @@ def write_part(folder: Path, rows: Sequence[RunRow]) -> Path:
     from pyarrow import parquet
 
     parts = folder / PARTS
-    path = _part_path(folder, max(_part_numbers(folder), default=0) + 1)
-    draft = parts / f".{path.name}"
+    number = max(_numbered_parts(folder), default=0) + 1
+    sink = io.BytesIO()
     table = pyarrow.Table.from_pylist([_to_record(row) for row in rows], schema=_schema())
+    parquet.write_table(table, sink, write_page_checksum=True)
+    content = sink.getvalue()
+    path = parts / f"part-{number:05d}-{zlib.crc32(content):08x}.parquet"
+    draft = parts / f".part-{number:05d}.parquet"
     try:
         parts.mkdir(exist_ok=True)
-        parquet.write_table(table, draft)
-        with open(draft, "rb") as file:
+        with open(draft, "wb", opener=open_private) as file:
+            file.write(content)
+            file.flush()
             os.fsync(file.fileno())
         os.replace(draft, path)
         sync_folder(parts)
@@ -56,50 +73,77 @@ def write_part(folder: Path, rows: Sequence[RunRow]) -> Path:
 def read_parts(folder: Path) -> tuple[RunRow, ...]:
     """Read the rows of all Parquet files in the folder, in the order in which they were written.
 
-    Raises Unavailable if there are files, and pyarrow is missing or one of them can't be read.
+    Raises Unavailable if there are files, and pyarrow is missing or one of them can't be read or is
+    damaged.
     """
-    numbers = _part_numbers(folder)
-    if not numbers:
+    parts = _numbered_parts(folder)
+    if not parts:
         return ()
     if not can_write_parts():
         raise Unavailable(
             f"{folder / PARTS}: reading Parquet files needs pyarrow: {install_line('results')}"
         )
-    from pyarrow import ArrowInvalid, parquet
-
     rows: list[RunRow] = []
-    for number in numbers:
-        path = _part_path(folder, number)
-        try:
-            # Reading it as a dataset would make a column of the folder's name.
-            records = parquet.ParquetFile(path).read().to_pylist(maps_as_pydicts="strict")
-        except (OSError, ArrowInvalid) as error:
-            raise Unavailable(f"{path} can't be read: {error}") from error
-        rows += [RunRow.model_validate(record) for record in records]
+    for _, path in sorted(parts.items()):
+        rows += _read_part(path)
     return tuple(rows)
+
+
+def _read_part(path: Path) -> list[RunRow]:
+    from pyarrow import ArrowException, BufferReader, parquet
+
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise Unavailable(f"{path} can't be read: {error.strerror}") from error
+    match = _PART_NAME.fullmatch(path.name)
+    stated = match and match[2]
+    if stated and int(stated, 16) != zlib.crc32(content):
+        raise damaged(path, "its content does not fit the checksum in its name", _REMEDY)
+    try:
+        # Reading it as a dataset would make a column of the folder's name.
+        file = parquet.ParquetFile(BufferReader(content), page_checksum_verification=True)
+        records = file.read().to_pylist(maps_as_pydicts="strict")
+        return [RunRow.model_validate(record) for record in records]
+    except (OSError, ArrowException, ValueError, KeyError, MemoryError, OverflowError) as error:
+        raise damaged(path, _reason(error), _REMEDY) from error
+
+
+def _reason(error: Exception) -> str:
+    """Return what is wrong with the content of a Parquet file, in one line."""
+    if isinstance(error, ValidationError):
+        fault = error.errors(include_url=False)[0]
+        return f"column {format_path(fault['loc'])}: {fault['msg']}"
+    return str(error).partition("\n")[0] or type(error).__name__
 
 
 def remove_parts(folder: Path) -> None:
     """Remove all Parquet files from the folder. Raises Unavailable if that fails."""
     try:
-        for number in _part_numbers(folder):
-            os.unlink(_part_path(folder, number))
+        for path in _numbered_parts(folder).values():
+            os.unlink(path)
     except OSError as error:
         raise Unavailable(f"{folder / PARTS} can't be changed: {error.strerror}") from error
 
 
-def _part_path(folder: Path, number: int) -> Path:
-    return folder / PARTS / f"part-{number:05d}.parquet"
+def _numbered_parts(folder: Path) -> dict[int, Path]:
+    """Return the paths of the Parquet files in a folder by their numbers.
 
-
-def _part_numbers(folder: Path) -> list[int]:
+    Raises Unavailable for two files with one number.
+    """
     try:
         names = os.listdir(folder / PARTS)
     except FileNotFoundError:
-        return []
+        return {}
     except OSError as error:
         raise Unavailable(f"{folder / PARTS} can't be read: {error.strerror}") from error
-    return sorted(int(match[1]) for name in names if (match := _PART_NAME.fullmatch(name)))
+    parts: dict[int, Path] = {}
+    for name in names:
+        if match := _PART_NAME.fullmatch(name):
+            path = folder / PARTS / name
+            if parts.setdefault(int(match[1]), path) != path:
+                raise Unavailable(f"{path} and {parts[int(match[1])].name}: delete one of the two")
+    return parts
 
 
 def _to_record(row: RunRow) -> dict[str, Any]:

@@ -1,21 +1,23 @@
 """Store of rows on disk that survives crashes without lost or duplicate rows.
 
-A folder has `rows.log`, to which each row is appended as a line with a checksum, and `parts/`, to
-which many rows at once are moved as a Parquet file that DuckDB and pandas can read. A process that
-is killed leaves at most an incomplete last line, which is cut off. If it is killed while it moves
-rows, the rows are in both; their keys identify the duplicates.
+A folder has `rows.log`, to which each row is appended as a line (see `checked_lines`), and
+`parts/`, to which many rows at once are moved as a Parquet file that DuckDB and pandas can read. A
+process that is killed leaves at most an incomplete last line, which is cut off. If it is killed
+while it moves rows, the rows are in both; their keys identify the duplicates. Rows of damaged lines
+are lost: their runs are repeated.
 """
 
 import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from pydantic import ValidationError
 
 from argo_compiler.base.errors import Conflict, NotFound, Unavailable
-from argo_compiler.base.operating_system import OPEN_FLAGS, sync_folder, try_lock
+from argo_compiler.base.operating_system import OPEN_FLAGS, open_private, sync_folder, try_lock
 from argo_env.closing import Closing
 from argo_env.evaluation.parquet_files import (
     PARTS,
@@ -27,10 +29,10 @@ from argo_env.evaluation.parquet_files import (
 )
 from argo_env.evaluation.row import RunRow
 from argo_env.files.checked_lines import (
-    checked_line,
-    checked_object,
-    truncate_if_possible,
-    write_all,
+    LineWriter,
+    StoredLines,
+    complete_lines,
+    parse_lines,
 )
 from argo_env.files.folders import make_folder, require_folder_or_creatable
 
@@ -57,20 +59,23 @@ class RowStore(Closing):
         self._lock = _acquire_lock(folder)
         try:
             logged = read_log(folder)
-            self._file = os.open(folder / LOG, os.O_RDWR | os.O_CREAT | OPEN_FLAGS, 0o644)
-            os.ftruncate(self._file, logged.size)
-            self._size = os.lseek(self._file, logged.size, os.SEEK_SET)
+            self._rows = {row.key: row for row in read_parts(folder)}
+            self._moved = len(self._rows)
+            for row in logged.rows:
+                self._rows.setdefault(row.key, row)
+            if logged.loss:
+                self._replace_log(logged.rows)
+            self._open_log()
             sync_folder(folder)
         except OSError as error:
             os.close(self._lock)
             raise _not_writable(folder, error) from error
-        self.damaged = logged.damaged
-        """number of lines of the log that could not be read; their runs are repeated"""
+        except BaseException:
+            os.close(self._lock)
+            raise
+        self.loss = logged.loss
+        """which lines of the log were damaged; empty: none. Their runs are repeated"""
         self._synced = clock()
-        self._rows = {row.key: row for row in read_parts(folder)}
-        self._moved = len(self._rows)
-        for row in logged.rows:
-            self._rows.setdefault(row.key, row)
 
     @property
     def rows(self) -> dict[str, RunRow]:
@@ -84,20 +89,17 @@ class RowStore(Closing):
         """
         if row.key in self._rows:
             return
-        line = _line(row)
         try:
-            write_all(self._file, line)
+            self._lines.append(_fields(row))
         except OSError as error:
-            truncate_if_possible(self._file, self._size)
             raise Unavailable(f"{self.folder / LOG}: {error.strerror}") from error
-        self._size += len(line)
         self._rows[row.key] = row
         if self._clock() - self._synced >= _SYNC:
             self.sync()
 
     def sync(self) -> None:
         """Write all rows through to the disk, so that they survive a loss of power."""
-        os.fsync(self._file)
+        self._lines.sync()
         self._synced = self._clock()
 
     @property
@@ -111,8 +113,7 @@ class RowStore(Closing):
             return
         self.sync()
         write_part(self.folder, list(self._rows.values())[self._moved :])
-        os.ftruncate(self._file, 0)
-        self._size = os.lseek(self._file, 0, os.SEEK_SET)
+        self._lines.clear()
         self._moved = len(self._rows)
         self.sync()
 
@@ -125,22 +126,31 @@ class RowStore(Closing):
         fitting = [row for row in self._rows.values() if fits(row)]
         if len(fitting) == len(self._rows):
             return
-        draft = self.folder / f".{LOG}"
         try:
-            with open(draft, "wb") as file:
-                file.writelines(map(_line, fitting))
-                file.flush()
-                os.fsync(file.fileno())
-            os.replace(draft, self.folder / LOG)
-            sync_folder(self.folder)
+            self._replace_log(fitting)
             os.close(self._file)
-            self._file = os.open(self.folder / LOG, os.O_RDWR | OPEN_FLAGS)
-            self._size = os.lseek(self._file, 0, os.SEEK_END)
+            self._open_log()
         except OSError as error:
             raise _not_writable(self.folder, error) from error
         remove_parts(self.folder)
         self._rows = {row.key: row for row in fitting}
         self._moved = 0
+
+    def _open_log(self) -> None:
+        """Open the log, whose lines are all intact but for an incomplete last one."""
+        self._file = os.open(self.folder / LOG, os.O_RDWR | os.O_CREAT | OPEN_FLAGS, 0o600)
+        with open(self._file, "rb", closefd=False) as file:
+            self._lines = LineWriter(self._file, parse_lines(file.read()))
+
+    def _replace_log(self, rows: Sequence[RunRow]) -> None:
+        """Replace the log by one with these rows; raises OSError if that fails."""
+        draft = self.folder / f".{LOG}"
+        with open(draft, "wb", opener=open_private) as file:
+            file.writelines(complete_lines([*map(_fields, rows)]))
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(draft, self.folder / LOG)
+        sync_folder(self.folder)
 
     def close(self) -> None:
         """Write all rows through to the disk and release the folder's lock."""
@@ -152,15 +162,21 @@ class RowStore(Closing):
 def read_rows(folder: Path) -> tuple[RunRow, ...]:
     """Read all rows that are in a folder now; another process may add rows meanwhile.
 
-    Raises NotFound if the folder has no files of rows, Unavailable if it has Parquet files and
-    pyarrow is missing.
+    Lines that a loss of power may have damaged are left out: their runs have no rows. Raises
+    NotFound if the folder has no files of rows, Unavailable if a file is damaged otherwise, or if
+    there are Parquet files and pyarrow is missing.
     """
     if not (os.path.exists(folder / LOG) or has_parts(folder)):
         raise NotFound(f"{folder} has no rows of an evaluation")
     # The log comes first: rows that are moved meanwhile are then read twice, and not missed.
-    logged = read_log(folder).rows
+    logged = read_log(folder)
+    if logged.was_synced:
+        raise Unavailable(
+            f"{logged.loss}: evaluate again into this folder, which repeats the runs of the "
+            "damaged lines, or restore the file from a copy"
+        )
     by_key = {row.key: row for row in read_parts(folder)}
-    for row in logged:
+    for row in logged.rows:
         by_key.setdefault(row.key, row)
     return tuple(by_key.values())
 
@@ -170,31 +186,40 @@ class LoggedRows:
     """Rows of a log file."""
 
     rows: tuple[RunRow, ...]
-    size: int
-    """number of bytes up to the end of the last complete line"""
-    damaged: int
-    """number of complete lines without a valid row, for example with a wrong checksum"""
+    loss: str
+    """which lines are damaged; empty if that is at most an incomplete last line"""
+    was_synced: bool
+    """whether one of them was on disk, so that it was not damaged by a loss of power"""
 
 
 def read_log(folder: Path) -> LoggedRows:
-    """Read the rows of the log in a folder; skip damaged lines and an incomplete last line."""
+    """Read the rows of the log in a folder; leave out damaged lines."""
+    path = folder / LOG
     try:
-        content = (folder / LOG).read_bytes()
+        stored = parse_lines(path.read_bytes())
     except FileNotFoundError:
-        return LoggedRows((), 0, 0)
-    size = content.rfind(b"\n") + 1
-    rows, damaged = [], 0
-    for line in content[:size].splitlines():
-        data = checked_object(line)
+        return LoggedRows((), "", False)
+    rows = []
+    wrong = 0
+    for line in (*stored.lines, *stored.later):
         try:
-            rows.append(RunRow.model_validate(data))
+            if line.data:
+                rows.append(RunRow.model_validate(line.data))
         except ValidationError:
-            damaged += 1
-    return LoggedRows(tuple(rows), size, damaged)
+            wrong += 1  # written by another version
+    return LoggedRows(tuple(rows), _loss(path, stored, wrong), stored.was_synced or wrong > 0)
 
 
-def _line(row: RunRow) -> bytes:
-    return checked_line(row.model_dump(mode="json", exclude_defaults=True))
+def _loss(path: Path, stored: StoredLines, wrong: int) -> str:
+    """Return which lines of a log are damaged; `wrong` intact lines have no valid row."""
+    if not stored.damaged:
+        return f"{path}: {wrong} lines have no row of this version" if wrong else ""
+    why = "" if stored.was_synced else ", as by a loss of power"
+    return f"{path}: damaged in line {len(stored.lines) + 1}{why}"
+
+
+def _fields(row: RunRow) -> dict[str, Any]:
+    return row.model_dump(mode="json", exclude_defaults=True)
 
 
 def _not_writable(folder: Path, error: OSError) -> Unavailable:
@@ -203,7 +228,7 @@ def _not_writable(folder: Path, error: OSError) -> Unavailable:
 
 def _acquire_lock(folder: Path) -> int:
     try:
-        file = os.open(folder / _LOCK, os.O_RDWR | os.O_CREAT | OPEN_FLAGS, 0o644)
+        file = os.open(folder / _LOCK, os.O_RDWR | os.O_CREAT | OPEN_FLAGS, 0o600)
     except OSError as error:
         raise _not_writable(folder, error) from error
     try:

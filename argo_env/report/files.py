@@ -5,6 +5,7 @@ from pathlib import Path
 
 from argo_compiler.base.errors import Conflict
 from argo_compiler.files.atomic_write import write_files_atomically
+from argo_env.files.checked_files import checked_json, checked_page
 from argo_env.files.folders import reporting_write_errors
 from argo_env.report.html import page
 from argo_env.run.record import RunRecord
@@ -25,7 +26,8 @@ def write_report(record: RunRecord, site: Site, folder: Path) -> Path:
         raise Conflict(
             f"the record is of a run on site `{record.site}`, not on `{site.name}`: load that site"
         )
-    contents = {RECORD: to_json(record).encode(), PAGE: page(record, site).encode()}
+    texts = {RECORD: checked_json(to_json(record)), PAGE: checked_page(page(record, site))}
+    contents = {name: text.encode() for name, text in texts.items()}
     with reporting_write_errors(folder, "the report", "; choose another folder"):
         write_files_atomically(folder, contents)
     return folder / PAGE

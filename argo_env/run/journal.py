@@ -1,8 +1,10 @@
 """Journal of a run: a file from which the run can continue after its process has died.
 
 Each line of the file holds a checksum and JSON. The first line is the header with the spec of the
-run; the file is never without a complete header. Each further line is an entry; only the last line
-can be incomplete, and is cut off then. One process at a time can open a journal.
+run; the file is never without a complete header. Each further line is an entry, or a mark that the
+file was synced (see `checked_lines`). If the process is killed, only the last line can be
+incomplete. After a loss of power, lines after the last synced one can be damaged. A run that
+continues cuts off both, with all that follows. One process at a time can open a journal.
 """
 
 import hashlib
@@ -20,9 +22,11 @@ from argo_compiler.base.operating_system import OPEN_FLAGS, sync_folder, try_loc
 from argo_compiler.base.version import __version__
 from argo_env.closing import Closing
 from argo_env.files.checked_lines import (
-    checked_line,
+    LineWriter,
+    StoredLines,
     checked_object,
-    truncate_if_possible,
+    complete_lines,
+    parse_lines,
     write_all,
 )
 from argo_env.files.yaml_messages import error_message
@@ -65,14 +69,19 @@ class Journal(Observer, Closing):
     It holds the file and its lock: close it, or use it as a context manager.
     """
 
-    def __init__(self, path: Path, file: int, header: Header, entries: Sequence[Entry], size: int):
+    def __init__(
+        self, path: Path, file: int, header: Header, entries: Sequence[Entry], stored: StoredLines
+    ):
         self.path = path
         self.header = header
         self.entries = tuple(entries)
         """the entries in the file when it was opened"""
+        self.loss = _loss(path, entries, stored) if stored.damaged else ""
+        """what was lost when the file was opened, as by a loss of power; empty: nothing"""
         self._file = file
-        self._size = size
-        self._lines = 1 + len(entries)
+        self._stored = stored
+        self._lines: LineWriter | None = None
+        """writer of further entries; the first one cuts off what is damaged"""
 
     @property
     def had_ended_when_opened(self) -> bool:
@@ -86,21 +95,21 @@ class Journal(Observer, Closing):
         `must_survive_power_loss` a power failure too. Raises ArgoError if it can't be written;
         earlier entries stay.
         """
-        line = _line(self._lines, entry)
+        data = entry.model_dump(mode="json", exclude_defaults=True)
         try:
-            write_all(self._file, line)
+            if self._lines is None:
+                self._lines = LineWriter(self._file, self._stored)
             if entry.must_survive_power_loss:
-                os.fsync(self._file)
+                self._lines.append_and_sync(data)
+            else:
+                self._lines.append(data)
         except OSError as error:
-            truncate_if_possible(self._file, self._size)
             raise Unavailable(
                 f"{self.path}: the journal can't be written any further: {error.strerror}; what "
                 "was written stays, and the run can be resumed from there",
                 remedies=(Remedy.RESUME,),
                 about=str(self.path),
             ) from error
-        self._size += len(line)
-        self._lines += 1
 
     def require_not_ended(self) -> None:
         """Raise ArgoError if the run had ended when the journal was opened: no event can follow."""
@@ -189,9 +198,11 @@ def create_journal(path: Path, header: Header, replace: bool = False) -> Journal
     check_journal_path(path, replace)
     # The header is first written to a draft, so that a journal is never without its header.
     draft = path.with_name(path.name + ".new")
-    line = _line(0, header)
+    fields = header.model_dump(mode="json", exclude_defaults=True)
+    fields |= {"format": header.format, "version": header.version}
+    content = b"".join(complete_lines([fields]))
     try:
-        file = os.open(draft, os.O_CREAT | _FLAGS, 0o644)
+        file = os.open(draft, os.O_CREAT | _FLAGS, 0o600)
     except OSError as error:
         _refuse_writing(path, error)
     try:
@@ -201,10 +212,11 @@ def create_journal(path: Path, header: Header, replace: bool = False) -> Journal
             draft.unlink(missing_ok=True)
             check_journal_path(path)
         os.ftruncate(file, 0)
-        write_all(file, line)
+        write_all(file, content)
         os.fsync(file)
         draft.rename(path)
         sync_folder(path.parent)
+        return Journal(path, file, header, (), parse_lines(content))
     except OSError as error:
         os.close(file)
         draft.unlink(missing_ok=True)
@@ -212,11 +224,13 @@ def create_journal(path: Path, header: Header, replace: bool = False) -> Journal
     except ArgoError:
         os.close(file)
         raise
-    return Journal(path, file, header, (), len(line))
 
 
 def open_journal(path: Path) -> Journal:
-    """Open and lock the journal of an earlier run; cut off an incomplete last line.
+    """Open and lock the journal of an earlier run.
+
+    Its entries are those before what a loss of power has damaged, which its `loss` tells. The file
+    is changed only when an entry is written.
 
     Raises ArgoError if the file is no journal, is damaged, or another process has it open.
     """
@@ -225,30 +239,25 @@ def open_journal(path: Path) -> Journal:
     file = _open(path)
     try:
         _lock(file, path)
-        content = _read(file, path)
-        header, entries, size = _parse(path, content)
-        if size < len(content):
-            os.ftruncate(file, size)
-            os.fsync(file)
+        return Journal(path, file, *_parse(path, _read(file, path)))
     except OSError as error:
         os.close(file)
         _refuse(path, f"can't be read: {error.strerror}", kind=Unavailable)
     except ArgoError:
         os.close(file)
         raise
-    return Journal(path, file, header, entries, size)
 
 
-def _parse(path: Path, content: bytes) -> tuple[Header, list[Entry], int]:
-    """Return a journal's header and entries, and how many bytes of `content` these take together.
+def _parse(path: Path, content: bytes) -> tuple[Header, list[Entry], StoredLines]:
+    """Return a journal's header, its entries before the first damaged line, and all its lines.
 
-    The rest is an incomplete or damaged last line. Raises ArgoError for anything else.
+    Raises ArgoError if a line is damaged that was synced, or the file is no journal.
     """
-    lines = content.split(b"\n")
-    # After the last line end there is nothing, or an incomplete line.
-    complete = lines[:-1]
-    first = checked_object(complete[0]) if complete else None
-    if complete and complete[0].endswith(b"\r") and checked_object(complete[0][:-1]) is not None:
+    stored = parse_lines(content)
+    lines = stored.objects
+    first = lines[0].data if lines and lines[0].number == 0 else None
+    start = content[: content.find(b"\n")]
+    if start.endswith(b"\r") and checked_object(start[:-1]) is not None:
         _refuse(
             path,
             "has line ends of another system (CR LF): copy it again, with its line ends unchanged",
@@ -262,38 +271,37 @@ def _parse(path: Path, content: bytes) -> tuple[Header, list[Entry], int]:
             f"Argo reads {VERSION}: resume it with the version of Argo that wrote it",
         )
     header = _model(Header, first, path, 0)
-    entries: list[Entry] = []
-    size = len(complete[0]) + 1
-    for number, line in enumerate(complete[1:], start=1):
-        data = checked_object(line)
-        if data is None or data.pop("n", None) != number:
-            if number + 1 < len(complete) or lines[-1]:
-                _refuse(
-                    path,
-                    f"is damaged from line {number + 1} on, and this is not only an incomplete "
-                    "last line: restore it from a copy",
-                )
-            break
-        entries.append(_model(Entry, data, path, number))
-        size += len(line) + 1
-    return header, entries, size
+    if stored.was_synced:
+        _refuse(
+            path,
+            f"is damaged from line {len(stored.lines) + 1} on, though {stored.synced} lines were "
+            "on disk: this is no loss of power, and no run can continue from it: restore it from "
+            "a copy",
+        )
+    return header, [_model(Entry, line.data, path, line.number) for line in lines[1:]], stored
+
+
+def _loss(path: Path, entries: Sequence[Entry], stored: StoredLines) -> str:
+    """Return what a loss of power has damaged in a journal, and where its run continues."""
+    at = entries[-1].t if entries else 0.0
+    then = f"the run {'had ended' if entries and entries[-1].ended else 'continues'} at {at:g} s"
+    times = [line.data["t"] for line in stored.later if isinstance(line.data.get("t"), float | int)]
+    until = f", with what the run did until {max(times):g} s" if times else ""
+    return (
+        f"{path}: damaged from line {len(stored.lines) + 1} on, as by a loss of power: "
+        f"{stored.count_after} lines that were not known to be on disk are lost{until}. All lines "
+        f"before are whole: {then}"
+    )
 
 
 def _model(cls: type[ModelT], data: dict[str, object], path: Path, number: int) -> ModelT:
     try:
-        return cls.model_validate({k: v for k, v in data.items() if k != "n"})
+        return cls.model_validate(data)
     except ValidationError as error:
         fault = error.errors(include_url=False)[0]
         field = ".".join(str(part) for part in fault["loc"])
         message = error_message(fault, fault["loc"])
         _refuse(path, f"has an error in line {number + 1}, {field}: {message}")
-
-
-def _line(number: int, model: Model) -> bytes:
-    data = {"n": number} | model.model_dump(mode="json", exclude_defaults=True)
-    if isinstance(model, Header):
-        data |= {"format": model.format, "version": model.version}
-    return checked_line(data)
 
 
 def _open(path: Path) -> int:

@@ -6,6 +6,7 @@ and seed give the same record.
 
 from collections.abc import Sequence
 from enum import StrEnum
+from typing import Any
 
 from pydantic import computed_field, model_validator
 
@@ -17,6 +18,7 @@ from argo_compiler.hfsm.progress import TaskTally
 from argo_compiler.il import Action, EventKind, Mission, Response
 from argo_env.drives.drive import Trouble
 from argo_env.faults.kinds import AnyFault
+from argo_env.files.checked_files import CHECKSUM
 from argo_env.formatting import floor_and_position_text, min_sec_text
 from argo_env.run.verdict_line import Headline, run_headline
 from argo_env.site.shapes import Vector
@@ -420,6 +422,15 @@ class RunRecord(Model):
 
     version: int = 5
     """version of the format"""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _without_checksum(cls, data: Any) -> Any:
+        """Leave out the checksum of a file."""
+        if isinstance(data, dict):
+            return {name: value for name, value in data.items() if name != CHECKSUM}
+        return data
+
     mission: Mission
     hfsm: Hfsm
     site: str

@@ -12,6 +12,7 @@ from argo_compiler.files.json_places import format_path
 from argo_compiler.hfsm import Event
 from argo_compiler.il import Mission
 from argo_env.faults.kinds import AnyFault
+from argo_env.files.checked_files import read_checked
 from argo_env.files.yaml_messages import error_message
 from argo_env.run.initial_state import InitialState
 from argo_env.run.log import LoggedEvent, require_event_time, require_external
@@ -138,13 +139,21 @@ class RunSpec(Model):
         return self.model_dump(mode="json", include=_SETTINGS)
 
 
+SPEC_REMEDY = (
+    "restore it from a copy, or evaluate again, which writes it; if you have changed it yourself, "
+    "remove its `checksum`"
+)
+
+
 def read_spec(content: str | bytes, name: str = "the run's spec") -> RunSpec:
     """Return the spec in a JSON text.
 
-    Raises Invalid, with the text's `name` and the place in it, if it is not a spec.
+    Raises Invalid, with the text's `name` and the place in it, if it is not a spec; Unavailable if
+    it does not fit its checksum.
     """
     try:
-        return RunSpec.model_validate_json(content)
+        data = content.encode() if isinstance(content, str) else content
+        return read_checked(RunSpec, data, name, SPEC_REMEDY)
     except ValidationError as error:
         raise _invalid(name, error) from None
 

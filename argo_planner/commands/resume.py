@@ -1,6 +1,7 @@
 """`argo resume`: continue a run from its journal."""
 
 import os
+import sys
 import time
 from pathlib import Path
 from typing import Annotated
@@ -74,6 +75,8 @@ def resume_command(
     events = logged_events(*parse_events(event or []))
     console = Console(stderr=True, highlight=False, quiet=is_quiet())
     with open_journal(journal) as book:
+        if book.loss:
+            print(f"argo: {book.loss}", file=sys.stderr)
         if report and not force:
             if os.path.realpath(report / JOURNAL) != os.path.realpath(journal):
                 require_no_unfinished_run(report)

@@ -8,11 +8,13 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from argo_compiler.base.errors import Conflict, Invalid
+from argo_env.files.checked_files import read_checked
 from argo_env.report.files import RECORD
 from argo_env.run.journal import Journal, open_journal
 from argo_env.run.record import RunRecord
 from argo_env.run.simulation import SAMPLE_PERIOD
 
+_REMEDY = "restore it from a copy, or delete it: the report is written from the journal"
 JOURNAL = "run.journal"
 """name of the journal in a report's folder, unless another journal is named"""
 
@@ -92,10 +94,11 @@ def is_report_of(book: Journal, folder: Path) -> bool:
     """Return True if the report in a folder is of the journal's run.
 
     The result is also False if the report contains more of the run than the journal does, because
-    a new report would lose that.
+    a new report would lose that. Raises Unavailable if the report is damaged.
     """
     try:
-        record = RunRecord.model_validate_json((folder / RECORD).read_bytes())
+        path = folder / RECORD
+        record = read_checked(RunRecord, path.read_bytes(), path, _REMEDY)
     except (OSError, ValidationError):
         return False
     spec = book.header.spec

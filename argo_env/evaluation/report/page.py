@@ -44,6 +44,7 @@ from argo_env.evaluation.report.texts import (
 from argo_env.evaluation.results import EvaluationResults, duration_curve
 from argo_env.evaluation.row import RunOutcome
 from argo_env.evaluation.worlds import Variation
+from argo_env.files.checked_files import checked_page
 from argo_env.files.folders import make_folder
 from argo_env.formatting import min_sec_text
 from argo_env.report.svg import replace_non_xml_characters
@@ -59,7 +60,7 @@ def write_evaluation_report(folder: Path, results: EvaluationResults) -> Path:
 
     Raises Unavailable if it can't be written.
     """
-    return write_file(folder / REPORT, evaluation_page(results, folder))
+    return write_file(folder / REPORT, checked_page(evaluation_page(results, folder)))
 
 
 def write_comparison_report(
@@ -71,7 +72,7 @@ def write_comparison_report(
     can't be written.
     """
     make_folder(folder)
-    return write_file(folder / COMPARISON, comparison_page(compared, first, second))
+    return write_file(folder / COMPARISON, checked_page(comparison_page(compared, first, second)))
 
 
 def evaluation_page(results: EvaluationResults, folder: Path) -> str:

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from datetime import datetime
 
+from argo_compiler.base.errors import NotFound
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, has_errors
 from argo_compiler.editing import Consequence, EditError
@@ -156,8 +157,10 @@ class MissionPlan:
     def plan_before(self, revision: int) -> "MissionPlan":
         """Return the plan as it was before a revision of its history, with an empty history.
 
-        This does not check that the revision is in the history.
+        Raises NotFound if the history does not have that revision.
         """
+        if revision not in {made.number for made in self.history}:
+            raise NotFound(f"revision {revision} is not in the history of the mission")
         mission = self._mission_before(revision)
         return MissionPlan(mission, revision - 1)
 

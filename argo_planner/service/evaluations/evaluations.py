@@ -17,9 +17,10 @@ from pydantic import ValidationError
 from argo_compiler.base.errors import ArgoError, Conflict, NotFound, Unavailable
 from argo_compiler.base.model import Model
 from argo_compiler.files.atomic_write import write_atomically
-from argo_compiler.files.loading import FileError, read_bytes
+from argo_compiler.files.loading import read_bytes
 from argo_env.evaluation.folder import REPORT
-from argo_env.files.folders import make_folder
+from argo_env.files.checked_files import check_page, checked_json, damaged, read_checked
+from argo_env.files.folders import make_private_folder
 from argo_planner.service.evaluations.replay import ReplayedRun, ReplayRequest, replay_run
 from argo_planner.service.jobs.evaluation import (
     EvaluationSpec,
@@ -33,6 +34,8 @@ from argo_planner.service.processes.job_process import JobProcess
 
 MOST_REPLAYED = 2
 """runs that are replayed at the same time"""
+STORING_PERIOD = 5.0
+"""s between two attempts to store the end of an evaluation, for example on a full disk"""
 LONGEST_REPLAY = 120.0
 """longest time of a replay, in s of wall time"""
 _log = logging.getLogger(__name__)
@@ -60,11 +63,22 @@ class EvaluationFolder:
     def store(self, evaluation: StoredEvaluation) -> None:
         """Write an evaluation to its folder, which is made if needed.
 
-        Raises Unavailable if the folder can't be made, OSError if the file can't be written.
+        Raises Unavailable if that fails; a new folder is then removed again.
         """
         folder = self.unchecked_evaluation_path(evaluation.job.id)
-        make_folder(folder)
-        write_atomically(folder / _JOB_FILE, evaluation.model_dump_json().encode())
+        is_new = not os.path.exists(folder)
+        try:
+            make_private_folder(self._path)
+            make_private_folder(folder)
+            content = checked_json(evaluation.model_dump_json())
+            write_atomically(folder / _JOB_FILE, content, private=True)
+        except OSError as error:
+            if is_new:
+                shutil.rmtree(folder, ignore_errors=True)
+            raise Unavailable(
+                f"evaluation {evaluation.job.id} can't be stored: {folder}: {error.strerror}; free "
+                "disk space, and try again"
+            ) from error
 
     def load_all(self) -> list[StoredEvaluation]:
         """Return all stored evaluations, the oldest first; damaged ones are left out.
@@ -79,12 +93,8 @@ class EvaluationFolder:
             ):
                 try:
                     evaluations.append(self._read(name))
-                except (FileError, ValidationError) as error:
-                    _log.warning(
-                        "%s: can't be read and is ignored: %s",
-                        self.unchecked_evaluation_path(name),
-                        error,
-                    )
+                except ArgoError as error:
+                    _log.warning("%s; the evaluation is left out", error)
         return sorted(evaluations, key=lambda evaluation: evaluation.job.begun)
 
     def with_stored_results(self, job: EvaluationJob) -> EvaluationJob:
@@ -109,27 +119,33 @@ class EvaluationFolder:
             ) from error
 
     def load_evaluation(self, id: str) -> StoredEvaluation:
-        """Return a stored evaluation; raises NotFound if it is missing or damaged.
+        """Return a stored evaluation; raises NotFound if it is missing, Unavailable if damaged.
 
         An evaluation that is stored as running is returned as interrupted.
         """
-        try:
-            return self._read(id)
-        except (FileError, ValidationError):
-            raise NotFound(f"the files of evaluation {id} are missing or damaged") from None
+        return self._read(id)
 
     def read_report(self, id: str) -> bytes:
-        """Return the report of an evaluation as HTML; raises NotFound if there is none yet."""
-        return read_bytes(self.unchecked_evaluation_path(id) / REPORT, "report", _MAX_BYTES)
+        """Return the report of an evaluation as HTML.
+
+        Raises NotFound if there is none yet, Unavailable if it is damaged.
+        """
+        path = self.unchecked_evaluation_path(id) / REPORT
+        content = read_bytes(path, "report", _MAX_BYTES)
+        check_page(content, path, "evaluate again")
+        return content
 
     def _read(self, id: str) -> StoredEvaluation:
-        content = read_bytes(
-            self.unchecked_evaluation_path(id) / _JOB_FILE, "evaluation", _MAX_BYTES
-        )
-        evaluation = StoredEvaluation.model_validate_json(content)
+        path = self.unchecked_evaluation_path(id) / _JOB_FILE
+        content = read_bytes(path, "evaluation", _MAX_BYTES)
+        remedy = "restore it from a copy, or delete its folder and evaluate again"
+        try:
+            evaluation = read_checked(StoredEvaluation, content, path, remedy)
+        except ValidationError:
+            raise damaged(path, "it is not of this version of Argo", remedy) from None
         if evaluation.job.state is not JobState.RUNNING:
             return evaluation
-        why = "the service ended before all was run"
+        why = "the service ended before the end of this evaluation was stored"
         job = evaluation.job.model_copy(update={"state": JobState.INTERRUPTED, "problem": why})
         return evaluation.model_copy(update={"job": self.with_stored_results(job)})
 
@@ -148,19 +164,37 @@ class Evaluations:
         """held while an evaluation is started, resumed or deleted, and while the end of one is
         stored, so that this can't overwrite the state of an evaluation that was resumed"""
         self._replays = asyncio.Semaphore(MOST_REPLAYED)
+        self._unstored: dict[str, StoredEvaluation] = {}
+        """evaluations whose ends could not be stored yet, by their ids"""
+        self._storing: asyncio.Task[None] | None = None
+        """task that stores them when that is possible"""
 
     async def open(self) -> None:
         """Load the stored evaluations, and add them to the jobs."""
         stored = await asyncio.to_thread(self._folder.load_all)
         self._jobs.add_past(evaluation.job for evaluation in stored)
 
+    async def close(self) -> None:
+        """Store the ends that could not be stored yet, if that is possible now."""
+        if self._storing is not None:
+            self._storing.cancel()
+        async with self._turn:
+            await self._store_ends()
+
     async def start(
         self, plan: str, revision: int, spec: EvaluationSpec, author: str
     ) -> EvaluationJob:
         """Start an evaluation of a mission plan's revision, and return its job.
 
-        Raises Conflict if any evaluation is running, Unavailable if its folder can't be made.
+        Raises Conflict if any evaluation is running, Unavailable if it can't be stored; nothing is
+        left on disk then.
         """
+        # If the client leaves now, an evaluation that is on disk must also run.
+        return await asyncio.shield(self._start(plan, revision, spec, author))
+
+    async def _start(
+        self, plan: str, revision: int, spec: EvaluationSpec, author: str
+    ) -> EvaluationJob:
         async with self._turn:
             self._require_none_running()
             job = EvaluationJob(
@@ -180,6 +214,9 @@ class Evaluations:
         Raises NotFound if there is none, Conflict if it is in another state or another evaluation
         is running.
         """
+        return await asyncio.shield(self._resume(id))
+
+    async def _resume(self, id: str) -> EvaluationJob:
         async with self._turn:
             job = self.find(id)
             if job.state not in (JobState.INTERRUPTED, JobState.CANCELLED):
@@ -213,6 +250,7 @@ class Evaluations:
             if job.state is JobState.RUNNING:
                 raise Conflict(f"evaluation {id} is running: cancel it first")
             self._jobs.discard_if_present(id)
+            self._unstored.pop(id, None)
             await asyncio.to_thread(self._folder.delete, id)
 
     async def delete_for_mission(self, plan: str) -> None:
@@ -284,6 +322,7 @@ class Evaluations:
 
     async def _start_job(self, evaluation: StoredEvaluation) -> EvaluationJob:
         await asyncio.to_thread(self._folder.store, evaluation)
+        self._unstored.pop(evaluation.job.id, None)
         work = JobProcess(
             evaluate_mission,
             evaluation.order,
@@ -297,11 +336,26 @@ class Evaluations:
                 if job.state in (JobState.CANCELLED, JobState.INTERRUPTED):
                     job = await asyncio.to_thread(self._folder.with_stored_results, job)
                     self._jobs.replace_unless_discarded(job)
-                try:
-                    ended = StoredEvaluation(order=evaluation.order, job=job)
-                    await asyncio.to_thread(self._folder.store, ended)
-                except ArgoError as error:
-                    _log.error("evaluation %s: its end can't be stored: %s", job.id, error)
+                ended = StoredEvaluation(order=evaluation.order, job=job)
+                self._unstored[job.id] = ended
+                await self._store_ends()
+                if self._unstored and (self._storing is None or self._storing.done()):
+                    self._storing = asyncio.create_task(self._store_ends_when_possible())
 
         self._jobs.start(evaluation.job, work, on_end)
         return evaluation.job
+
+    async def _store_ends(self) -> None:
+        """Try to store all ends that are not stored yet."""
+        for id, ended in [*self._unstored.items()]:
+            try:
+                await asyncio.to_thread(self._folder.store, ended)
+                del self._unstored[id]
+            except ArgoError as error:
+                _log.error("the end of %s", error)
+
+    async def _store_ends_when_possible(self) -> None:
+        while self._unstored:
+            await asyncio.sleep(STORING_PERIOD)
+            async with self._turn:
+                await self._store_ends()

@@ -1,6 +1,7 @@
 """Evaluation of a mission: its runs in many worlds, in separate processes."""
 
 import hashlib
+import logging
 import os
 import time
 from collections import Counter
@@ -38,6 +39,7 @@ from argo_planner.service.jobs.evaluation_status import EvaluationStanding, RunC
 from argo_planner.service.processes.job_process import ReportProgress
 from argo_planner.service.world.obstacles import Obstacle, with_obstacles
 
+_log = logging.getLogger(__name__)
 MOST_WORLDS = 10_000
 MOST_RUNS = 100_000
 _PERIOD = 0.25  # s between two reports of the progress
@@ -155,6 +157,8 @@ def evaluate_mission(
     # Workers are forked from a process that has loaded fewer modules than the service.
     workers = make_backend(context=context_with(__name__))
     with RowStore(folder) as store:
+        if store.loss:
+            _log.warning("%s: the lost runs are repeated", store.loss)
         try:
             runner = EvaluationRunner(plan, workers, store, limit=_LONGEST_RUN, call=call)
             last_report, stored = -_PERIOD, len(store.rows)

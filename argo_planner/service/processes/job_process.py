@@ -4,6 +4,7 @@ The process ends with the service, even if the service is killed.
 """
 
 import asyncio
+import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from multiprocessing.connection import Connection
@@ -90,6 +91,7 @@ class JobProcess(Generic[Result]):
 
 def _run_work(pipe: Connection, work: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
     ignore_sigint_and_end_with_parent()
+    os.umask(0o077)
 
     def report(progress: Any) -> None:
         pipe.send(("told", progress))

@@ -5,8 +5,10 @@ written before the run's process gets it.
 """
 
 import asyncio
+import logging
 import os
 import re
+import shutil
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
@@ -16,16 +18,25 @@ from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
-from argo_compiler.base.errors import NotFound, Unavailable
+from argo_compiler.base.errors import ArgoError, NotFound, Unavailable
 from argo_compiler.base.model import Model
 from argo_compiler.base.operating_system import OPEN_FLAGS, sync_folder
 from argo_compiler.files.atomic_write import write_atomically
+from argo_env.files.checked_files import (
+    check_page,
+    checked_json,
+    damaged,
+    read_checked,
+    unchecked_json,
+)
 from argo_env.files.checked_lines import (
     checked_line,
     checked_object,
     truncate_if_possible,
     write_all,
 )
+from argo_env.files.folders import make_private_folder
+from argo_env.report.files import PAGE, RECORD
 from argo_env.run.journal import open_journal
 from argo_env.run.log import Entry
 from argo_planner.service.runs.requests import RequestState, RunOrder
@@ -33,10 +44,13 @@ from argo_planner.service.runs.state import RunState
 from argo_planner.service.runs.worker import journal_paths, load_entries
 
 T = TypeVar("T")
+_log = logging.getLogger(__name__)
 RUN_ID = r"[0-9]{8}-[0-9]{6}-[0-9a-f]{4}"
 """regular expression for the id of a run: its start in UTC, and a random part"""
 _RUN_FILE = "run.json"
 _REQUEST_FILE = "requests"
+_REMEDY = "restore it from a copy, or resume the newest journal in its folder with `argo resume`"
+_REPORT_REMEDY = "write it again, from the newest journal in its folder, with `argo resume`"
 _FLAGS = os.O_RDWR | os.O_APPEND | os.O_CREAT | OPEN_FLAGS
 
 
@@ -60,7 +74,7 @@ class RequestFile:
         """
         lines = b"".join(checked_line(request.model_dump(mode="json")) for request in requests)
         try:
-            file = os.open(self._path, _FLAGS, 0o644)
+            file = os.open(self._path, _FLAGS, 0o600)
             try:
                 size = os.fstat(file).st_size
                 os.lseek(file, max(0, size - 1), os.SEEK_SET)
@@ -85,8 +99,8 @@ class RequestFile:
     def load_requests(self) -> list[RequestState]:
         """Return the last stored state of each request, in the order in which the requests came.
 
-        The list is empty if there is no file. Damaged lines are skipped. Raises Unavailable if the
-        file can't be read.
+        The list is empty if there is no file. Damaged lines are left out, with a warning if more is
+        wrong than the end of the last line. Raises Unavailable if the file can't be read.
         """
         try:
             content = self._path.read_bytes()
@@ -95,13 +109,20 @@ class RequestFile:
         except OSError as error:
             raise Unavailable(f"{self._path} can't be read: {error.strerror}") from error
         requests: dict[str, RequestState] = {}
-        for line in content.split(b"\n"):
-            if (data := checked_object(line)) is not None:
-                try:
-                    request = RequestState.model_validate(data)
-                except ValidationError:
-                    continue
+        lines = content.split(b"\n")
+        for number, line in enumerate(lines, 1):
+            try:
+                data = checked_object(line)
+                request = RequestState.model_validate(data)
                 requests[request.id] = request
+            except ValidationError:
+                if number < len(lines) and line:
+                    _log.warning(
+                        "%s: line %d is damaged, and the state of a request that it told is lost: "
+                        "what the run did is in its journal",
+                        self._path,
+                        number,
+                    )
         return [*requests.values()]
 
 
@@ -114,44 +135,60 @@ class RunFolder:
     def create_run(self, stored: StoredRun) -> Path:
         """Create the folder of a new run, store the run, and return the folder.
 
-        Raises Unavailable if that fails.
+        Raises Unavailable if that fails; nothing is left then.
         """
         folder = self._path / stored.state.id
         try:
-            folder.mkdir(parents=True)
+            make_private_folder(self._path)
+            folder.mkdir(mode=0o700)
             sync_folder(self._path)
         except OSError as error:
             raise Unavailable(f"{folder} can't be created: {error.strerror}") from error
-        self.store(stored)
+        try:
+            self.store(stored)
+        except Unavailable:
+            shutil.rmtree(folder, ignore_errors=True)
+            raise
         return folder
 
     def store(self, stored: StoredRun) -> None:
         """Write a run's order and state to its folder; raises Unavailable if that fails."""
         path = self.run_path(stored.state.id) / _RUN_FILE
         try:
-            write_atomically(path, stored.model_dump_json())
+            write_atomically(path, checked_json(stored.model_dump_json()), private=True)
             sync_folder(path.parent)
         except OSError as error:
-            raise Unavailable(f"{path} can't be written: {error.strerror}") from error
+            raise Unavailable(
+                f"{path} can't be written: {error.strerror}; free disk space, and try again"
+            ) from error
 
     def load_runs_newest_first(self) -> list[StoredRun]:
-        """Return the stored runs, the newest first; damaged ones are left out."""
+        """Return the stored runs, the newest first; damaged ones are left out with a warning."""
         runs: list[StoredRun] = []
         with suppress(FileNotFoundError):
             for name in os.listdir(self._path):
                 if re.fullmatch(RUN_ID, name):
-                    with suppress(NotFound):
+                    try:
                         runs.append(self.load_run(name))
+                    except ArgoError as error:
+                        _log.warning("%s; the run is left out", error)
         # Not by id: several runs may have been started within one second.
         return sorted(runs, key=lambda run: run.state.begun, reverse=True)
 
     def load_run(self, id: str) -> StoredRun:
-        """Return a stored run; raises NotFound if there is none, or it can't be read."""
+        """Return a stored run.
+
+        Raises NotFound if there is none, Unavailable if its file can't be read or is damaged.
+        """
+        path = self.run_path(id) / _RUN_FILE
         try:
-            content = (self.run_path(id) / _RUN_FILE).read_bytes()
-            return StoredRun.model_validate_json(content)
-        except (OSError, ValidationError):
-            raise NotFound(f"there is no run {id}, or its stored state is damaged") from None
+            return read_checked(StoredRun, path.read_bytes(), path, _REMEDY)
+        except (FileNotFoundError, NotADirectoryError):
+            raise NotFound(f"there is no run {id}") from None
+        except OSError as error:
+            raise Unavailable(f"{path} can't be read: {error.strerror}") from None
+        except ValidationError:
+            raise damaged(path, "it is not of this version of Argo", _REMEDY) from None
 
     def run_path(self, id: str) -> Path:
         """Return the folder of a run, which need not exist.
@@ -179,16 +216,21 @@ class RunFolder:
         """Return the content of a file of a run's report; None if the file does not exist.
 
         `file` is its name in the folder of the run, which the caller has checked. Raises NotFound
-        if there is no such run, Unavailable if the file can't be read.
+        if there is no such run, Unavailable if the file can't be read or is damaged.
         """
         self.load_run(id)
         path = self.run_path(id) / file
         try:
-            return path.read_bytes()
+            content = path.read_bytes()
         except FileNotFoundError:
             return None
         except OSError as error:
             raise Unavailable(f"{path} can't be read: {error.strerror}") from error
+        if file == RECORD:
+            unchecked_json(content, path, _REPORT_REMEDY)
+        elif file == PAGE:
+            check_page(content, path, _REPORT_REMEDY)
+        return content
 
     def last_journal(self, id: str) -> Path | None:
         """Return the path of the newest journal of a run; None if the run has no journal."""

@@ -77,6 +77,7 @@ def run_worker(
         first_request: Request to an interrupted run, with its author; None: there is none.
     """
     ignore_sigint_and_end_with_parent()
+    os.umask(0o077)
     try:
         site = with_obstacles(open_site(order.site).prepare(), order.obstacles)
         with naming_packages(), ExitStack() as stack:
@@ -164,6 +165,8 @@ class _RunWorker:
             journal = stack.enter_context(open_journal(paths[-1]))
             if not self._only_stops:
                 journal.require_inputs_unchanged(self._site)
+            if journal.loss:
+                self._state = self._state.model_copy(update={"problem": journal.loss})
             return journal
         order = self._order
         spec = RunSpec(

@@ -12,6 +12,7 @@ from argo_compiler.base.errors import Conflict, NotFound, Unavailable
 from argo_compiler.base.operating_system import NO_LINK_FLAGS, sync_folder, try_lock
 from argo_compiler.il import Mission
 from argo_env.closing import Closing
+from argo_env.files.folders import make_private_folder
 from argo_planner.service.core.document import PlanDocument
 from argo_planner.service.core.plan import MissionPlan
 from argo_planner.service.core.plan_limits import require_displayable_name
@@ -50,7 +51,7 @@ class PlanFolder(Closing):
         self._new_id = new_id
         self._cache: dict[Path, _CachedSummary] = {}
         try:
-            (path / _BIN).mkdir(parents=True, exist_ok=True)
+            make_private_folder(path / _BIN)
             self._lock = os.open(path / ".lock", os.O_RDWR | os.O_CREAT | NO_LINK_FLAGS, 0o600)
         except OSError as error:
             raise Unavailable(

@@ -9,9 +9,12 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
+from argo_compiler.base.errors import Unavailable
 from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.files.atomic_write import write_atomically
+from argo_env.files.checked_files import checked_json, read_checked
+from argo_env.files.folders import make_private_folder
 
 _log = logging.getLogger(__name__)
 MOST_NOTES = 200
@@ -28,9 +31,9 @@ def store_import_notes(
     """Store the notes of the import that made a revision of a plan; replaces earlier notes."""
     path = _path(folder, plan)
     try:
-        path.parent.mkdir(exist_ok=True)
-        notes = notes[:MOST_NOTES]
-        write_atomically(path, _Notes(revision=revision, notes=notes).model_dump_json())
+        make_private_folder(path.parent)
+        stored = _Notes(revision=revision, notes=notes[:MOST_NOTES])
+        write_atomically(path, checked_json(stored.model_dump_json()), private=True)
     except OSError as error:
         _log.warning("%s: can't be written: %s", path, error.strerror)
 
@@ -38,11 +41,15 @@ def store_import_notes(
 def load_import_notes(folder: Path, plan: str) -> tuple[int, tuple[Diagnostic, ...]]:
     """Return the revision number and the notes of the last import.
 
-    The result is 0 and () if no import is stored, or its file can't be read.
+    The result is 0 and () if no import is stored, or its file can't be read, which gives a warning.
     """
+    path = _path(folder, plan)
     try:
-        stored = _Notes.model_validate_json(_path(folder, plan).read_bytes())
-    except (OSError, ValidationError):
+        stored = read_checked(_Notes, path.read_bytes(), path, "import the mission again")
+    except FileNotFoundError:
+        return 0, ()
+    except (OSError, ValidationError, Unavailable) as error:
+        _log.warning("the notes of an import can't be read: %s", error)
         return 0, ()
     return stored.revision, stored.notes
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from argo_compiler.base.errors import ArgoError, NotFound
 from argo_compiler.base.model import Model
-from argo_env.files.checked_lines import checked_object
+from argo_env.files.checked_lines import parse_lines
 from argo_planner.service.storage.plan_file import (
     parse_first_line,
     read_plan_bytes_or_raise,
@@ -50,18 +50,15 @@ def read_plan_summary(path: Path) -> PlanSummary:
 
 
 def _summarize(id: str, content: bytes) -> PlanSummary | None:
-    lines = content.split(b"\n")[:-1]
-    base = parse_first_line(lines[0]) if lines else None
+    lines = parse_lines(content).objects
+    base = parse_first_line(content.partition(b"\n")[0]) if lines else None
     if base is None:
         return None
     try:
         tasks = {task["name"] for task in base["mission"]["tasks"]}
         fields = {key: base[key] for key in ("name", "created", "changed", "revision")}
-        for number, line in enumerate(lines[1:], start=1):
-            record = checked_object(line)
-            if record is None or record.get("n") != number:
-                break
-            _apply_record(record, tasks, fields)
+        for line in lines[1:]:
+            _apply_record(line.data, tasks, fields)
         return PlanSummary(id=id, **fields, tasks=len(tasks))
     except (KeyError, TypeError, ValueError):
         return None  # written by another program

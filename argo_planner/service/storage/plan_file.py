@@ -1,7 +1,8 @@
 """File of one mission plan: a line with an earlier state, and one line for each later record.
 
-A record that was written and synced survives a crash of the process and of the machine. From time
-to time the file is rewritten with fewer records; the previous file is stored next to it.
+A record that was written and synced survives a crash of the process and of the machine; a mark
+follows it (see `checked_lines`). From time to time the file is rewritten with fewer records; the
+previous file is stored next to it.
 """
 
 import os
@@ -14,14 +15,16 @@ from pydantic import TypeAdapter, ValidationError
 
 from argo_compiler.base.errors import Invalid, NotFound, Unavailable
 from argo_compiler.base.model import Model
-from argo_compiler.base.operating_system import NO_LINK_FLAGS, sync_content, sync_folder
+from argo_compiler.base.operating_system import NO_LINK_FLAGS, sync_folder
 from argo_compiler.base.version import __version__
 from argo_compiler.il import Mission
 from argo_env.closing import Closing
 from argo_env.files.checked_lines import (
-    checked_line,
+    LineWriter,
+    StoredLine,
     checked_object,
-    truncate_if_possible,
+    complete_lines,
+    parse_lines,
     write_all,
 )
 from argo_planner.service.core.document import (
@@ -37,7 +40,7 @@ VERSION = 1
 """version of the file's format"""
 MAX_BYTES = 1_000_000_000
 MOST_RECORDS = 400
-"""number of lines after which the file is rewritten"""
+"""number of records after which the file is rewritten, with its first line"""
 MAX_GROWTH = 16_000_000
 """bytes of records after which the file is rewritten; the size of the first line, if larger"""
 KEPT_RECORDS = 100
@@ -70,36 +73,18 @@ class Recovery:
     """name of the damaged file, in the folder of the plan's file"""
 
 
-@dataclass(frozen=True)
-class PlanExtent:
-    """Size of a plan's file."""
-
-    first: int
-    """size of the first line in bytes"""
-    size: int
-    """size of the file in bytes"""
-    lines: int
-
-    @property
-    def must_be_rewritten(self) -> bool:
-        """True if the file has so many lines or bytes that it is to be rewritten."""
-        grown = self.size - self.first
-        return self.lines > MOST_RECORDS or grown > max(MAX_GROWTH, self.first)
-
-
 class PlanFile(Closing):
     """Open file of a mission plan. Owns the file, and holds the plan's state on disk.
 
     Only one thread at a time may use it.
     """
 
-    def __init__(self, path: Path, file: int, document: PlanDocument, extent: PlanExtent) -> None:
+    def __init__(self, path: Path, opened: "_OpenedFile", document: PlanDocument) -> None:
         self.path = path
         self.document = document
         self.recovery: Recovery | None = None
         """what was lost when the file was opened; None: nothing"""
-        self._file = file
-        self._extent = extent
+        self._opened = opened
 
     def append(self, document_after: PlanDocument, record: PlanRecord) -> None:
         """Append a record to the file and sync it; `document_after` is the plan's new state.
@@ -108,29 +93,29 @@ class PlanFile(Closing):
         large to be opened again. After an error the file has the same content as before.
         """
         data = record.model_dump(mode="json")
-        line = checked_line({"n": self._extent.lines} | data)
-        if self._extent.size + len(line) > MAX_BYTES:
+        if self._size_with(data) > MAX_BYTES:
             self._rewrite()
-            line = checked_line({"n": self._extent.lines} | data)
-        extent = self._extent
-        if extent.size + len(line) > MAX_BYTES:
+        if self._size_with(data) > MAX_BYTES:
             raise PlanTooLarge(
                 f"the mission's file would have more than {MAX_BYTES // 1_000_000} MB: delete some "
                 "of its versions, or continue with a copy"
             )
         try:
-            write_all(self._file, line)
-            sync_content(self._file)
+            self._opened.lines.append_and_sync(data)
         except OSError as error:
-            truncate_if_possible(self._file, extent.size)
             raise _write_error(self.path, error) from error
-        self._extent = PlanExtent(extent.first, extent.size + len(line), extent.lines + 1)
+        self._opened.records += 1
         self.document = document_after
-        if self._extent.must_be_rewritten:
+        if self._opened.must_be_rewritten:
             self._rewrite()
 
+    def _size_with(self, data: dict[str, Any]) -> int:
+        """Return the size in bytes that the file has with one more record and its mark."""
+        lines = self._opened.lines
+        return lines.size + len(lines.line(data)) + len(lines.line({}))
+
     def close(self) -> None:
-        os.close(self._file)
+        os.close(self._opened.file)
 
     def _rewrite(self) -> None:
         """Rewrite the file with the plan's last revisions; keep the previous file next to it."""
@@ -138,8 +123,26 @@ class PlanFile(Closing):
             written = _write_plan(self.path, self.document, KEPT_RECORDS)
         except Unavailable:
             return  # the present file is complete
-        os.close(self._file)
-        self._file, self._extent = written
+        os.close(self._opened.file)
+        self._opened = written
+
+
+@dataclass
+class _OpenedFile:
+    """Open file with a writer of its further lines."""
+
+    file: int
+    lines: LineWriter
+    first: int
+    """size of the first line in bytes"""
+    records: int
+    """number of lines that are no marks"""
+
+    @property
+    def must_be_rewritten(self) -> bool:
+        """True if the file has so many records or bytes that it is to be rewritten."""
+        grown = self.lines.size - self.first
+        return self.records > MOST_RECORDS or grown > max(MAX_GROWTH, self.first)
 
 
 def write_plan_file(path: Path, document: PlanDocument) -> PlanFile:
@@ -147,8 +150,7 @@ def write_plan_file(path: Path, document: PlanDocument) -> PlanFile:
 
     Raises Unavailable if that fails.
     """
-    file, extent = _write_plan(path, document, 0)
-    return PlanFile(path, file, document, extent)
+    return PlanFile(path, _write_plan(path, document, 0), document)
 
 
 def open_plan_file(path: Path) -> PlanFile:
@@ -169,38 +171,37 @@ def open_plan_file(path: Path) -> PlanFile:
         parsed_previous = _parse(read_plan_bytes_or_raise(previous))
         if parsed_previous is not None:
             lost = "its first line is damaged: this is an earlier state of the mission"
-            return _recover(path, parsed_previous, lost)
+            return _recover(path, parsed_previous.document, lost)
     if parsed is None:
         raise Invalid(
             f"{path.name} is damaged from its first line on, and nothing in it can be read: "
             "restore it from a copy"
         )
     if parsed.lost:
-        lost = (
-            f"{parsed.lost} of {parsed.lost + parsed.extent.lines} lines are damaged or follow a "
-            f"damaged one: this is the mission at revision {parsed.document.plan.revision}"
-        )
-        return _recover(path, parsed, lost)
+        return _recover(path, parsed.document, parsed.lost)
     file = _open(path)
-    if parsed.extent.size < len(content):
-        os.ftruncate(file, parsed.extent.size)  # an incomplete line, which was never acknowledged
-        os.fsync(file)
-    return PlanFile(path, file, parsed.document, parsed.extent)
+    stored = parse_lines(content)  # without a last line that was never acknowledged
+    try:
+        lines = LineWriter(file, stored)
+    except OSError as error:
+        os.close(file)
+        raise _write_error(path, error) from error
+    opened = _OpenedFile(file, lines, stored.lines[0].end, len(stored.objects))
+    return PlanFile(path, opened, parsed.document)
 
 
 @dataclass(frozen=True)
 class _ParsedFile:
     document: PlanDocument
-    extent: PlanExtent
-    """extent of the valid part"""
-    lost: int
-    """complete lines that are damaged or follow a damaged one"""
+    """plan in the part before the first damaged line"""
+    lost: str
+    """what is lost; empty if no line is damaged but the last, which was not acknowledged"""
 
 
 def _parse(content: bytes) -> _ParsedFile | None:
     """Return the plan in the valid part of a file, or None if its first line is damaged."""
-    lines = content.split(b"\n")[:-1]  # the part after the last line break is incomplete
-    base = parse_first_line(lines[0]) if lines else None
+    stored = parse_lines(content)
+    base = parse_first_line(content.partition(b"\n")[0]) if stored.lines else None
     if base is None:
         return None
     base.pop("n", None)
@@ -208,14 +209,23 @@ def _parse(content: bytes) -> _ParsedFile | None:
         document = _document(PlanBase.model_validate(base))
     except ValidationError:
         return None
-    first = size = len(lines[0]) + 1
-    for number, line in enumerate(lines[1:], start=1):
-        next_document = _apply_line(document, line, number)
+    for line in stored.objects[1:]:
+        next_document = _apply_line(document, line)
         if next_document is None:
-            return _ParsedFile(document, PlanExtent(first, size, number), len(lines) - number)
+            count = len(stored.lines) - line.number + stored.count_after
+            return _ParsedFile(document, _lost(document, line.number, count, known=True))
         document = next_document
-        size += len(line) + 1
-    return _ParsedFile(document, PlanExtent(first, size, len(lines)), 0)
+    if not stored.damaged:
+        return _ParsedFile(document, "")
+    number, known = len(stored.lines), stored.was_synced
+    return _ParsedFile(document, _lost(document, number, stored.count_after, known))
+
+
+def _lost(document: PlanDocument, number: int, count: int, known: bool) -> str:
+    """Return what is lost from the line with this number on; `known`: it was on disk once."""
+    which = f"{count} of {number + count} lines are damaged or follow a damaged one"
+    why = "" if known else ", as by a loss of power, and were not known to be on disk"
+    return f"{which}{why}: this is the mission at revision {document.plan.revision}"
 
 
 def parse_first_line(line: bytes) -> dict[str, Any] | None:
@@ -235,13 +245,10 @@ def parse_first_line(line: bytes) -> dict[str, Any] | None:
     return base
 
 
-def _apply_line(document: PlanDocument, line: bytes, number: int) -> PlanDocument | None:
+def _apply_line(document: PlanDocument, line: StoredLine) -> PlanDocument | None:
     """Return the document after the record in a line, or None if the line has no valid record."""
-    data = checked_object(line)
-    if data is None or data.pop("n", None) != number:
-        return None
     try:
-        return document.apply(_RECORD.validate_python(data))
+        return document.apply(_RECORD.validate_python(line.data))
     except ValueError:
         return None
 
@@ -251,7 +258,7 @@ def _document(base: PlanBase) -> PlanDocument:
     return PlanDocument(base.id, base.name, base.created, base.changed, plan, base.versions)
 
 
-def _recover(path: Path, parsed: _ParsedFile, lost: str) -> PlanFile:
+def _recover(path: Path, document: PlanDocument, lost: str) -> PlanFile:
     """Rewrite a damaged file with its valid part; the damaged file is stored next to it."""
     damaged = next(
         name
@@ -262,19 +269,18 @@ def _recover(path: Path, parsed: _ParsedFile, lost: str) -> PlanFile:
         os.link(path, damaged, follow_symlinks=False)
     except OSError as error:
         raise _write_error(path, error) from error
-    count = len(parsed.document.plan.history)
-    file, extent = _write_plan(path, parsed.document, count, keep_previous=False)
-    opened = PlanFile(path, file, parsed.document, extent)
+    count = len(document.plan.history)
+    opened = PlanFile(path, _write_plan(path, document, count, keep_previous=False), document)
     opened.recovery = Recovery(f"{lost}; the damaged file is now {damaged.name}", damaged.name)
     return opened
 
 
 def _write_plan(
     path: Path, document: PlanDocument, records: int, keep_previous: bool = True
-) -> tuple[int, PlanExtent]:
-    """Write the whole file, with at most `records` last revisions as records.
+) -> _OpenedFile:
+    """Write the whole file, with at most `records` last revisions as records, and return it open.
 
-    Writes under another name and renames the file at the end. Returns the open file and its extent.
+    Writes under another name and renames the file at the end.
     """
     plan = document.plan
     revisions = _last_revisions(plan, records)
@@ -288,10 +294,7 @@ def _write_plan(
         mission=start.mission,
         versions=document.versions,
     )
-    lines = [
-        checked_line({"n": number} | record.model_dump(mode="json"))
-        for number, record in enumerate((base, *revisions))
-    ]
+    lines = complete_lines([record.model_dump(mode="json") for record in (base, *revisions)])
     content = b"".join(lines)
     draft = path.with_name(f"{path.name}.new")
     try:
@@ -307,11 +310,12 @@ def _write_plan(
             os.link(path, replaced_file_path(path), follow_symlinks=False)
         draft.replace(path)
         sync_folder(path.parent)
+        writer = LineWriter(file, parse_lines(content))
     except OSError as error:
         os.close(file)
         draft.unlink(missing_ok=True)
         raise _write_error(path, error) from error
-    return file, PlanExtent(len(lines[0]), len(content), len(lines))
+    return _OpenedFile(file, writer, len(lines[0]), len(lines) - 1)
 
 
 def _last_revisions(plan: MissionPlan, most: int) -> list[RevisionMade]:

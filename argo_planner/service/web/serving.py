@@ -97,6 +97,7 @@ def make_service_opener(
                 thread.shutdown(wait=False, cancel_futures=True)
                 await runs.close()
                 await jobs.kill_running()
+                await evaluations.close()
                 await rooms.close()
         finally:
             analyst.close()

@@ -8,10 +8,14 @@ from pydantic import Field, ValidationError
 from argo_compiler.base.errors import Unavailable
 from argo_compiler.base.model import Model
 from argo_compiler.base.operating_system import NO_LINK_FLAGS, sync_folder
+from argo_env.files.checked_files import checked_json, read_checked
 from argo_planner.service.core.refusals import StaleRevision
 from argo_planner.service.world.obstacles import Obstacle
 
 _FILE = "obstacles.json"
+_REMEDY = (
+    "restore the file from a copy, or delete it; if you have changed it, remove its `checksum`"
+)
 
 
 class ObstacleList(Model):
@@ -34,10 +38,11 @@ class ObstacleStore:
         try:
             file = os.open(self._path, os.O_RDONLY | NO_LINK_FLAGS)
             with open(file, "rb") as stored:
-                self.present = ObstacleList.model_validate_json(stored.read())
+                content = stored.read()
+            self.present = read_checked(ObstacleList, content, self._path, _REMEDY)
         except (OSError, ValidationError) as error:
             raise Unavailable(
-                f"{self._path}: the obstacles can't be read: {error}; correct the file or delete it"
+                f"{self._path}: the obstacles can't be read: {error}; {_REMEDY}"
             ) from None
 
     def replace(self, obstacles: tuple[Obstacle, ...], made_on: int | None) -> ObstacleList:
@@ -59,7 +64,7 @@ class ObstacleStore:
             draft.unlink(missing_ok=True)
             file = os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_EXCL | NO_LINK_FLAGS, 0o600)
             with open(file, "wb") as new:
-                new.write(changed.model_dump_json(indent=1).encode())
+                new.write(checked_json(changed.model_dump_json(indent=1)).encode())
                 new.flush()
                 os.fsync(new.fileno())
             draft.replace(self._path)

@@ -1,8 +1,10 @@
 """Tests of an evaluation's folder: the plans that it accepts, and the rows that it keeps."""
 
+import random
+
 import pytest
 
-from argo_compiler.base.errors import Conflict
+from argo_compiler.base.errors import Conflict, Unavailable
 from argo_env.evaluation.control_variates import make_cheap_plan
 from argo_env.evaluation.folder import digest_contents, find_stored_plan, open_rows, read_results
 from argo_env.evaluation.plan import EvaluationPlan, Stopping
@@ -101,6 +103,47 @@ def test_cheap_runs_stay_with_the_plan_that_they_help(tmp_path, plan):
         assert sorted((row.seed, row.drive) for row in store.rows.values()) == [
             (0, "route"), (1, "route"), (5_000, "route"),
         ]  # fmt: skip
+
+
+@pytest.mark.parametrize("checked", [True, False])
+@pytest.mark.parametrize("cut", [300, 1])
+def test_a_plan_that_was_cut_is_damaged_and_not_another_one(tmp_path, plan, checked, cut):
+    fill(tmp_path, plan)
+    path = tmp_path / "evaluation.json"
+    text = path.read_text()
+    if not checked:
+        text = "{" + text.partition(",")[2]
+    path.write_text(text)
+    assert find_stored_plan(tmp_path) == plan
+    path.write_text(text[:-cut])
+    says = (
+        rf"evaluation\.json is damaged: line {text.count(chr(10)) - text[-cut:].count(chr(10)) + 1}"
+    )
+    for act in (
+        lambda: find_stored_plan(tmp_path),
+        lambda: find_stored_plan(tmp_path, DIGEST),
+        lambda: open_rows(tmp_path, plan, DIGEST),
+        lambda: read_results(tmp_path),
+    ):
+        with pytest.raises(Unavailable, match=says) as caught:
+            act()
+        assert "delete it and evaluate again, which keeps the rows that fit" in str(caught.value)
+    path.unlink()
+    with open_rows(tmp_path, plan, DIGEST) as store:
+        assert len(store.rows) == 12
+
+
+def test_each_flipped_bit_of_the_plan_is_damage(tmp_path, plan):
+    fill(tmp_path, plan)
+    path = tmp_path / "evaluation.json"
+    content = path.read_bytes()
+    rng = random.Random(18)
+    for _ in range(100):
+        damaged = bytearray(content)
+        damaged[rng.randrange(len(content))] ^= 1 << rng.randrange(8)
+        path.write_bytes(damaged)
+        with pytest.raises(Unavailable, match=r"evaluation\.json is damaged: "):
+            read_results(tmp_path)
 
 
 def test_a_plan_of_another_version_is_another_evaluation(tmp_path, plan):

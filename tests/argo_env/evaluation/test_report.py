@@ -24,6 +24,7 @@ from argo_env.evaluation.report.sections import reasons_by_plan_with_faults
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunOutcome
+from argo_env.files.checked_files import checked_page
 from tests.argo_env.evaluation.conftest import plan_of
 from tests.argo_env.evaluation.test_store import row
 
@@ -83,7 +84,7 @@ def test_equal_rows_give_an_equal_page(mission, tmp_path):
     pages = {evaluation_page(results_of(mission), tmp_path) for _ in range(2)}
     assert len(pages) == 1
     written = write_evaluation_report(tmp_path, results_of(mission))
-    assert written.read_text(encoding="utf-8") in pages
+    assert written.read_text(encoding="utf-8") in set(map(checked_page, pages))
 
 
 def test_nothing_is_fetched_and_names_are_text(mission, tmp_path):
@@ -266,7 +267,7 @@ def test_the_page_of_a_comparison_has_the_tests_and_intervals(mission, tmp_path)
     assert "succeeds in 40 of 40 runs" in page
     assert "A test over worlds" in page
     assert f"{100 * compared.power(0.05):.0f} %" in page
-    assert page == comparison_page(compared, tmp_path, tmp_path / "b")
+    assert page == checked_page(comparison_page(compared, tmp_path, tmp_path / "b"))
 
 
 def test_few_worlds_show_no_difference_of_the_times(mission):

@@ -1,5 +1,11 @@
 """Tests of rows on disk: no row is lost, no row is duplicated."""
 
+import errno
+import os
+import random
+import re
+import shutil
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -10,6 +16,7 @@ from argo_env.evaluation.detection import FaultDetection
 from argo_env.evaluation.parquet_files import write_part
 from argo_env.evaluation.row import RunOutcome, RunRow
 from argo_env.evaluation.store import LOG, RowStore, read_log, read_rows
+from argo_env.files.checked_lines import checked_line
 
 
 def row(number: int, **others) -> RunRow:
@@ -55,7 +62,7 @@ def test_rows_come_back_as_they_were(tmp_path):
         rows.compact()
         assert rows.uncompacted == 0
         rows.add_if_new(row(2))
-    assert (tmp_path / "parts" / "part-00001.parquet").exists()
+    assert re.fullmatch(r"part-00001-[0-9a-f]{8}\.parquet", part_of(tmp_path).name)
     assert read_rows(tmp_path) == (row(1), FULL, row(2))
     with RowStore(tmp_path) as rows:
         assert list(rows.rows.values()) == [row(1), FULL, row(2)]
@@ -75,7 +82,7 @@ def test_pandas_reads_the_parquet_files(tmp_path):
 
 def test_a_row_is_stored_once(tmp_path):
     store_rows(tmp_path, row(1), row(1))
-    assert len((tmp_path / LOG).read_bytes().splitlines()) == 1
+    assert (tmp_path / LOG).read_bytes().count(b'"key"') == 1
 
 
 @given(st.data())
@@ -85,7 +92,7 @@ def test_a_log_that_is_cut_anywhere_keeps_all_complete_rows(tmp_path_factory, da
     content = (folder / LOG).read_bytes()
     cut = data.draw(st.integers(0, len(content)))
     (folder / LOG).write_bytes(content[:cut])
-    complete = content[:cut].count(b"\n")
+    complete = sum(b'"key"' in line for line in content[:cut].split(b"\n")[:-1])
     with RowStore(folder) as rows:
         assert [row.seed for row in rows.rows.values()] == list(range(complete))
         for number in range(4):
@@ -93,16 +100,81 @@ def test_a_log_that_is_cut_anywhere_keeps_all_complete_rows(tmp_path_factory, da
     assert [row.seed for row in read_rows(folder)] == [0, 1, 2, 3]
 
 
-def test_a_damaged_line_is_left_out_and_counted(tmp_path):
+def damage_line(folder, number):
+    lines = (folder / LOG).read_bytes().splitlines(keepends=True)
+    lines[number] = lines[number].replace(b"umad", b"amud")
+    (folder / LOG).write_bytes(b"".join(lines))
+
+
+def test_a_damaged_line_is_named_and_its_run_is_repeated(tmp_path):
     store_rows(tmp_path, *map(row, range(3)))
-    lines = (tmp_path / LOG).read_bytes().splitlines(keepends=True)
-    lines[1] = lines[1].replace(b"umad", b"amud")
-    (tmp_path / LOG).write_bytes(b"".join(lines))
+    damage_line(tmp_path, 1)
+    with pytest.raises(
+        Unavailable, match=r"rows\.log: damaged in line 2: evaluate again into this"
+    ):
+        read_rows(tmp_path)
     with RowStore(tmp_path) as rows:
-        assert rows.damaged == 1
+        assert rows.loss == f"{tmp_path / LOG}: damaged in line 2"
         assert [row.seed for row in rows.rows.values()] == [0, 2]
         rows.add_if_new(row(1))
     assert {row.seed for row in read_rows(tmp_path)} == {0, 1, 2}
+    with RowStore(tmp_path) as rows:
+        assert not rows.loss
+
+
+def test_a_page_that_was_not_synced_is_no_damage(tmp_path):
+    """A loss of power leaves any of the pages that were not synced as zeros."""
+    with RowStore(tmp_path, clock=lambda: 0.0) as rows:
+        for number in range(3):
+            rows.add_if_new(row(number))
+        rows.sync()
+        synced = (tmp_path / LOG).stat().st_size
+        for number in range(3, 9):
+            rows.add_if_new(row(number))
+        content = (tmp_path / LOG).read_bytes()
+    (tmp_path / LOG).write_bytes(content[:synced] + bytes(500) + content[synced + 500 :])
+    seeds = [row.seed for row in read_rows(tmp_path)]
+    assert seeds[:3] == [0, 1, 2]
+    assert 3 < len(seeds) < 9
+    with RowStore(tmp_path) as rows:
+        assert "damaged in line 5, as by a loss of power" in rows.loss
+        assert [row.seed for row in rows.rows.values()] == seeds
+    lost = bytearray(content)
+    lost[200:300] = bytes(100)
+    (tmp_path / LOG).write_bytes(lost)
+    with pytest.raises(Unavailable, match="damaged in line 1:"):
+        read_rows(tmp_path)
+
+
+def test_a_log_without_marks_is_read(tmp_path):
+    """The lines of logs had no numbers."""
+    old = [checked_line(row(k).model_dump(mode="json", exclude_defaults=True)) for k in range(3)]
+    (tmp_path / LOG).write_bytes(b"".join(old))
+    assert read_rows(tmp_path) == (row(0), row(1), row(2))
+    store_rows(tmp_path, row(3))
+    assert read_rows(tmp_path) == (row(0), row(1), row(2), row(3))
+    (tmp_path / LOG).write_bytes(old[0] + b"x" + old[1] + old[2])
+    with RowStore(tmp_path) as rows:
+        assert "damaged in line 2" in rows.loss
+        assert [*rows.rows.values()] == [row(0), row(2)]
+
+
+def test_a_row_follows_one_that_found_no_room(tmp_path, monkeypatch):
+    with RowStore(tmp_path) as rows:
+        rows.add_if_new(row(0))
+        write, room = os.write, [100]
+
+        def write_until_full(file, data):
+            if not room:
+                raise OSError(errno.ENOSPC, "No space left on device")
+            return write(file, data[: room.pop()])
+
+        monkeypatch.setattr(os, "write", write_until_full)
+        with pytest.raises(Unavailable, match="No space left"):
+            rows.add_if_new(row(1))
+        monkeypatch.undo()
+        rows.add_if_new(row(2))
+    assert read_rows(tmp_path) == (row(0), row(2))
 
 
 def test_a_kill_between_the_part_and_the_log_duplicates_no_row(tmp_path):
@@ -149,12 +221,67 @@ def test_without_pyarrow_rows_stay_in_the_log(tmp_path, monkeypatch):
         read_rows(tmp_path)
 
 
-def test_a_damaged_part_is_named(tmp_path):
+def part_of(folder):
+    (part,) = (folder / "parts").iterdir()
+    return part
+
+
+def test_every_flipped_bit_of_a_part_is_damage(tmp_path):
+    """Some bits change a row without any other trace; the headers of pages have no checksum."""
+    store_rows(tmp_path, row(1), FULL, compact=True)
+    path = part_of(tmp_path)
+    content = path.read_bytes()
+    rng = random.Random(14)
+    for _ in range(100):
+        damaged = bytearray(content)
+        damaged[rng.randrange(len(content))] ^= 1 << rng.randrange(8)
+        path.write_bytes(damaged)
+        with pytest.raises(
+            Unavailable, match=r"parts/part-00001-.*\.parquet is damaged: its content"
+        ):
+            read_rows(tmp_path)
+        with pytest.raises(
+            Unavailable, match="restore it from a copy, or delete it and evaluate ag"
+        ):
+            RowStore(tmp_path)
+    path.write_bytes(content)
+    store_rows(tmp_path)  # the folder is not locked any more
+
+
+def test_a_part_without_a_checksum_is_read(tmp_path):
+    """Names of parts had no checksums."""
     store_rows(tmp_path, row(1), compact=True)
-    path = tmp_path / "parts" / "part-00001.parquet"
-    path.write_bytes(path.read_bytes()[:-8])
-    with pytest.raises(Unavailable, match=r"part-00001\.parquet can't be read"):
+    path = part_of(tmp_path)
+    old = path.rename(path.with_name("part-00001.parquet"))
+    assert read_rows(tmp_path) == (row(1),)
+    store_rows(tmp_path, row(2), compact=True)
+    assert read_rows(tmp_path) == (row(1), row(2))
+    content = old.read_bytes()
+    for damaged in (content[:-8], content[:100], b"", bytes(len(content))):
+        old.write_bytes(damaged)
+        with pytest.raises(Unavailable, match=r"part-00001\.parquet is damaged: .*; restore it"):
+            read_rows(tmp_path)
+    old.write_bytes(content)
+    again = old.with_name("part-00002.parquet")
+    again.write_bytes(content)
+    with pytest.raises(Unavailable, match="delete one of the two"):
         read_rows(tmp_path)
+
+
+def test_a_part_whose_rows_make_no_sense_is_damaged(fault_inputs, tmp_path):
+    (tmp_path / "parts").mkdir()
+    shutil.copy(
+        fault_inputs / "part-one-bit-flipped.parquet", tmp_path / "parts/part-00001.parquet"
+    )
+    with pytest.raises(Unavailable, match=r"part-00001\.parquet is damaged: column outcome: Input"):
+        read_rows(tmp_path)
+
+
+def test_the_files_are_private(tmp_path):
+    store_rows(tmp_path, row(1), compact=True)
+    store_rows(tmp_path, row(2))
+    files = [path for path in tmp_path.rglob("*") if path.is_file()]
+    assert {path.stat().st_mode & 0o777 for path in files} == {0o600}
 
 
 def test_a_folder_without_rows_is_refused(tmp_path):

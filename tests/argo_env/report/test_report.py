@@ -71,7 +71,8 @@ def test_json_reads_back(tmp_path, site, record):
     assert path == tmp_path / "new" / "folder" / "report.html"
     text = path.with_name("report.json").read_text(encoding="utf-8")
     assert RunRecord.model_validate_json(text) == record
-    assert text.startswith('{\n  "version": 5,\n  "mission": {\n    "version": 3,')
+    assert re.match(r'{"checksum":"[0-9a-f]{8}",\n', text)
+    assert text.split("\n", 1)[1].startswith('  "version": 5,\n  "mission": {\n    "version": 3,')
     assert len(re.findall(r'^    {"t": .*"pitch"', text, re.MULTILINE)) == len(record.path)
 
 

@@ -1,6 +1,7 @@
 """Journals: a run that is cut short anywhere continues, and nothing is lost or done twice."""
 
 import os
+import re
 import resource
 import signal
 from contextlib import contextmanager
@@ -13,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import argo_env.run.journal
-from argo_compiler.base.errors import ArgoError, Conflict, Remedy, Unavailable
+from argo_compiler.base.errors import ArgoError, Conflict, Invalid, Remedy, Unavailable
 from argo_compiler.hfsm import (
     ActionFailed,
     ActionStopped,
@@ -26,6 +27,7 @@ from argo_compiler.hfsm import (
     Tick,
 )
 from argo_compiler.il import EventKind, Group
+from argo_env.files.checked_lines import checked_line
 from argo_env.formatting import rounded_time_text
 from argo_env.navigation import Navigator
 from argo_env.run.journal import (
@@ -276,8 +278,8 @@ def test_cut_at_every_byte_of_the_last_lines(yard, path):
     for cut in range(first, len(content)):
         path.write_bytes(content[:cut])
         with open_journal(path) as journal:
-            assert 1 + len(journal.entries) == content[:cut].count(b"\n")
-        assert path.read_bytes() == content[: content.rindex(b"\n", 0, cut) + 1]
+            complete = content[:cut].split(b"\n")[1:-1]
+            assert len(journal.entries) == sum(b'"t":' in line for line in complete)
         if cut not in to_continue:
             continue
         path.write_bytes(content[:cut])
@@ -402,6 +404,70 @@ def test_events_go_through_json(event):
     assert LoggedEvent.model_validate_json(text).to_event() == event
 
 
+@pytest.mark.parametrize("more", [b"0 {}\n" * 2, b"0 {}\n0", bytes(4096), b"\0"])
+def test_damage_after_the_last_synced_line_is_told(complete, path, more):
+    path.write_bytes(complete.content + more)
+    with open_journal(path) as journal:
+        assert re.search(r"run\.journal: damaged from line \d+ on.*the run had ended", journal.loss)
+        assert journal.had_ended_when_opened
+    assert path.read_bytes() == complete.content + more
+
+
+def synced_size(content):
+    """Return the number of bytes up to the end of the last line that a mark states to be synced."""
+    lines = content.splitlines(keepends=True)
+    last = max(k for k, line in enumerate(lines) if re.fullmatch(rb'\S+ {"n":\d+}\n', line))
+    return len(b"".join(lines[:last]))
+
+
+def test_a_page_that_was_not_synced_is_lost_with_all_that_follows(yard, complete, path):
+    """A loss of power leaves any of the pages that were not synced as zeros."""
+    reference, content = complete.record, complete.content
+    lines = content.splitlines(keepends=True)
+    whole = b"".join(lines[: len(lines) // 3])
+    end = synced_size(whole)
+    assert len(whole) - end > 1000
+    path.write_bytes(whole[:end] + bytes(400) + whole[end + 400 :])
+    with open_journal(path) as journal:
+        assert re.search(r"from line \d+ on, as by a loss of power: \d+ lines", journal.loss)
+        assert "with what the run did until" in journal.loss
+        reached = journal.entries[-1].t
+        assert f"the run continues at {reached:g} s" in journal.loss
+        assert journal.entries[-1].must_survive_power_loss
+    record, _ = resumed(yard, path)
+    require_a_continuation(record, reference, reached)
+    with open_journal(path) as journal:
+        assert not journal.loss
+
+
+def test_a_synced_page_that_is_lost_is_damage(complete, path):
+    content = complete.content
+    for at in range(content.index(b"\n") + 1, synced_size(content) - 100, 1500):
+        damaged = content[:at] + bytes(100) + content[at + 100 :]
+        path.write_bytes(damaged)
+        with pytest.raises(Invalid, match=r"damaged from line \d+ on, .* is no loss of power"):
+            open_journal(path)
+        assert path.read_bytes() == damaged
+
+
+def test_a_journal_without_marks_is_read(complete, path):
+    """Journals had no marks, and did not state what was synced."""
+    with open_journal_of(complete.content, path) as journal:
+        entries = journal.entries
+    old = [journal.header.model_dump(mode="json") | {"format": "argo journal", "version": 4}]
+    old += [entry.model_dump(mode="json", exclude_defaults=True) for entry in entries]
+    lines = [checked_line({"n": number} | data) for number, data in enumerate(old)]
+    with open_journal_of(b"".join(lines[:100]), path) as journal:
+        assert (journal.entries, journal.loss) == (entries[:99], "")
+    with pytest.raises(Invalid, match="damaged from line 51 on"):
+        open_journal_of(b"".join(lines[:50] + lines[51:]), path)
+
+
+def open_journal_of(content, path):
+    path.write_bytes(content)
+    return open_journal(path)
+
+
 class TestRefusals:
     def test_two_processes(self, yard, path):
         with create_journal(path, header(yard)), pytest.raises(ArgoError, match="in use"):
@@ -452,8 +518,8 @@ class TestRefusals:
     @pytest.mark.parametrize("cut", [0, 1, 8, 9, 50, -2, -1])
     def test_the_first_line_is_not_whole(self, yard, path, cut):
         create_journal(path, header(yard)).close()
-        content = path.read_bytes()[:cut]
-        path.write_bytes(content)
+        first_line = path.read_bytes().splitlines(keepends=True)[0]
+        path.write_bytes(first_line[:cut])
         with pytest.raises(ArgoError, match="is not a journal, or its first line is damaged"):
             open_journal(path)
 
@@ -488,19 +554,10 @@ class TestRefusals:
         with pytest.raises(ArgoError, match="damaged from line 21 on"):
             open_journal(path)
 
-    @pytest.mark.parametrize(
-        ("line_end", "more", "says"),
-        [
-            (b"\n", b"0 {}\n" * 2, "damaged from line"),
-            (b"\n", b"0 {}\n" * 40, "damaged from line"),
-            (b"\n", b"0 {}\n0", "damaged from line"),
-            (b"\r\n", b"", "CR LF"),
-        ],
-    )
-    def test_more_damage_than_a_kill_leaves(self, complete, path, line_end, more, says):
-        content = complete.content.replace(b"\n", line_end) + more
+    def test_line_ends_of_another_system(self, complete, path):
+        content = complete.content.replace(b"\n", b"\r\n")
         path.write_bytes(content)
-        with pytest.raises(ArgoError, match=says):
+        with pytest.raises(ArgoError, match="CR LF"):
             open_journal(path)
         assert path.read_bytes() == content
 
@@ -536,7 +593,7 @@ class TestRefusals:
         content = complete.content
         other = mission(waypoint("A", 2.05, 2.05))
         create_journal(path, header(yard, other)).close()
-        path.write_bytes(path.read_bytes() + content.split(b"\n", 1)[1])
+        path.write_bytes(path.read_bytes() + content.split(b"\n", 2)[2])
         with open_journal(path) as journal, pytest.raises(ArgoError, match="does not fit"):
             continue_journal(yard, journal, other)
 

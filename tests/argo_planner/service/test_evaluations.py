@@ -1,24 +1,38 @@
 """Evaluations over HTTP: started, watched, cancelled, resumed, replayed and reported."""
 
+import asyncio
 import json
+import os
+import re
 import time
 from concurrent.futures import ThreadPoolExecutor
+from datetime import UTC, datetime
 from pathlib import Path
 from threading import Event
 
 import pytest
 
+from argo_compiler.base.errors import Conflict
 from argo_compiler.il import Mission
 from argo_env.evaluation.evaluation import Evaluation
 from argo_env.evaluation.store import read_rows
 from argo_env.faults.robot import LowBattery
 from argo_env.planning.opening import OpenedSite
-from argo_planner.service.evaluations.evaluations import EvaluationFolder
+from argo_planner.service.evaluations import evaluations
+from argo_planner.service.evaluations.evaluations import (
+    EvaluationFolder,
+    Evaluations,
+    StoredEvaluation,
+)
+from argo_planner.service.jobs.evaluation import EvaluationAsked, EvaluationSpec
 from argo_planner.service.jobs.job import EvaluationJob
+from argo_planner.service.jobs.jobs import Jobs
 from argo_planner.service.web.access import AccessRole
+from argo_planner.use_cases.importing import Upload, import_mission
 from tests.argo_planner.service.served import SECRETS, Served, served
 from tests.argo_planner.service.test_http import new_resource, problem
-from tests.argo_planner.service.test_jobs import import_script, wait_for_end, wait_until
+from tests.argo_planner.service.test_jobs import SCRIPT, import_script, wait_for_end, wait_until
+from tests.disks import fill, small_disk
 
 FAULTS = [{"kind": "low_battery", "charge": 0.01}]
 
@@ -181,7 +195,112 @@ def test_of_several_simultaneous_starts_only_one_succeeds(tmp_path: Path, site: 
                 *people.map(lambda _: request_evaluation(service, id, worlds=10_000), range(8))
             ]
         assert sorted(one.status_code for one in answers) == [202, *[409] * 7]
-        assert len(list((tmp_path / "evaluations").iterdir())) == 1
+        (started,) = [one.json()["id"] for one in answers if one.status_code == 202]
+        assert os.listdir(tmp_path / "evaluations") == [started]
+    with served(tmp_path, site) as service:
+        (job,) = service.client.get("/api/jobs").json()["jobs"]
+        assert (job["id"], job["state"]) == (started, "interrupted")
+
+
+def test_an_evaluation_whose_client_leaves_is_stored_and_runs_or_neither(
+    tmp_path: Path, site: OpenedSite, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    original, is_storing, may_store = EvaluationFolder.store, Event(), Event()
+
+    def store(folder: EvaluationFolder, evaluation: StoredEvaluation) -> None:
+        is_storing.set()
+        assert may_store.wait(60)
+        original(folder, evaluation)
+
+    monkeypatch.setattr(EvaluationFolder, "store", store)
+
+    async def leave() -> None:
+        jobs = Jobs(lambda _: None)
+        started = Evaluations(tmp_path, jobs, lambda: "0" * 12, lambda: datetime.now(UTC))
+        mission = import_mission(Upload("m.txt", SCRIPT.encode()), site, 1, None).mission
+        spec = EvaluationSpec(
+            name="m", mission=mission, site=site.reference, asked=EvaluationAsked(worlds=1)
+        )
+        client = asyncio.create_task(started.start("0" * 12, 1, spec, "ann"))
+        await asyncio.to_thread(is_storing.wait)
+        client.cancel()
+        may_store.set()
+        with pytest.raises(asyncio.CancelledError):
+            await client
+        with pytest.raises(Conflict, match="ann has started an evaluation"):
+            await started.start("0" * 12, 1, spec, "bob")
+        assert os.listdir(tmp_path) == ["0" * 12]
+        assert [job.id for job in jobs.all()] == ["0" * 12]
+        await jobs.kill_running()
+
+    asyncio.run(leave())
+
+
+@pytest.mark.small_disk
+@pytest.mark.long
+def test_an_evaluation_on_a_full_disk(site: OpenedSite, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is refused with nothing left; the end of one that runs is stored when there is room."""
+    monkeypatch.setattr(evaluations, "STORING_PERIOD", 0.1)
+    with small_disk(400 * 4096) as disk, served(disk / "missions", site) as service:
+        stored = disk / "missions" / "evaluations"
+        id = import_script(service)
+        filler = fill(disk)
+        answer = problem(request_evaluation(service, id, worlds=1), 503, "unavailable")
+        assert re.search(
+            r"evaluation \w+ can't be stored: .*No space left on device; free disk space, and try",
+            answer["detail"],
+        )
+        assert not (stored.exists() and os.listdir(stored))
+        assert service.client.get("/api/jobs").json()["jobs"] == []
+        filler.unlink()
+        job = start_evaluation(service, id, worlds=10_000)
+        filler = fill(disk)
+        ended = wait_for_end(service, job)
+        assert ended["state"] == "interrupted"
+        assert "No space left on device" in ended["problem"]
+        path = stored / job / "job.json"
+        assert json.loads(path.read_bytes())["job"]["state"] == "running"
+        filler.unlink()
+        while json.loads(path.read_bytes())["job"]["state"] == "running":
+            time.sleep(0.05)
+        assert "No space left on device" in json.loads(path.read_bytes())["job"]["problem"]
+        assert service.client.post(f"/api/jobs/{job}/go_on").status_code == 202
+        service.client.delete(f"/api/jobs/{job}")
+
+
+@pytest.mark.long
+def test_damaged_files_of_evaluations_are_named_and_all_are_private(
+    tmp_path: Path, site: OpenedSite, caplog: pytest.LogCaptureFixture
+) -> None:
+    with served(tmp_path, site) as service:
+        id = import_script(service)
+        job = start_evaluation(service, id, worlds=2)
+        assert wait_for_end(service, job)["state"] == "done"
+        folder = tmp_path / "evaluations" / job
+        while "report.html" not in os.listdir(folder):
+            time.sleep(0.05)
+        require_private(tmp_path / "evaluations")
+        for name, path in (
+            ("report.html", f"/api/jobs/{job}/report"),
+            ("evaluation.json", f"/api/jobs/{job}/runs/{'0' * 24}"),
+            ("job.json", f"/api/jobs/{job}/runs/{'0' * 24}"),
+        ):
+            content = (folder / name).read_bytes()
+            (folder / name).write_bytes(content.replace(b"mission", b"massion", 1))
+            detail = problem(service.client.get(path), 503, "unavailable")["detail"]
+            assert re.search(rf"evaluations/{job}/{name} is damaged: its content", detail)
+            if name != "job.json":
+                (folder / name).write_bytes(content)
+    (folder / "job.json").write_bytes((folder / "job.json").read_bytes()[:-300])
+    with served(tmp_path, site) as service:
+        assert service.client.get("/api/jobs").json()["jobs"] == []
+    assert re.search(r"job\.json is damaged: line 1, column \d+: .*is left out", caplog.text)
+
+
+def require_private(folder: Path) -> None:
+    """Require that only the owner can read a folder and all that is in it."""
+    modes = {path: path.stat().st_mode & 0o777 for path in (folder, *folder.rglob("*"))}
+    assert {path: m for path, m in modes.items() if m != (0o700 if path.is_dir() else 0o600)} == {}
 
 
 @pytest.mark.long

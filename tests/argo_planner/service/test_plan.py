@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.errors import ArgoError, NotFound
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import Severity
 from argo_compiler.editing import commands as edits
@@ -300,6 +300,16 @@ class Follower:
         for name, behind in change["placed"]:
             order.insert(0 if behind is None else order.index(behind) + 1, name)
         self.state[kind] = [items[name] for name in order]
+
+
+def test_the_plan_before_a_revision_is_that_of_the_history_or_there_is_none(people: People) -> None:
+    first = people.plan
+    for number in range(3):
+        people.edit("ann", edits.ChangeTask(name="a", velocity=0.1 + number / 10))
+    assert people.plan.plan_before(2) == first
+    for revision in (-1, 0, 1, 5, 99):
+        with pytest.raises(NotFound, match=f"revision {revision} is not in the history"):
+            people.plan.plan_before(revision)
 
 
 def errors(mission: Mission) -> Counter[str]:

@@ -8,6 +8,7 @@ import pytest
 from websockets.exceptions import InvalidStatus
 
 from tests.argo_planner.service.served import ALL, SECRETS, Served
+from tests.argo_planner.service.test_evaluations import require_private
 from tests.argo_planner.service.test_http import new_resource, problem
 from tests.argo_planner.service.test_run_host import SCRIPT
 
@@ -94,6 +95,15 @@ def test_a_run_is_started_followed_controlled_and_reported(service: Served, id: 
     problem(over, 409, "conflict")
     listed = service.client.get("/api/runs").json()["runs"]
     assert [one["id"] for one in listed].count(run) == 1
+    require_private(service.folder / "runs")
+    for name in ("report.html", "report.json"):
+        path = service.folder / "runs" / run / name
+        content = path.read_bytes()
+        path.write_bytes(content.replace(b"Success", b"Failure", 1))
+        damaged = service.client.get(f"/api/runs/{run}/report/{name}")
+        says = f"runs/{run}/{name} is damaged: its content does not fit its checksum"
+        assert says in problem(damaged, 503, "unavailable")["detail"]
+        path.write_bytes(content)
     live.close()
     late.close()
 

@@ -92,6 +92,7 @@ def test_an_incomplete_last_line_is_cut_off(folder):
     id, document = create_plan(folder)
     path = plan_path(folder, id)
     content = path.read_bytes()
+    content = content[: content.rindex(b"\n", 0, -1) + 1]  # without the mark at the end
     last = content.rindex(b"\n", 0, -1) + 1
     for length in {*random.Random(1).sample(range(last + 1, len(content)), 20)}:
         path.write_bytes(content[:length])
@@ -106,23 +107,61 @@ def test_the_last_valid_state_of_a_damaged_file_is_opened(folder):
     id, document = create_plan(folder)
     path = plan_path(folder, id)
     content = path.read_bytes()
-    ends = [k + 1 for k, byte in enumerate(content) if byte == ord("\n")]
     rng = random.Random(2)
     for _ in range(30):
-        at = rng.randrange(ends[0], len(content) - 1)
+        at = rng.randrange(content.index(b"\n") + 1, len(content) - 1)
         damaged = bytearray(content)
         damaged[at] ^= 1 << rng.randrange(8)
         path.write_bytes(damaged)
-        line = sum(end <= at for end in ends)
+        complete = content[:at].split(b"\n")[:-1]
+        revision = 1 + sum(b'"kind":"revision"' in line for line in complete)
         with folder.open(id) as file:
-            assert file.document.plan.revision == line
-            assert file.document.plan.history == document.plan.history[: line - 1]
+            assert file.document.plan.revision == revision
+            assert file.document.plan.history == document.plan.history[: revision - 1]
             assert file.recovery is not None
-            assert f"revision {line}" in file.recovery.message
+            assert f"revision {revision}" in file.recovery.message
             damaged_path = path.with_name(file.recovery.damaged_name)
             assert damaged_path.read_bytes() == damaged
         with folder.open(id) as file:
             assert file.recovery is None
+
+
+@pytest.mark.parametrize("tail", [b"0 {}\n", bytes(4096), b"\0"])
+def test_what_a_loss_of_power_leaves_after_the_last_change_is_told(folder, tail):
+    id, document = create_plan(folder)
+    path = plan_path(folder, id)
+    path.write_bytes(path.read_bytes() + tail)
+    with folder.open(id) as file:
+        assert file.document == document
+        assert file.recovery is not None
+        assert "as by a loss of power, and were not known to be on disk" in file.recovery.message
+
+
+def test_a_last_change_that_was_on_disk_is_not_taken_for_a_loss_of_power(folder):
+    id, document = create_plan(folder)
+    path = plan_path(folder, id)
+    lines = path.read_bytes().splitlines(keepends=True)
+    lines[-2] = bytes(len(lines[-2]) - 1) + b"\n"
+    path.write_bytes(b"".join(lines))
+    with folder.open(id) as file:
+        assert file.document.plan.revision == document.plan.revision - 1
+        assert file.recovery is not None
+        assert "loss of power" not in file.recovery.message
+
+
+def test_a_plan_without_marks_is_read(folder):
+    """Plans had no marks."""
+    id, document = create_plan(folder)
+    path = plan_path(folder, id)
+    objects = [checked_object(line) for line in path.read_bytes().splitlines()]
+    old = [data for data in objects if data and set(data) != {"n"}]
+    path.write_bytes(b"".join(checked_line(data | {"n": n}) for n, data in enumerate(old)))
+    with folder.open(id) as file:
+        assert (file.document, file.recovery) == (document, None)
+        edit(file, "later", 0.5)
+        later = file.document
+    with folder.open(id) as file:
+        assert (file.document, file.recovery) == (later, None)
 
 
 def test_the_previous_file_is_opened_if_the_first_line_is_damaged(folder):

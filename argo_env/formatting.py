@@ -21,10 +21,11 @@ def rounded_time_text(seconds: float) -> str:
 def floor_and_position_text(floor: int | None, place: Vector) -> str:
     """Return a position in m on a floor as text, such as `floor 2 at (1.00, 2.00, 2.50)`.
 
-    The caller must give a floor: only anomalies without a position have None.
+    If the floor is not known (None), it is the position alone, such as `(1.00, 2.00, 2.50)`.
     """
     x, y, z = place
-    return f"floor {floor} at ({x:.2f}, {y:.2f}, {z:.2f})"
+    position = f"({x:.2f}, {y:.2f}, {z:.2f})"
+    return position if floor is None else f"floor {floor} at {position}"
 
 
 def distinct_texts(first: float, second: float) -> tuple[str, str]:

@@ -8,7 +8,7 @@ from argo_compiler.il import EventKind
 from argo_env.drives.battery import ESTIMATE_ERROR
 from argo_env.faults.checkpoints import AbnormalValue
 from argo_env.faults.kinds import AnyFault
-from argo_env.run.record import Anomaly, Finding, Reading, RunRecord
+from argo_env.run.record import Anomaly, Finding, RunRecord
 from argo_env.run.run_setup import displayed_value, true_values
 from argo_env.run.spec import RunSpec, ValueProfile
 from argo_env.sensing.onboard import LOW
@@ -29,16 +29,9 @@ def may_be_caused_by(anomaly: Anomaly, fault: AnyFault, record: RunRecord, site:
     ):
         return False
     if isinstance(fault, AbnormalValue):
-        reading = find_reading(anomaly, record)
+        reading = record.abnormal_reading(anomaly)
         return reading is not None and reading.checkpoint == fault.checkpoint
     return fault.can_explain(anomaly.place, anomaly.noticed_from, site)
-
-
-def find_reading(anomaly: Anomaly, record: RunRecord) -> Reading | None:
-    """Return the reading whose abnormal value is the anomaly; None for any other anomaly."""
-    if not anomaly.is_reading:
-        return None
-    return next((reading for reading in record.readings if reading.t == anomaly.t), None)
 
 
 class FaultDetection(Model):
@@ -94,7 +87,7 @@ class _GroundTruth:
 
         That is a value outside the checkpoint's nominal range that is not due to a fault.
         """
-        reading = find_reading(finding, self.record)
+        reading = self.record.abnormal_reading(finding)
         if reading is None:
             return False
         checkpoint = self.site.checkpoint(reading.checkpoint)

@@ -6,7 +6,7 @@ from argo_compiler.base.errors import Invalid, Remedy
 from argo_compiler.base.model import Model
 from argo_compiler.files.loading import decode_text, require_size
 from argo_env.evaluation.case import AS_WRITTEN, NO_FAULTS
-from argo_env.evaluation.plan import parse_seeds
+from argo_env.evaluation.plan import NO_REQUIREMENT_ON_STRATA, parse_seeds
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.worlds import NO_VARIATION, Variation
 from argo_env.files.folders import leaves_folder
@@ -121,10 +121,7 @@ class EvaluationFile(Model):
     @model_validator(mode="after")
     def _no_requirement_on_strata(self) -> "EvaluationFile":
         if self.is_stratified and self.require:
-            raise ValueError(
-                "strata have no worlds in common, so that no requirement can be checked "
-                "repeatedly: give `stop: {width: ...}` instead"
-            )
+            raise ValueError(NO_REQUIREMENT_ON_STRATA)
         return self
 
     @property

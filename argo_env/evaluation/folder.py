@@ -3,7 +3,6 @@
 import hashlib
 import os
 import re
-from collections.abc import Collection
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -174,15 +173,16 @@ def replace_failing_specs(folder: Path, results: EvaluationResults) -> dict[str,
             make_folder(folder / FAILING)
         write_file(path, checked_json(run.spec.model_dump_json(indent=1)))
         paths[row.key] = path
-    _remove_others(folder / FAILING, {path.name for path in paths.values()})
+    for name in spec_file_names(folder) - {path.name for path in paths.values()}:
+        os.unlink(folder / FAILING / name)
     return paths
 
 
-def _remove_others(folder: Path, names: Collection[str]) -> None:
-    """Remove all specs from the folder whose file names are not in `names`."""
-    for name in os.listdir(folder) if os.path.isdir(folder) else ():
-        if _SPEC_NAME.fullmatch(name) and name not in names:
-            os.unlink(folder / name)
+def spec_file_names(folder: Path) -> frozenset[str]:
+    """Return the names of the files with specs of unsuccessful runs in an evaluation's folder."""
+    specs = folder / FAILING
+    names = os.listdir(specs) if os.path.isdir(specs) else ()
+    return frozenset(name for name in names if _SPEC_NAME.fullmatch(name))
 
 
 def digest_contents(*contents: bytes) -> str:

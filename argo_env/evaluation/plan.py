@@ -22,6 +22,12 @@ if TYPE_CHECKING:
     from argo_env.evaluation.row import RunRow
 
 
+NO_REQUIREMENT_ON_STRATA = (
+    "strata have no worlds in common, so that no requirement can be checked repeatedly: give "
+    "`stop: {width: ...}` instead"
+)
+
+
 class Stopping(Model):
     """Rule to stop an evaluation before all seeds are used."""
 
@@ -130,7 +136,7 @@ class EvaluationPlan(Model):
         """Raise ArgoError for an invalid plan.
 
         That is a plan with a seed twice, two cases of the same name, a requirement on detections
-        without any faults, or strata with several evaluated plans.
+        without any faults, or strata with several evaluated plans or with requirements.
         """
         if len(set(self.seeds)) < len(self.seeds):
             raise Conflict("a seed is there twice: give each seed once, as each is one world")
@@ -146,6 +152,8 @@ class EvaluationPlan(Model):
             )
         if self.strata and len(self.plans) > 1:
             raise Invalid("strata allow only one plan: give one mission, drive and policy")
+        if self.strata and self.stopping.require:
+            raise Invalid(NO_REQUIREMENT_ON_STRATA)
 
 
 @dataclass(frozen=True)

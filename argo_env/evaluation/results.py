@@ -153,14 +153,18 @@ class EvaluationResults:
 
     @cached_property
     def frame(self) -> "pandas.DataFrame":
-        """Rows as a pandas table, one line each; values drawn for the world are `world.…`."""
+        """Rows as a pandas table, one line each; values drawn for the world are `world.…`.
+
+        `delay` is the time (s) from the beginning of a fault until it was found, the longest of the
+        run's faults. It is missing if there were none, or if one of them was never found.
+        """
         import pandas
 
         records = []
         for row in self.rows:
             record = row.model_dump(mode="json", exclude={"world", "detections", "place"})
             record["detected"] = QUANTITIES["detected"](row)
-            record["delay"] = max((d.delay or 0.0 for d in row.detections), default=None)
+            record["delay"] = _longest_delay(row)
             record["x"], record["y"], record["z"] = row.place or (None, None, None)
             record.update({f"world.{name}": value for name, value in row.world.items()})
             records.append(record)
@@ -276,3 +280,13 @@ def cluster_failures_by_location(rows: Iterable[RunRow]) -> tuple[FailureCluster
             clusters.append(cluster)
         cluster.tasks[row.task or "no task"] += 1
     return tuple(sorted(clusters, key=lambda cluster: (cluster.floor, -cluster.runs, cluster.at)))
+
+
+def _longest_delay(row: RunRow) -> float | None:
+    """Return the longest time (s) from the beginning of one of a run's faults until it was found.
+
+    Returns None if there were none, or if one of them was never found.
+    """
+    delays = [detection.delay for detection in row.detections]
+    found = [delay for delay in delays if delay is not None]
+    return max(found) if found and len(found) == len(delays) else None

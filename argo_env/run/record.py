@@ -179,7 +179,7 @@ class Anomaly(Model):
     """position of the robot in m when it noticed an anomaly without a position, if that says
     anything about the anomaly, as for gas and the connection, or when the anomaly was reported"""
     floor: int | None = None
-    """the floor of `place` or `noticed_from`"""
+    """the floor of `place` or `noticed_from`; None: not known"""
     confidence: float = 1.0
     """0 to 1"""
     extent: Rect | None = None
@@ -203,14 +203,26 @@ class Anomaly(Model):
     @property
     def whereabouts(self) -> str:
         """Position in words: of the anomaly, or else of the robot then; empty if none is known."""
+        on = "at" if self.floor is None else "on"
         if self.place is not None:
-            return f"on {floor_and_position_text(self.floor, self.place)}"
+            return f"{on} {floor_and_position_text(self.floor, self.place)}"
         if self.noticed_from is None:
             return ""
         prefix = (
-            "reported while the robot was on" if self.is_reported_from_outside else "noticed from"
+            f"reported while the robot was {on}"
+            if self.is_reported_from_outside
+            else "noticed from"
         )
         return f"{prefix} {floor_and_position_text(self.floor, self.noticed_from)}"
+
+    def reports(self, reading: Reading) -> bool:
+        """Return True if this reports that the reading's value is abnormal."""
+        return (
+            self.is_reading
+            and self.kind is EventKind.ABNORMAL_READING
+            and self.t == reading.t
+            and self.detail == _shown_value(reading)
+        )
 
     def is_end_of(self, other: "Anomaly") -> bool:
         """Return True if this reports the end of the earlier anomaly `other`.
@@ -487,8 +499,11 @@ class RunRecord(Model):
         They are the anomalies, without reports of their ends, and the readings outside the nominal
         range that no anomaly reports.
         """
-        known = {anomaly.t for anomaly in self.anomalies if anomaly.is_reading}
-        bare = [anomaly_from_reading(r) for r in self.readings if not (r.normal or r.t in known)]
+        bare = [
+            anomaly_from_reading(reading)
+            for reading in self.readings
+            if not (reading.normal or any(a.reports(reading) for a in self.anomalies))
+        ]
         findings = [
             self._finding(anomaly, number, self.anomalies[number:])
             for number, anomaly in enumerate(self.anomalies, start=1)
@@ -536,6 +551,10 @@ class RunRecord(Model):
             f"{fault.start_time:g} s, the mission ended at {round(self.result.duration, 1):g} s"
         )
 
+    def abnormal_reading(self, anomaly: Anomaly) -> Reading | None:
+        """Return the reading whose value the anomaly reports; None for any other anomaly."""
+        return next((reading for reading in self.readings if anomaly.reports(reading)), None)
+
     def _finding(self, anomaly: Anomaly, number: int | None, later: Sequence[Anomaly]) -> Finding:
         answered, answer = self._answer(anomaly)
         return Finding(
@@ -548,10 +567,9 @@ class RunRecord(Model):
         )
 
     def _what(self, anomaly: Anomaly) -> str:
-        for reading in self.readings:
-            if anomaly.is_reading and reading.t == anomaly.t:
-                value = f"{reading.value:.4g} {reading.unit}"
-                return f"{reading.name} (#{reading.checkpoint}) abnormal: {value}"
+        if (reading := self.abnormal_reading(anomaly)) is not None:
+            value = f"{reading.value:.4g} {reading.unit}"
+            return f"{reading.name} (#{reading.checkpoint}) abnormal: {value}"
         return anomaly.kind.replace("_", " ")
 
     def _answer(self, anomaly: Anomaly) -> tuple[bool, str]:
@@ -569,6 +587,11 @@ class RunRecord(Model):
         return False, "the reaction to it did not begin"
 
 
+def _shown_value(reading: Reading) -> str:
+    """Return what a checkpoint showed, in words; names of checkpoints are unique on their site."""
+    return f"{reading.name} shows {reading.value:g} {reading.unit}"
+
+
 def anomaly_from_reading(reading: Reading, place: Vector | None = None) -> Anomaly:
     """Return the anomaly of a reading outside the nominal range.
 
@@ -580,7 +603,7 @@ def anomaly_from_reading(reading: Reading, place: Vector | None = None) -> Anoma
     return Anomaly(
         t=reading.t,
         kind=EventKind.ABNORMAL_READING,
-        detail=f"{reading.name} shows {reading.value:g} {reading.unit}",
+        detail=_shown_value(reading),
         source=FROM_READING,
         place=place,
         floor=reading.floor,

@@ -179,16 +179,22 @@ def _failing(results: EvaluationResults, files: Mapping[str, Path]) -> Iterator[
     rows = results.unsuccessful_rows
     if not rows:
         return
-    yield f"{len(rows)} of {len(results.rows)} runs did not succeed; to repeat one alone:"
+    repeat = "; to repeat one alone:" if files else ":"
+    yield f"{len(rows)} of {len(results.rows)} runs did not succeed{repeat}"
     for row in rows[:_MAX_LISTED]:
         outcome = "" if row.is_completed else f"{row.outcome}: "
         plan = f"{row.plan.label(results.plan.plans)}, " if len(results.plan.plans) > 1 else ""
         yield f"  {plan}seed {row.seed}, {results.faults_for(row)}: {outcome}{row.reason}"
         if row.key in files:
             yield f"    argo run {shlex.quote(str(files[row.key]))} --report out/{row.key[:8]}"
-    if len(rows) > _MAX_LISTED and files:
-        folder = next(iter(files.values())).parent
-        yield f"  and {len(rows) - _MAX_LISTED} more, in {folder}"
+    more = len(rows) - _MAX_LISTED
+    if more <= 0:
+        return
+    stored = [file for row in rows[_MAX_LISTED:] if (file := files.get(row.key)) is not None]
+    place = ""
+    if stored:
+        place = f", {'' if len(stored) == more else f'{len(stored)} of them '}in {stored[0].parent}"
+    yield f"  and {more} more{place}"
 
 
 def show_comparison(compared: PlanComparison, console: Console) -> None:

@@ -84,6 +84,8 @@ def evaluation_page(results: EvaluationResults, folder: Path) -> str:
     delays = results.delays
     all_reasons = reasons_by_plan_with_faults(results)
     blocks = [(names[plan], results.by_seeds(plan)) for plan in plans]
+    failing = unsuccessful_rows_plans_specs(results, folder)[:_MAX_RUNS]
+    repeatable = 0 if results.plan.added else sum(bool(spec) for *_, spec in failing)
     return _template("evaluation.html.j2").render(
         name=results.plan.name,
         headline=headline_and_rating(results),
@@ -118,7 +120,8 @@ def evaluation_page(results: EvaluationResults, folder: Path) -> str:
         more_reasons=max(0, len(all_reasons) - _MAX_REASONS),
         floors=floors_with_failures(results),
         most_clusters=_MAX_CLUSTERS,
-        failing=unsuccessful_rows_plans_specs(results, folder)[:_MAX_RUNS],
+        failing=failing,
+        repeatable=repeatable,
         shown=_SHOWN_RUNS,
         more=max(0, len(results.unsuccessful_rows) - _MAX_RUNS),
         faults_for=results.faults_for,

@@ -14,7 +14,7 @@ from markupsafe import Markup
 from argo_compiler.base.errors import ArgoError
 from argo_compiler.base.version import __version__
 from argo_env.evaluation.case import PlanName
-from argo_env.evaluation.folder import FAILING
+from argo_env.evaluation.folder import FAILING, spec_file_names
 from argo_env.evaluation.plots import failure_places
 from argo_env.evaluation.quantities import QUANTITIES
 from argo_env.evaluation.rates import PlanRate, shares_of_complete_worlds, success
@@ -135,13 +135,16 @@ def unsuccessful_rows_plans_specs(
     """Return each unsuccessful run: its row, the label of its plan, and the path of its spec file.
 
     The run can be repeated from that file, which lies in the folder. The path is quoted for a
-    shell.
+    shell. It is empty if there is no such file.
     """
     plans = results.plan.plans
-    return [
-        (row, row.plan.label(plans), shlex.quote(str(folder / FAILING / f"{row.key}.json")))
-        for row in results.unsuccessful_rows
-    ]
+    names = spec_file_names(folder)
+    runs = []
+    for row in results.unsuccessful_rows:
+        name = f"{row.key}.json"
+        path = shlex.quote(str(folder / FAILING / name)) if name in names else ""
+        runs.append((row, row.plan.label(plans), path))
+    return runs
 
 
 def reasons_by_plan_with_faults(

@@ -1,7 +1,7 @@
 """Check of a site: docking stations, floors, checkpoints and named locations that are of no use."""
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,7 +25,7 @@ from argo_env.planning.flaws.floors import floor_flaws, unreached_floors
 from argo_env.planning.flaws.safe_states import SafeStates
 from argo_env.site import Site, SiteCheckpoint
 from argo_env.site.norms import height_errors
-from argo_env.site.shapes import Vector, crossing
+from argo_env.site.shapes import Solid, Vector, crossing
 
 
 def dock_flaws(states: SafeStates) -> list[Flaw]:
@@ -155,10 +155,14 @@ def _explain_unseen(states: SafeStates, navigator: Navigator, checkpoint: SiteCh
     views = candidate_views(checkpoint, navigator.lattice)
     if len(views.states):
         element = _find_hiding_element(site, views.cameras, (x, y, z))
-        return (
-            f"{looks}, and {element} hides it from each of the {len(views.states)} poses before "
-            "it; turn it, move it, or move what hides it"
-        )
+        poses = f"the {len(views.states)} poses before it"
+        if element is None:
+            return f"{looks}, and it can't be seen from any of {poses}; turn or move it"
+        if element.from_all:
+            hidden = f"{element.name} hides it from each of {poses}"
+        else:
+            hidden = f"it can't be seen from any of {poses}; {element.name} hides it from some"
+        return f"{looks}, and {hidden}; turn it, move it, or move what hides it"
     unreached_views, _ = find_view_states_and_costs(site, checkpoint, states.lattice)
     if len(unreached_views):
         view = states.positions[unreached_views[0]]
@@ -183,24 +187,49 @@ def _explain_unseen(states: SafeStates, navigator: Navigator, checkpoint: SiteCh
     )
 
 
-def _find_hiding_element(site: Site, cameras: NDArray[np.float64], target: Vector) -> str:
-    """Return the name of the element that hides a point from most cameras; of any if none does.
+@dataclass(frozen=True)
+class _HidingElement:
+    """Element that hides a point from cameras."""
 
-    `cameras` are the positions (m) of the cameras, shape (n, 3), of which a sample is used.
+    name: str
+    from_all: bool
+    """whether it hides the point from each of the cameras"""
+
+
+def _find_hiding_element(
+    site: Site, cameras: NDArray[np.float64], target: Vector
+) -> _HidingElement | None:
+    """Return the element that hides a point from most of a sample of the cameras.
+
+    `cameras` are their positions (m), shape (n, 3). Returns None if no element hides it from any
+    camera of the sample.
     """
-    origins = cameras[:: max(1, len(cameras) // _SAMPLED)]
-    low = np.minimum(origins.min(axis=0), target)
-    high = np.maximum(origins.max(axis=0), target)
+    sample = cameras[:: max(1, len(cameras) // _SAMPLED)]
+    low = np.minimum(cameras.min(axis=0), target)
+    high = np.maximum(cameras.max(axis=0), target)
     near = set(map(id, site.solids.touching_box(low, high)))
-    hidden: dict[str, int] = {}
-    for element in site.elements:
-        behind = np.zeros(len(origins), dtype=bool)
-        for solid in element.solids:
-            if id(solid) in near:
-                entry, leave = crossing(solid, origins, np.array(target) - origins)
-                behind |= (entry <= 1.0) & (leave >= 0.0)
-        hidden[element.name] = int(behind.sum())
-    return max(hidden, key=lambda name: hidden[name])
+    solids = {
+        element.name: [solid for solid in element.solids if id(solid) in near]
+        for element in site.elements
+    }
+    counts = {
+        name: int(_are_hidden(sample, target, own).sum()) for name, own in solids.items() if own
+    }
+    name = max(counts, key=lambda name: counts[name], default=None)
+    if name is None or not counts[name]:
+        return None
+    return _HidingElement(name, bool(_are_hidden(cameras, target, solids[name]).all()))
+
+
+def _are_hidden(
+    cameras: NDArray[np.float64], target: Vector, solids: Sequence[Solid]
+) -> NDArray[np.bool_]:
+    """Return for each camera, shape (n,), whether one of the solids hides the target from it."""
+    hidden = np.zeros(len(cameras), dtype=bool)
+    for solid in solids:
+        entry, leave = crossing(solid, cameras, np.array(target) - cameras)
+        hidden |= (entry <= 1.0) & (leave >= 0.0)
+    return hidden
 
 
 def _mark(checkpoint: SiteCheckpoint) -> Mark:

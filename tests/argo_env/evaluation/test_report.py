@@ -12,6 +12,7 @@ import argo_compiler
 from argo_env.evaluation import plots
 from argo_env.evaluation.comparison import compare_plans
 from argo_env.evaluation.detection import FaultDetection
+from argo_env.evaluation.folder import replace_failing_specs
 from argo_env.evaluation.plan import Stopping
 from argo_env.evaluation.report.page import (
     comparison_page,
@@ -71,6 +72,7 @@ def results(mission) -> EvaluationResults:
 
 
 def test_the_page_has_the_numbers(results, tmp_path):
+    replace_failing_specs(tmp_path, results)
     page = evaluation_page(results, tmp_path)
     assert "2 of 40 runs are no success" in page
     assert "95.0 %" in page  # over both cases; 90 % with a brick
@@ -78,6 +80,25 @@ def test_the_page_has_the_numbers(results, tmp_path):
     assert f"argo run {tmp_path}/failing/{results.unsuccessful_rows[0].key}.json" in page
     assert re.search(r"<td>brick</td><td class=\"n\">20</td><td class=\"n\">19</td>", page)
     assert "floor 1: 2 runs" in page
+
+
+def test_only_runs_with_a_spec_file_have_a_command(mission, tmp_path):
+    results = results_of(mission, fail=(3, 7, 9))
+    first, *others = (row.key for row in results.unsuccessful_rows)
+    page = evaluation_page(results, tmp_path)
+    assert "There are no files from which they could be repeated." in page
+    assert "argo run" not in section_failing(page)
+    replace_failing_specs(tmp_path, results)
+    assert section_failing(evaluation_page(results, tmp_path)).count("argo run") == 3
+    for key in others:
+        (tmp_path / "failing" / f"{key}.json").unlink()
+    page = evaluation_page(results, tmp_path)
+    assert "Those with a command can be repeated by it" in page
+    assert re.findall(r"argo run \S*?(\w+).json", section_failing(page)) == [first]
+
+
+def section_failing(page):
+    return re.search(r'<section id="failing">.*?</section>', page, re.DOTALL)[0]
 
 
 def test_equal_rows_give_an_equal_page(mission, tmp_path):
@@ -248,6 +269,7 @@ def test_a_site_that_was_removed_only_loses_its_pictures(mission, tmp_path):
 
 
 def test_a_folder_with_a_space_has_commands_that_work(results, tmp_path):
+    replace_failing_specs(tmp_path / "two words", results)
     page = html.unescape(evaluation_page(results, tmp_path / "two words"))
     command = re.search(r"<code>(argo run .*?)</code>", page)[1]
     key = results.unsuccessful_rows[0].key

@@ -78,6 +78,25 @@ def test_strata_without_faults_have_no_weight(mission):
     assert results.rate(plan.plans[0]).value == 1.0
 
 
+def test_strata_allow_no_requirement(mission):
+    """No world has a run of each case, so that it would never be decided."""
+    stopping = Stopping(require=(parse_requirement("success >= 0.5"),))
+    plan = plan_of(mission, ["none", "alarm"], strata=True, stopping=stopping)
+    with pytest.raises(Invalid, match="strata have no worlds in common"):
+        plan.check()
+    plan.with_changes(stopping=Stopping(width=0.1)).check()
+
+
+def test_a_run_with_a_fault_that_was_never_found_has_no_delay(mission):
+    plan = plan_of(mission, ["none", "alarm", "both"])
+    late = FOUND.model_copy(update={"delay": 8.0})
+    by_case = {"none": (), "alarm": (FOUND, late), "both": (FOUND, MISSED)}
+    results = results_with(plan, lambda run: {"detections": by_case[plan.cases[run.case].faults]})
+    delays = results.frame.groupby("faults")["delay"]
+    assert delays.max().dropna().to_dict() == {"alarm": 8.0}
+    assert delays.count().to_dict() == {"none": 0, "alarm": WORLDS, "both": 0}
+
+
 def test_a_requirement_on_detections_needs_faults(mission):
     stopping = Stopping(require=(parse_requirement("detected >= 0.5"),))
     with pytest.raises(Invalid, match="there are none"):

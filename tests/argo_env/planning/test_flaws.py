@@ -2,10 +2,12 @@
 
 import copy
 
+import numpy as np
 import pytest
 
 from argo_env.navigation import Navigator
 from argo_env.planning.flaws import find_flaws
+from argo_env.planning.flaws.site_check import _find_hiding_element
 from argo_env.robot.spec import load_robot
 from argo_env.site import make_site
 from argo_env.site.spec import SiteSpec
@@ -84,6 +86,13 @@ def behind_a_tank(site):
     site["floors"][0]["vessels"] = [tank]
 
 
+def behind_two_tanks(site):
+    site["floors"][0]["vessels"] = [
+        {"name": f"tank T-{k}", "axis": "z", "center": [x, 3.6, 1], "radius": 0.5, "length": 2}
+        for k, x in enumerate([2.5, 3.5], 1)
+    ]
+
+
 def fenced_off(site):
     site["areas"].append({"number": 2, "dock": [7.5, 3, 0]})
     site["floors"][0]["barriers"] = {
@@ -137,6 +146,7 @@ def fenced_off(site):
             "it lies 0.40 m above the ground, and the robot climbs steps of 0.2 m",
         ),
         (behind_a_tank, "its face looks south (`yaw` -90), and tank T-1 hides it from each of the"),
+        (behind_two_tanks, "any of the 504 poses before it; tank T-2 hides it from some; turn"),
         (
             lambda site: checkpoint(site).update(yaw=90, position=[3, 4.4, 1.2]),
             "its face looks north (`yaw` 90), and there is nowhere to stand 0.3 to 2 m from it",
@@ -187,3 +197,9 @@ def test_what_follows_from_another_flaw_is_one_line():
         "checkpoint 6 on floor 2 can't be read, as it can't be reached",
         "checkpoint 7 on floor 3 can't be read, as it can't be reached",
     ]
+
+
+def test_no_element_is_named_where_none_hides():
+    site = make_site(SiteSpec.model_validate(YARD))
+    cameras = np.array([[3.0, y, 0.6] for y in (2.5, 3.0, 3.5)])
+    assert _find_hiding_element(site, cameras, (3.0, 4.1, 1.2)) is None

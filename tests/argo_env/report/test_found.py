@@ -12,7 +12,7 @@ from argo_env.faults.plant import GasLeakFault, PlatformAlarm
 from argo_env.report.html import page
 from argo_env.report.timeline import draw_charge_curve
 from argo_env.report.track import shift_right
-from argo_env.run.record import Anomaly, Interruption
+from argo_env.run.record import FROM_READING, Anomaly, Interruption, anomaly_from_reading
 from tests.mission_writing import drive
 
 
@@ -37,6 +37,36 @@ def simple(simple):
 
 def section(text, id, tag="section"):
     return re.search(rf'<{tag} id="{id}">.*?</{tag}>', text, re.DOTALL)[0]
+
+
+def test_abnormal_readings_of_one_moment_are_findings_of_their_own(simple):
+    """A finding has the value of its checkpoint, and a reading without an anomaly is one too."""
+    first, second, third = (
+        simple.readings[0].model_copy(
+            update={"checkpoint": k, "name": f"gauge {k}", "value": 8.0 + k, "normal": False}
+        )
+        for k in (1, 2, 3)
+    )
+    other = anomaly(first.t).model_copy(update={"source": FROM_READING})
+    found = (anomaly_from_reading(second), other, anomaly_from_reading(first))
+    record = simple.model_copy(update={"readings": (first, second, third), "anomalies": found})
+    assert [(f.number, f.what.partition(":")[0]) for f in record.findings] == [
+        (1, "gauge 2 (#2) abnormal"),
+        (2, "gas leak"),
+        (3, "gauge 1 (#1) abnormal"),
+        (None, "gauge 3 (#3) abnormal"),
+    ]
+    assert [record.abnormal_reading(one) for one in found] == [second, None, first]
+
+
+def test_place_on_an_unknown_floor_names_no_floor():
+    place = (1.0, 2.0, 3.0)
+    assert anomaly(1.0, place=place, floor=2).whereabouts == "on floor 2 at (1.00, 2.00, 3.00)"
+    assert anomaly(1.0, place=place).whereabouts == "at (1.00, 2.00, 3.00)"
+    noticed = anomaly(1.0).model_copy(update={"noticed_from": place})
+    assert noticed.whereabouts == "noticed from (1.00, 2.00, 3.00)"
+    told = noticed.model_copy(update={"source": "told"})
+    assert told.whereabouts == "reported while the robot was at (1.00, 2.00, 3.00)"
 
 
 def test_nothing_found(simple, site):

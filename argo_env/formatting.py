@@ -1,17 +1,26 @@
 """Times, positions and numbers as texts for terminals, reports and films."""
 
+from collections.abc import Callable
+
 from argo_env.site.shapes import Vector
 
 
-def min_sec_text(seconds: float) -> str:
-    """Return a time in s as text in minutes and seconds, such as `04:59` or `74:51` (no hours)."""
-    whole = round(seconds)
+def min_sec_text(seconds: float, to_whole: Callable[[float], int] = round) -> str:
+    """Return a time in s as text in minutes and seconds, such as `04:59` or `74:51` (no hours).
+
+    `to_whole` rounds it to whole seconds: `rounded_down` for a lower bound, `rounded_up` for an
+    upper one (`argo_compiler.base.quantity_text`).
+    """
+    whole = to_whole(seconds)
     return f"{whole // 60:02d}:{whole % 60:02d}"
 
 
-def rounded_time_text(seconds: float) -> str:
-    """Return a time in s with its unit, such as `34 s`, `4:59 min` or `1:14:51 h`."""
-    minutes, rest = divmod(round(seconds), 60)
+def rounded_time_text(seconds: float, to_whole: Callable[[float], int] = round) -> str:
+    """Return a time in s with its unit, such as `34 s`, `4:59 min` or `1:14:51 h`.
+
+    `to_whole` rounds it to whole seconds, as for `min_sec_text`.
+    """
+    minutes, rest = divmod(to_whole(seconds), 60)
     if minutes == 0:
         return f"{rest} s"
     hours, minutes = divmod(minutes, 60)

@@ -12,7 +12,15 @@ from argo_compiler.analysis.travel import NoPath, Travel
 from argo_compiler.analysis.windows import diagnose_task_time_limits, diagnose_windows
 from argo_compiler.base.listing import brief_quoted_list
 from argo_compiler.base.model import Pose
-from argo_compiler.base.quantity_text import duration_text, energy_text
+from argo_compiler.base.quantity_text import (
+    energy_text,
+    exceeding_duration_text,
+    least_duration_text,
+    least_energy_text,
+    limit_text,
+    most_duration_text,
+    most_energy_text,
+)
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.hfsm.conditions import condition_text
@@ -108,26 +116,27 @@ def _too_long(study: Study, duration: Bounds, limit: float) -> Iterator[Diagnost
     if least is not None and least > limit:
         yield study.diagnostic(
             "too-long",
-            f"the mission takes at least {duration_text(least)} if nothing fails, longer than its "
-            f"maximum duration of {duration_text(limit)} (shortest: "
-            f"{bound_path_text(duration.least, duration_text)})",
+            f"the mission takes at least {exceeding_duration_text(least, limit)} if nothing fails, "
+            f"longer than its maximum duration of {limit_text(limit)} (shortest: "
+            f"{bound_path_text(duration.least, least_duration_text)})",
             "leave out tasks, shorten groups, or allow more time",
             subject="max_duration",
         )
     elif most is not None and most > limit:
         yield study.diagnostic(
             "maybe-too-long",
-            f"the mission may take up to {duration_text(most)}, longer than its maximum duration "
-            f"of {duration_text(limit)} (longest: {bound_path_text(duration.most, duration_text)})",
+            f"the mission may take up to {most_duration_text(most)}, longer than its maximum "
+            f"duration of {limit_text(limit)} (longest: "
+            f"{bound_path_text(duration.most, most_duration_text)})",
             "leave out tasks, shorten groups, or add a reaction to time_up",
             subject="max_duration",
         )
     elif most is None:
         yield study.diagnostic(
             "maybe-too-long",
-            f"the mission may take longer than its maximum duration of {duration_text(limit)}, as "
+            f"the mission may take longer than its maximum duration of {limit_text(limit)}, as "
             "something in it has no limit (shortest: "
-            f"{bound_path_text(duration.least, duration_text)})",
+            f"{bound_path_text(duration.least, least_duration_text)})",
             "limit what is repeated, or add a reaction to time_up",
             subject="max_duration",
         )
@@ -156,14 +165,14 @@ def _cut_short(
         for i in own
         if bounds.task_end_bounds[i].soonest <= limit < bounds.task_end_bounds[i].latest
     ]
-    up_to = "without limit" if most is None else f"up to {duration_text(most)}"
+    up_to = "without limit" if most is None else f"up to {most_duration_text(most)}"
     ends = "the reaction to time_up then ends it"
     if longest is not None and longest.value is not None:
-        ends += f", after {duration_text(longest.value)} at most"
+        ends += f", after {most_duration_text(longest.value)} at most"
     yield study.diagnostic(
         "cut-short",
         f"the mission may take {up_to}, longer than its maximum duration of "
-        f"{duration_text(limit)}: {ends}"
+        f"{limit_text(limit)}: {ends}"
         + (
             f"; if nothing fails, {brief_quoted_list(lost)} will not be done in time"
             if lost
@@ -182,18 +191,23 @@ def _battery_exceeded(study: Study, energy: Bounds, battery: float) -> Iterator[
     if least is not None and least > battery and not _may_need_less_energy(study):
         yield study.diagnostic(
             "battery-exceeded",
-            f"the mission needs at least {energy_text(least)} if nothing fails, and the battery "
-            f"gives {energy_text(battery)} (least: {bound_path_text(energy.least, energy_text)})",
+            f"the mission needs at least {least_energy_text(least)} if nothing fails, and the "
+            f"battery gives {energy_text(battery)} (least: "
+            f"{bound_path_text(energy.least, least_energy_text)})",
             "leave out tasks or rounds, or charge in between",
             subject="tasks",
         )
     elif most is None or most > battery:
-        need = "without limit" if most is None else f"up to {energy_text(most)}"
-        path = energy.least if most is None else energy.most
+        need = "without limit" if most is None else f"up to {most_energy_text(most)}"
+        path = (
+            f"least: {bound_path_text(energy.least, least_energy_text)}"
+            if most is None
+            else f"most: {bound_path_text(energy.most, most_energy_text)}"
+        )
         yield study.diagnostic(
             "battery-maybe-exceeded",
             f"the mission may need energy {need}, and the battery gives {energy_text(battery)} "
-            f"({'least' if most is None else 'most'}: {bound_path_text(path, energy_text)})",
+            f"({path})",
             "limit what is repeated, or react to low_battery",
             subject="tasks",
         )
@@ -245,8 +259,8 @@ def _no_way_back(study: Study, energy: Bounds, travel: Travel) -> Iterator[Diagn
                 "no-way-back",
                 f"after {stretch.task_or_rounds_text} the battery may not suffice for the way back "
                 f"to the dock with a reserve of {RESERVE_SHARE:.0%}: up to "
-                f"{energy_text(stretch.until)} are used until then, the way back needs up to "
-                f"{energy_text(back)}, and the battery gives {energy_text(battery)}",
+                f"{most_energy_text(stretch.until)} are used until then, the way back needs up to "
+                f"{most_energy_text(back)}, and the battery gives {energy_text(battery)}",
                 "leave out tasks or rounds, charge in between, or react to low_battery",
                 after[0],
             )
@@ -306,7 +320,8 @@ def _stale_conditions(
                 yield study.diagnostic(
                     "always-stale",
                     f"a condition of task '{study.name(leaf)}' never holds if nothing fails: "
-                    f"{condition_text(condition)}, but it takes at least {duration_text(youngest)} "
+                    f"{condition_text(condition)}, but it takes at least "
+                    f"{exceeding_duration_text(youngest, condition.max_age)} "
                     "from the measurement to this task",
                     f"measure checkpoint {o} again before this task, or allow a greater age",
                     leaf,

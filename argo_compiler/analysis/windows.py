@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from argo_compiler.analysis.bounds import MissionBounds
 from argo_compiler.analysis.study import Study
-from argo_compiler.base.quantity_text import duration_text
+from argo_compiler.base.quantity_text import exceeding_duration_text, limit_text
 from argo_compiler.diagnostics import Diagnostic
 
 _TOLERANCE = 1e-6  # s, as sums of floats are not exact
@@ -21,11 +21,12 @@ def diagnose_windows(study: Study, bounds: MissionBounds) -> Iterator[Diagnostic
         if window is None or window.latest is None or not study.nominal.is_reached(leaf):
             continue
         end = bounds.task_end_bounds[leaf]
-        name, latest = study.name(leaf), duration_text(window.latest)
+        name, latest = study.name(leaf), limit_text(window.latest)
         if end.soonest > window.latest + _TOLERANCE:
             soonest = ""
             if math.isfinite(end.soonest):
-                soonest = f": it ends after {duration_text(end.soonest)} at the soonest"
+                ends = exceeding_duration_text(end.soonest, window.latest)
+                soonest = f": it ends after {ends} at the soonest"
             yield study.diagnostic(
                 "window-missed" if window.hard else "window-late",
                 f"if nothing fails, no execution path is in time for task '{name}', whose window "
@@ -53,8 +54,8 @@ def diagnose_task_time_limits(study: Study) -> Iterator[Diagnostic]:
             continue  # each attempt continues from where the previous one stopped
         yield study.diagnostic(
             "time-limit",
-            f"task '{study.name(leaf)}' takes at least {duration_text(taken)} as planned, longer "
-            f"than its time limit of {duration_text(limit)}, so it fails",
+            f"task '{study.name(leaf)}' takes at least {exceeding_duration_text(taken, limit)} as "
+            f"planned, longer than its time limit of {limit_text(limit)}, so it fails",
             "give it more time",
             leaf,
         )

@@ -1,19 +1,86 @@
-"""Texts for durations and energies."""
+"""Texts for durations and energies.
+
+Bounds are rounded such that they remain bounds: a lower one down, an upper one up.
+"""
+
+import math
+from collections.abc import Callable
+
+_NOISE = 1e-9  # relative error of sums of floating-point numbers, which is not rounded up or down
 
 
-def duration_text(seconds: float) -> str:
+def rounded_down(value: float) -> int:
+    """Round a lower bound to a whole number."""
+    return math.floor(value + _NOISE * max(1.0, abs(value)))
+
+
+def rounded_up(value: float) -> int:
+    """Round an upper bound to a whole number."""
+    return math.ceil(value - _NOISE * max(1.0, abs(value)))
+
+
+def duration_text(seconds: float, to_whole: Callable[[float], int] = round) -> str:
     """Format a duration in s, such as `47.5 s`, `12 min 30 s` or `2 h 5 min`.
 
-    Durations from one minute on are rounded to whole seconds.
+    `to_whole` rounds durations from one minute on to whole seconds, and shorter ones to three
+    digits.
     """
-    if seconds < 60:
-        return f"{seconds:.3g} s"
-    minutes, rest = divmod(round(seconds), 60)
+    if (short := _three_digits(seconds, to_whole)) < 60:
+        return f"{short:.3g} s"
+    minutes, rest = divmod(to_whole(seconds), 60)
     hours, minutes = divmod(minutes, 60)
     parts = (hours, "h"), (minutes, "min"), (rest, "s")
     return " ".join(f"{count} {unit}" for count, unit in parts if count)
 
 
-def energy_text(energy_wh: float) -> str:
-    """Format an energy in Wh, such as `120 Wh`."""
-    return f"{energy_wh:.3g} Wh" if energy_wh < 1000 else f"{energy_wh:.0f} Wh"
+def least_duration_text(seconds: float) -> str:
+    """Format a lower bound of a duration in s."""
+    return duration_text(seconds, rounded_down)
+
+
+def most_duration_text(seconds: float) -> str:
+    """Format an upper bound of a duration in s."""
+    return duration_text(seconds, rounded_up)
+
+
+def limit_text(seconds: float) -> str:
+    """Format a limit in s that somebody has set: all of it, such as `2 min` or `90.4 s`."""
+    whole = float(seconds).is_integer()
+    return duration_text(seconds) if whole else f"{seconds:.10g} s"
+
+
+def exceeding_duration_text(least: float, limit: float) -> str:
+    """Format a lower bound in s that exceeds a limit (s), with the digits that show it."""
+    if (_three_digits(least, rounded_down) if least < 60 else rounded_down(least)) > limit:
+        return least_duration_text(least)
+    for digits in range(1, 6):
+        shown = rounded_down(least * 10**digits) / 10**digits
+        if shown > limit:
+            return f"{shown:.{digits}f} s"
+    return f"{least:.10g} s"
+
+
+def energy_text(energy_wh: float, to_whole: Callable[[float], int] = round) -> str:
+    """Format an energy in Wh, such as `120 Wh`; `to_whole` rounds it, to three digits or more."""
+    if (short := _three_digits(energy_wh, to_whole)) < 1000:
+        return f"{short:.3g} Wh"
+    return f"{to_whole(energy_wh)} Wh"
+
+
+def least_energy_text(energy_wh: float) -> str:
+    """Format a lower bound of an energy in Wh."""
+    return energy_text(energy_wh, rounded_down)
+
+
+def most_energy_text(energy_wh: float) -> str:
+    """Format an upper bound of an energy in Wh."""
+    return energy_text(energy_wh, rounded_up)
+
+
+def _three_digits(value: float, to_whole: Callable[[float], int]) -> float:
+    """Round a number below 1,000 to three digits."""
+    if value == 0 or abs(value) >= 1000:
+        return value
+    digits = min(15, 2 - math.floor(math.log10(abs(value))))
+    scale = 10.0**digits
+    return to_whole(value * scale) / scale

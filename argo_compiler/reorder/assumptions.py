@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from argo_compiler.base.quantity_text import duration_text
+from argo_compiler.base.quantity_text import limit_text
 from argo_compiler.il import Action
 from argo_compiler.reorder.travel_matrix import TravelMatrix
 from argo_compiler.reorder.visits import Visits
@@ -23,7 +23,7 @@ def assumption_notes(visits: Visits, matrix: TravelMatrix) -> Iterator[str]:
     for leaf in _waits_of_unknown_length(visits):
         yield f"'{visits.leaf_task(leaf).name}' is assumed to take its whole limit"
     for leaf in _leaves_beyond_limit(visits, matrix):
-        limit = duration_text(visits.leaf_task(leaf).time_limit or 0.0)
+        limit = limit_text(visits.leaf_task(leaf).time_limit or 0.0)
         yield (
             f"'{visits.leaf_task(leaf).name}' may take longer than its time limit, {limit}, "
             "depending on where the robot comes from: computed as if it had none"

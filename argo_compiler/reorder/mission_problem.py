@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Invalid, NotFound
-from argo_compiler.base.quantity_text import duration_text
+from argo_compiler.base.quantity_text import exceeding_duration_text, limit_text
 from argo_compiler.il import Mission, Order
 from argo_compiler.reorder.assumptions import assumption_notes, assumption_phrases
 from argo_compiler.reorder.branch_costs import BranchCosts
@@ -133,9 +133,10 @@ def late_visit_texts(planned: MissionProblem, route: Tour) -> Iterator[str]:
             continue
         end = (start + planned.work[entry]) * planned.problem.unit
         if end > window.latest + _ROUNDING:
+            done = exceeding_duration_text(end, window.latest)
             yield (
-                f"{visits.names[k]} is done at {duration_text(end)}, after its soft time window: "
-                f"{duration_text(window.latest)}"
+                f"{visits.names[k]} is done at {done}, after its soft time window: "
+                f"{limit_text(window.latest)}"
             )
 
 
@@ -146,10 +147,10 @@ def _duration_limit(mission: Mission, requirements: Requirements) -> tuple[float
     """
     limits = []
     if mission.max_duration is not None:
-        words = f"maximum duration {duration_text(mission.max_duration)}"
+        words = f"maximum duration {limit_text(mission.max_duration)}"
         limits.append((mission.max_duration, words))
     if requirements.budget is not None:
-        limits.append((requirements.budget, f"budget {duration_text(requirements.budget)}"))
+        limits.append((requirements.budget, f"budget {limit_text(requirements.budget)}"))
     return min(limits, default=None)
 
 

@@ -1,7 +1,7 @@
 """Time windows of tasks, in the form that the route problem needs."""
 
 from argo_compiler.base.errors import Invalid
-from argo_compiler.base.quantity_text import duration_text
+from argo_compiler.base.quantity_text import limit_text
 from argo_compiler.il import Action, TimeWindow
 from argo_compiler.reorder.travel_matrix import TravelMatrix
 from argo_compiler.reorder.visits import Visits
@@ -72,8 +72,8 @@ class Windows:
         )
         if window is None or not window.hard or window.latest is None:
             return None
-        start = f"begun from {duration_text(window.earliest)} on and " if window.earliest else ""
-        return f"{self._visits.names[visit]} {start}done by {duration_text(window.latest)}"
+        start = f"begun from {limit_text(window.earliest)} on and " if window.earliest else ""
+        return f"{self._visits.names[visit]} {start}done by {limit_text(window.latest)}"
 
     def end_limit_seconds(self) -> tuple[float, str] | None:
         """Return the latest end of the mission's last task in s, and its description.

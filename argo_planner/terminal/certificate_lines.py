@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from rich.console import Console
 from rich.markup import escape
 
+from argo_compiler.base.quantity_text import rounded_down
 from argo_compiler.route.certificate import Certificate, CheckedClaim, Claim, Judgement
 from argo_compiler.route.evaluation import evaluate
 from argo_env.formatting import min_sec_text
@@ -55,7 +56,8 @@ def _claim_text(found: SuggestedOrder, claim: Claim) -> str:
             return f"no order is worth more than {made.prize_bound}"
         case Claim.BOUND:
             worth = f" worth {made.prize_bound}" if found.planned.problem.selective else ""
-            return f"no order{worth} takes less than {min_sec_text(found.to_seconds(made.bound))}"
+            bound = min_sec_text(found.to_seconds(made.bound), rounded_down)
+            return f"no order{worth} takes less than {bound}"
         case Claim.BEST:
             return "no order is better"
         case Claim.NONE:
@@ -75,5 +77,5 @@ def _reason_text(found: SuggestedOrder, one: CheckedClaim) -> str:
     most, least = one.shown
     if most > (found.suggestion.prize or 0):
         return f"{one.why}: it only shows that none is worth more than {most}"
-    time = min_sec_text(found.to_seconds(least))
+    time = min_sec_text(found.to_seconds(least), rounded_down)
     return f"{one.why}: it only shows that none takes less than {time}"

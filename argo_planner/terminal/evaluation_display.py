@@ -8,6 +8,7 @@ from typing import Self
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
+from argo_compiler.base.quantity_text import rounded_up
 from argo_env.closing import Closing
 from argo_env.evaluation.rates import approximate_success_rate
 from argo_env.evaluation.row import RunOutcome
@@ -76,5 +77,5 @@ def progress_text(progress: EvaluationProgress) -> str:
         if outcomes[outcome]:
             parts.append(f"{outcomes[outcome]} {name}")
     if progress.longest_remaining_seconds is not None:
-        parts.append(f"at most {min_sec_text(progress.longest_remaining_seconds)} left")
+        parts.append(f"at most {min_sec_text(progress.longest_remaining_seconds, rounded_up)} left")
     return ", ".join(parts)

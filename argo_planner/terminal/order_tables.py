@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from argo_compiler.base.quantity_text import duration_text
+from argo_compiler.base.quantity_text import limit_text, rounded_down
 from argo_compiler.il import Mission, Order
 from argo_compiler.reorder.mission_problem import late_visit_texts
 from argo_compiler.route.evaluation import evaluate
@@ -51,7 +51,7 @@ def reordered_mission_lines(
     yield f"Mission: {output}"
     limit = mission.max_duration
     if limit is not None and limit != found.planned.mission.max_duration:
-        yield f"Its maximum duration is now the budget: {duration_text(limit)}"
+        yield f"Its maximum duration is now the budget: {limit_text(limit)}"
     if wrong := duration_problem(mission, site):
         yield f"Note: with its exact travel times, {wrong}: search with a smaller budget"
 
@@ -184,6 +184,6 @@ def _proof(found: SuggestedOrder) -> str:
             f"Not proven: worth {prize}, and no order is worth more than "
             f"{suggestion.prize_bound}{method}"
         )
-    bound = min_sec_text(found.to_seconds(suggestion.bound))
+    bound = min_sec_text(found.to_seconds(suggestion.bound), rounded_down)
     gap = f"{suggestion.gap or 0.0:.1%} less than this one"
     return f"Not proven: no order takes less than {bound}, {gap}{method}"

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 from argo_compiler.analysis import analyse
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid, Remedy, with_message_prefix
+from argo_compiler.base.quantity_text import rounded_down
 from argo_compiler.base.stages import stage
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.files.loading import decode_text, require_size
@@ -190,8 +191,8 @@ def _progress_text(progress: SearchProgress, unit: float) -> str:
     """
     if progress.cost is None:
         return "none found so far"
-    best, bound = (min_sec_text(units * unit) for units in (progress.cost, progress.bound))
-    return f"{best} so far, none takes less than {bound}"
+    bound = min_sec_text(progress.bound * unit, rounded_down)
+    return f"{min_sec_text(progress.cost * unit)} so far, none takes less than {bound}"
 
 
 def require_any_time_limit(mission: Mission, requirements: Requirements) -> None:

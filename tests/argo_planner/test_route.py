@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 
 import pytest
 from PIL import Image
@@ -12,6 +13,7 @@ from argo_compiler.hfsm import Hfsm
 from argo_compiler.il import Action, EventKind, Group, Order, Task, TimeWindow, WaitRule
 from argo_compiler.route import RouteSuggestion, Tour, evaluate
 from argo_env.run.record import RunRecord
+from argo_planner.use_cases import routing
 from tests.argo_planner.conftest import argo as run_argo
 from tests.yard import measure, mission, waypoint
 
@@ -106,7 +108,7 @@ def test_a_routed_mission_keeps_its_limit_and_names_what_was_left_out(argo, sour
 def test_a_written_mission_that_takes_too_long_is_noted(argo, source, tmp_path):
     new = tmp_path / "new.json"
     shown = argo("route", source, "--budget", "70 s", "-o", new)
-    said = "the mission takes at least 1 min 12 s if nothing fails, longer than its maximum "
+    said = "the mission takes at least 1 min 11 s if nothing fails, longer than its maximum "
     said += "duration of 1 min 10 s"
     assert f"Note: with its exact travel times, {said}" in shown
     assert said in argo("check", new, status=2)
@@ -119,6 +121,18 @@ def test_a_run_without_possible_order_names_the_route_command(argo, source, tmp_
     said = argo("run", tmp_path / "late.json", "--optimise", status=1)
     assert f"(argo route {tmp_path / 'late.json'} --budget)" in said
     assert "left out (--budget)" in argo("route", tmp_path / "late.json", status=2)
+
+
+def test_lower_bound_of_an_order_is_rounded_down(argo, source, monkeypatch):
+    search = routing.suggest_route
+
+    def unproven(problem, *arguments, **options):
+        bound = int(59.6 / problem.unit)
+        return replace(search(problem, *arguments, **options), proven=False, bound=bound)
+
+    monkeypatch.setattr(routing, "suggest_route", unproven)
+    assert "no order takes less than 00:59" in argo("route", source)
+    assert "no order takes less than 00:59" in argo("route", source, "--verify")
 
 
 def test_claims_about_an_order_can_be_verified(argo, source):

@@ -6,6 +6,7 @@ import pytest
 from rich.console import Console
 
 from argo_compiler.base.catalog import CheckpointKind, Interval
+from argo_compiler.base.quantity_text import rounded_down, rounded_up
 from argo_compiler.il import Action, Afterwards, EventKind, Mission, Reaction, Response, Task
 from argo_env.faults.plant import GasLeakFault
 from argo_env.faults.robot import ConnectionLoss
@@ -233,6 +234,15 @@ def test_clock(seconds: float, text: str) -> None:
 )
 def test_time_text(seconds: float, text: str) -> None:
     assert rounded_time_text(seconds) == text
+
+
+def test_times_that_are_bounds_are_rounded_to_their_side() -> None:
+    assert [min_sec_text(59.6, rounding) for rounding in (round, rounded_down)] == [
+        "01:00",
+        "00:59",
+    ]
+    assert min_sec_text(60.2, rounded_up) == "01:01"
+    assert rounded_time_text(59.6, rounded_down) == "59 s"
 
 
 def test_distinct_time_texts() -> None:

@@ -11,6 +11,7 @@ from argo_compiler.analysis import Leg, NoPath
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.errors import ArgoError, Invalid, NotFound
 from argo_compiler.base.model import Model, Pose
+from argo_compiler.base.quantity_text import rounded_down
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, has_errors
 from argo_compiler.il import Action, Mission, OnFailure, Task
@@ -315,7 +316,8 @@ def _uncertainties(
             yield f"task '{name}' waits for something whose time is not known"
         window = tasks[name].window
         if window is not None and window.earliest > 0:
-            yield f"task '{name}' may not begin before {rounded_time_text(window.earliest)}"
+            earliest = rounded_time_text(window.earliest, rounded_down)
+            yield f"task '{name}' may not begin before {earliest}"
     for path in paths:
         if path.way.problem:
             yield f"there is no path to task '{path.target}'"

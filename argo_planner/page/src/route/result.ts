@@ -10,7 +10,7 @@ import { select, tasksByName } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { t } from "../texts";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
-import { percent, seconds } from "../ui/figures";
+import { leastSeconds, percent, seconds } from "../ui/figures";
 import { icon } from "../ui/icons";
 import { acceptOrder, cancelSearch, job, jobIsStale, closeSearch } from "./search";
 
@@ -156,7 +156,7 @@ export class RouteResult extends PageElement {
       </svg>
       <figcaption>
         <span class="key">${texts.best}: <b>${best === null ? texts.untilNow : seconds(best)}</b></span>
-        <span class="key low">${texts.bound}: <b>${last === undefined ? texts.untilNow : seconds(last.bound)}</b></span>
+        <span class="key low">${texts.bound}: <b>${last === undefined ? texts.untilNow : leastSeconds(last.bound)}</b></span>
         <span class="dim" role="status">
           ${now.state === "running" ? texts.searching : nothing}
           ${gap === null || gap < 0.0005 ? nothing : texts.gap(percent(gap, 1))}

@@ -9,7 +9,7 @@ import { previewIsNew } from "../state/preview";
 import { world } from "../state/world";
 import { t } from "../texts";
 import { css, customElement, html, nothing, PageElement, property, state } from "../ui/element";
-import { metres, seconds, share } from "../ui/figures";
+import { leastSeconds, metres, mostSeconds, seconds, share } from "../ui/figures";
 import { icon } from "../ui/icons";
 
 @customElement("argo-totals")
@@ -118,10 +118,11 @@ export class StripTotals extends PageElement {
   private bound(bound: BoundShown) {
     const texts = t().strip;
     const isTime = bound.kind === "time";
-    const write = isTime ? seconds : (wh: number) => share(wh, battery());
+    const energy = (wh: number) => share(wh, battery());
+    const [writeLeast, writeMost] = isTime ? [leastSeconds, mostSeconds] : [energy, energy];
     const old = analysis.value?.revision !== revision.value;
-    const least = bound.least === null ? texts.noBound : write(bound.least);
-    const most = bound.most === null ? texts.noBound : write(bound.most);
+    const least = bound.least === null ? texts.noBound : writeLeast(bound.least);
+    const most = bound.most === null ? texts.noBound : writeMost(bound.most);
     return html`<button
       class="bare ${bound.broken ? "warn" : "dim"} ${old ? "old" : ""}"
       title=${old ? texts.outdated : texts.allPaths}
@@ -145,7 +146,7 @@ export class StripTotals extends PageElement {
     const bound = bounds.find((one) => one.kind === this.path);
     if (bound === undefined) return nothing;
     const texts = t().strip;
-    const write = bound.kind === "time" ? seconds : (wh: number) => share(wh, battery());
+    const write = bound.kind === "time" ? mostSeconds : (wh: number) => share(wh, battery());
     return html`<p class="dim">${texts.path(bound.most === null ? texts.noBound : write(bound.most))}</p>
       <ol>
         ${bound.path.map((part) => {

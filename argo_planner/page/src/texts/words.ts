@@ -35,7 +35,8 @@ export const words = both(
       end: "end the mission",
     },
     checkpoint: { "pressure gauge": "pressure gauge", "liquid level gauge": "level gauge", valve: "valve" },
-    seconds: (s: number) => duration(s, "en"),
+    seconds: (s: number) => duration(s, "en", Math.round),
+    boundSeconds: (s: number, toWhole: (value: number) => number) => duration(s, "en", toWhole),
   },
   {
     action: { START: "Start", WAYPOINT: "Wegpunkt", MEASURE: "Messen", WAIT: "Warten" },
@@ -69,15 +70,16 @@ export const words = both(
       end: "die Mission beenden",
     },
     checkpoint: { "pressure gauge": "Manometer", "liquid level gauge": "Füllstandsanzeige", valve: "Ventil" },
-    seconds: (s: number) => duration(s, "de"),
+    seconds: (s: number) => duration(s, "de", Math.round),
+    boundSeconds: (s: number, toWhole: (value: number) => number) => duration(s, "de", toWhole),
   },
 );
 
-/** Format a time (s) as `1:05:20 h`, `5:20 min` or `12 s`. */
-function duration(s: number, language: string): string {
-  const tenths = Math.round(10 * s) / 10;
+/** Format a time (s) as `1:05:20 h`, `5:20 min` or `12 s`; `toWhole` rounds it. */
+function duration(s: number, language: string, toWhole: (value: number) => number): string {
+  const tenths = toWhole(10 * s) / 10;
   if (tenths < 60) return `${tenths.toLocaleString(language)} s`;
-  const whole = Math.round(s);
+  const whole = toWhole(s);
   const [hours, minutes] = [Math.floor(whole / 3600), Math.floor((whole % 3600) / 60)];
   const tail = String(whole % 60).padStart(2, "0");
   if (hours === 0) return `${minutes}:${tail} min`;

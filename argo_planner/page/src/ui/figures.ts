@@ -26,6 +26,19 @@ export function seconds(s: number): string {
   return t().words.seconds(s);
 }
 
+/** Format a lower bound of a time (s), rounded down. */
+export function leastSeconds(s: number): string {
+  return t().words.boundSeconds(s, (value) => Math.floor(value + NOISE * Math.max(1, value)));
+}
+
+/** Format an upper bound of a time (s), rounded up. */
+export function mostSeconds(s: number): string {
+  return t().words.boundSeconds(s, (value) => Math.ceil(value - NOISE * Math.max(1, value)));
+}
+
+/** relative error of sums of floating-point numbers, which is not rounded up or down */
+const NOISE = 1e-9;
+
 export function metres(m: number): string {
   return `${figure(m, m < 10 ? 1 : 0)} m`;
 }

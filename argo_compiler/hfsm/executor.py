@@ -28,6 +28,7 @@ from argo_compiler.hfsm.events import (
 from argo_compiler.hfsm.kinds import Cause, Outcome
 from argo_compiler.hfsm.model import DONE, MISSION, Hfsm
 from argo_compiler.hfsm.progress import ByHand, Progress
+from argo_compiler.hfsm.remaining import remaining_tasks
 from argo_compiler.hfsm.restoring import (
     group_progress,
     reaction_progress,
@@ -271,6 +272,19 @@ class Executor:
     def outcome(self) -> Outcome | None:
         """Outcome of the mission; None if the mission has not ended."""
         return self._control.outcome
+
+    @property
+    def remaining_tasks(self) -> tuple[str, ...] | None:
+        """Names of the tasks that can still follow if none fails, with the active one.
+
+        Any conditions may hold. If the mission was given up, they are the tasks that could follow
+        in that moment. None: a restored mission was given up before, and it is not known where.
+        """
+        mission = self._control.mission
+        left_at = mission.left_at or Progress(
+            active=mission.active_task, groups=group_progress(mission.configuration, mission.now)
+        )
+        return remaining_tasks(self.hfsm, left_at)
 
     @property
     def active_task(self) -> str | None:

@@ -8,7 +8,8 @@ from typing import NamedTuple
 from argo_compiler.hfsm.conditions import CheckpointReading, conjunction_text
 from argo_compiler.hfsm.configuration import Configuration
 from argo_compiler.hfsm.kinds import Cause, Outcome, ReadingKind
-from argo_compiler.hfsm.progress import ByHand
+from argo_compiler.hfsm.progress import ByHand, Progress
+from argo_compiler.hfsm.restoring import group_progress
 from argo_compiler.hfsm.tables import CompiledTransition, LeafNode, Tables
 from argo_compiler.hfsm.trace import RawEntry, StoredStep, TracedRound, groups_left, new_tuple
 from argo_compiler.il import EventKind
@@ -48,6 +49,8 @@ class MachineState:
         self.failed = False
         """whether a task that is not optional has failed for good"""
         self.outcome: Outcome | None = None
+        self.left_at: Progress | None = None
+        """the active task and groups when the mission was given up; None: it was not"""
         self.tallies: defaultdict[str, list[int]] = defaultdict(lambda: [0, 0, 0])
         """by task, the numbers of ended visits: done, failed, by hand"""
         # The history has no effect on what follows, so these lists only grow.
@@ -261,6 +264,9 @@ class MachineState:
             self._take_transition(leaf.transitions, reason)
         elif transition.target is None:
             self.end(Outcome.ABORTED, Cause.FAILURE, failure=reason)
+        elif transition.target.is_return:
+            self._note_where_left()
+            self._take_transition((transition,), reason)
         else:
             self._take_transition((transition,), reason)
 
@@ -294,10 +300,17 @@ class MachineState:
         """End the mission at once, whatever it was doing."""
         source = self.active_task
         left = tuple(frame.group.name for frame in reversed(self.configuration.frames))
+        self._note_where_left()
         self.outcome = outcome
         self.configuration.leave_all_states()
         self.time_up_at = math.inf
         self.add_entry(cause, source, event=event, failure=failure, detail=str(outcome), left=left)
+
+    def _note_where_left(self) -> None:
+        """Note the active task and groups, as the mission is being given up."""
+        if self.left_at is None:
+            groups = group_progress(self.configuration, self.now)
+            self.left_at = Progress(active=self.active_task, groups=groups)
 
     def add_entry(
         self,

@@ -37,6 +37,18 @@ def remaining_machine(hfsm: Hfsm, progress: Progress) -> Hfsm:
     return hfsm.model_copy(update={"composites": (mission, *composites[1:]), "leaves": leaves})
 
 
+def remaining_tasks(hfsm: Hfsm, progress: Progress) -> tuple[str, ...] | None:
+    """Return the names of the tasks that can still follow if none fails, in the machine's order.
+
+    The active task is among them. None: the mission is on its way to the dock after a failure, and
+    the progress does not say of which task.
+    """
+    reach = _Reach(hfsm, progress, with_failures=False)
+    if reach.start is not None and reach.start.is_return:
+        return None
+    return tuple(leaf.task.name for leaf in hfsm.leaves if leaf.id in reach.leaves)
+
+
 def _prune(composite: Composite, initial: str, kept_ids: set[str], reach: "_Reach") -> Composite:
     children = tuple(
         child
@@ -77,7 +89,8 @@ class _Reach:
     first.
     """
 
-    def __init__(self, hfsm: Hfsm, progress: Progress) -> None:
+    def __init__(self, hfsm: Hfsm, progress: Progress, with_failures: bool = True) -> None:
+        self._with_failures = with_failures
         known = build_tables(hfsm)
         self.start: LeafNode | None = None
         self.leaves: set[str] = set()
@@ -108,11 +121,12 @@ class _Reach:
 
     def _follow(self, leaf: LeafNode, under_way: int) -> None:
         self._follow_transitions(leaf.transitions, under_way)
-        missable = leaf.latest is not None
+        missable = leaf.latest is not None and self._with_failures
         if missable and leaf.missed is not None:
             self._follow_transitions((leaf.missed,), under_way)
         if leaf.failure is not None and (
-            leaf.can_fail_by_action_or_limit or (missable and leaf.missed is None)
+            (leaf.can_fail_by_action_or_limit and self._with_failures)
+            or (missable and leaf.missed is None)
         ):
             self._follow_transitions((leaf.failure,), under_way)
         for group in leaf.groups_outward:

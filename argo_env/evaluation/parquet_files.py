@@ -155,7 +155,18 @@ def _schema() -> "pyarrow.Schema":
 
     text, number, count = pa.string(), pa.float64(), pa.int64()
     detection = pa.struct([("fault", text), ("began", number), ("delay", number)])
+    part = pa.struct(
+        [
+            ("code", text),
+            ("names", pa.list_(text)),
+            ("times", pa.list_(number)),
+            ("numbers", pa.list_(count)),
+            ("event", text),
+            ("text", text),
+        ]
+    )
     kinds = {
+        "verdict": pa.list_(part),
         "docked": pa.bool_(),
         "failed": pa.list_(text),
         "detections": pa.list_(detection),

@@ -11,6 +11,7 @@ from argo_env.evaluation.case import EvaluationCase, PlanName
 from argo_env.evaluation.detection import FaultDetection, detections, false_alarms
 from argo_env.run.record import RunRecord
 from argo_env.run.spec import RunSpec
+from argo_env.run.verdict import VerdictPart
 from argo_env.site import Site
 from argo_env.site.shapes import Vector
 
@@ -45,6 +46,8 @@ class RunRow(Model):
     outcome: RunOutcome
     reason: str
     """what is missing or went wrong; the verdict of a successful run"""
+    verdict: tuple[VerdictPart, ...] = ()
+    """the same as data; empty if the run could not be carried out, and in old rows"""
     duration: float | None = None
     """s of simulated time, like all times"""
     limit: float | None = None
@@ -105,11 +108,13 @@ def make_row(
     result = record.result
     counted = {task.name for task in record.mission.tasks if task.action in _COUNTED_ACTIONS}
     done = {run.task for run in record.tasks if run.outcome == "done"}
+    done.update(result.reached_all_the_same)
     last = record.path[-1] if record.path else None
     failed = tuple(dict.fromkeys(r.task for r in record.tasks if r.outcome == "failed"))
     row = make_empty_row(key, case, spec, RunOutcome.FAILURE, result.verdict)
     return row.model_copy(
         update={
+            "verdict": result.parts,
             "outcome": RunOutcome.SUCCESS if result.success else RunOutcome.FAILURE,
             "duration": result.duration,
             "limit": result.max_duration,

@@ -226,7 +226,7 @@ class RunRecorder(Observer):
         if entry.sample:
             self._write_battery(now)
         if entry.stopped:
-            self._log(entry.stopped, Log.ERROR, "run", now)
+            self._log(str(entry.stopped), Log.ERROR, "run", now)
         if entry.events or entry.resumed or entry.ended or self._state is None:
             self._write_mission(machine, now)
 

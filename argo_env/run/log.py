@@ -7,9 +7,9 @@ the same as that of a run that was never interrupted.
 import math
 from collections.abc import Sequence
 from dataclasses import asdict
-from typing import Literal
+from typing import Annotated, Literal
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import BeforeValidator, TypeAdapter, ValidationError
 
 from argo_compiler.base.errors import Invalid
 from argo_compiler.base.model import Model
@@ -43,6 +43,7 @@ from argo_env.run.record import (
     Reading,
     TaskRun,
 )
+from argo_env.run.verdict import VerdictCode, VerdictPart
 from argo_env.site import Site
 
 _EVENTS: dict[str, type[Event]] = {
@@ -120,6 +121,13 @@ def require_event_time(t: float) -> None:
         raise Invalid(f"no event can occur at {t:g} s: give a time from 0 s on")
 
 
+def _from_text(stopped: object) -> object:
+    """Return the reason of a stop; older journals have it as a text."""
+    return (
+        VerdictPart(code=VerdictCode.OTHER, text=stopped) if isinstance(stopped, str) else stopped
+    )
+
+
 class Entry(Model):
     """Entry of a run's log: one moment, with the robot's pose and what has happened."""
 
@@ -164,7 +172,7 @@ class Entry(Model):
     """whether the run was resumed here after its process had died"""
     ended: bool = False
     """whether this is the end of the run"""
-    stopped: str | None = None
+    stopped: Annotated[VerdictPart | None, BeforeValidator(_from_text)] = None
     """with `ended`: why the run was stopped before the mission's end, if it was"""
 
     @property

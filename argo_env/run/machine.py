@@ -46,6 +46,8 @@ class Machine(Protocol):
     def rounds(self) -> Mapping[str, int]: ...
     @property
     def trace(self) -> Sequence[TraceEntry]: ...
+    @property
+    def remaining_tasks(self) -> tuple[str, ...] | None: ...
 
     def start(self, now: float) -> tuple[Command, ...]: ...
     def handle(self, event: Event, now: float) -> tuple[Command, ...]: ...
@@ -153,3 +155,7 @@ class OpenMachine:
     @property
     def trace(self) -> Sequence[TraceEntry]:
         return self._executor.trace
+
+    @property
+    def remaining_tasks(self) -> tuple[str, ...] | None:
+        return self._executor.remaining_tasks

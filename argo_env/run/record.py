@@ -4,7 +4,7 @@ It holds simulated times only, and nothing that depends on the computer. So the 
 and seed give the same record.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from enum import StrEnum
 from typing import Any
 
@@ -20,7 +20,8 @@ from argo_env.drives.drive import Trouble
 from argo_env.faults.kinds import AnyFault
 from argo_env.files.checked_files import CHECKSUM
 from argo_env.formatting import floor_and_position_text, min_sec_text
-from argo_env.run.verdict_line import Headline, run_headline
+from argo_env.run.verdict import VerdictCode, VerdictPart
+from argo_env.run.verdict_line import Headline, Noticed, NoticedKind, run_headline
 from argo_env.site.shapes import Vector
 from argo_env.site.spec import Rect
 
@@ -243,6 +244,8 @@ class Finding(Anomaly):
     """whether a reaction of the mission answered it"""
     answer: str
     """the answer in words, or that there was none"""
+    response: Response | None = None
+    """of the mission's reaction to it, whether that began or not; None: it has no reaction"""
     over_at: float | None = None
     """s, when its end was reported; None: it was not"""
 
@@ -406,6 +409,8 @@ class Result(Model):
     success: bool
     verdict: str
     """one sentence: success, or what is missing"""
+    parts: tuple[VerdictPart, ...] = ()
+    """the verdict as data; empty in old records"""
     ended: bool = True
     """whether the run has ended; False: it was interrupted here and may continue"""
     outcome: Outcome | None = None
@@ -427,6 +432,12 @@ class Result(Model):
         """True if the mission came to its end without success, and only because tasks failed."""
         completed = self.outcome is Outcome.COMPLETED_WITH_FAILURES
         return completed and self.within_max_duration and self.docked is not False
+
+    @property
+    def reached_all_the_same(self) -> tuple[str, ...]:
+        """Tasks whose drive was interrupted, at whose pose the robot ended all the same."""
+        code = VerdictCode.REACHED_ALL_THE_SAME
+        return tuple(name for part in self.parts if part.code is code for name in part.names)
 
 
 class RunRecord(Model):
@@ -518,21 +529,39 @@ class RunRecord(Model):
         """Headline of the run with its parts: its verdict and what was noticed."""
         return run_headline(
             self.result.verdict,
+            self.result.parts,
             success=self.result.success,
             ended=self.result.ended,
             only_tasks_failed=self.result.only_tasks_failed,
-            noticed={
-                "finding": [finding.in_words for finding in self.findings],
-                "late task": [
-                    f"{run.task} ended after its time window" for run in self.visits_ended_late
-                ],
-                "contact": [
-                    f"{c.link} touched {c.element} at {min_sec_text(c.start)}"
-                    for c in self.contacts
-                ],
-                "mishap": [f"{m.trouble} at {min_sec_text(m.t)}" for m in self.mishaps],
-            },
+            noticed=tuple(self._noticed()),
         )
+
+    def _noticed(self) -> Iterator[Noticed]:
+        """Yield what was noticed in the run: findings, late tasks, contacts and mishaps."""
+        for finding in self.findings:
+            reading = self.abnormal_reading(finding)
+            yield Noticed(
+                kind=NoticedKind.FINDING,
+                text=finding.in_words,
+                t=finding.t,
+                event=finding.kind,
+                checkpoint=reading and f"{reading.name} (#{reading.checkpoint})",
+                value=reading and reading.value,
+                unit=reading and reading.unit,
+                response=finding.response,
+                answered=finding.answered,
+                over_at=finding.over_at,
+            )
+        for run in self.visits_ended_late:
+            text = f"{run.task} ended after its time window"
+            yield Noticed(kind=NoticedKind.LATE_TASK, text=text, task=run.task)
+        for c in self.contacts:
+            text = f"{c.link} touched {c.element} at {min_sec_text(c.start)}"
+            kind = NoticedKind.CONTACT
+            yield Noticed(kind=kind, text=text, t=c.start, link=c.link, element=c.element)
+        for m in self.mishaps:
+            text = f"{m.trouble} at {min_sec_text(m.t)}"
+            yield Noticed(kind=NoticedKind.MISHAP, text=text, t=m.t, trouble=m.trouble)
 
     @property
     def visits_ended_late(self) -> tuple[WindowVisit, ...]:
@@ -563,6 +592,9 @@ class RunRecord(Model):
             what=self._what(anomaly),
             answered=answered,
             answer=answer,
+            response=next(
+                (r.response for r in self.mission.reactions if r.event is anomaly.kind), None
+            ),
             over_at=next((a.t for a in later if a.is_end_of(anomaly)), None),
         )
 

@@ -127,7 +127,8 @@ class InjectFault:
 class StopRun:
     """Stop of the run at once, whatever it is doing; the record states the reason."""
 
-    reason: str = "it was stopped by a person"
+    reason: str | None = None
+    """in English; None: a person stops it"""
 
 
 @dataclass(frozen=True, slots=True)

@@ -50,6 +50,7 @@ from argo_env.run.validation import (
     require_unstarted_machine,
 )
 from argo_env.run.vehicle import Vehicle
+from argo_env.run.verdict import VerdictCode, VerdictPart
 
 _log = logging.getLogger(__name__)
 
@@ -269,11 +270,14 @@ class Simulation(Closing):
             raise Conflict("the mission had ended before the command")
         match event:
             case StopRun(reason):
-                if not isinstance(reason, str):
+                if not isinstance(reason, str | None):
                     raise Invalid(
                         f"{reason!r} is not a text: give the reason for the stop in words"
                     )
-                self._end_run(reason)
+                by_person = VerdictPart(code=VerdictCode.STOPPED_BY_PERSON)
+                self._end_run(
+                    VerdictPart(code=VerdictCode.OTHER, text=reason) if reason else by_person
+                )
             case InjectFault(fault):
                 resolved = resolve_new_fault(fault, self.setup, self._spec.seed, self.now)
                 self._commit(self._state.entry().model_copy(update={"faults": (resolved,)}))
@@ -579,13 +583,13 @@ class Simulation(Closing):
         if self._changing:
             raise Conflict("an observer can't command its run: give commands between two steps")
 
-    def _standstill_reason(self) -> str | None:
+    def _standstill_reason(self) -> VerdictPart | None:
         if self._state.scheduled.pending or self._vehicle.supply.charging:
             return None
         acting = self._state.supervision.acting
         return standstill_reason(self.now, self.machine, self.setup, self._state.log, acting)
 
-    def _end_run(self, stopped: str | None) -> None:
+    def _end_run(self, stopped: VerdictPart | None) -> None:
         state = self._state
         run = state.stop_action()
         self._vehicle.odometry.close_contacts()

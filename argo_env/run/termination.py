@@ -3,31 +3,31 @@
 import math
 
 from argo_env.drives.powertrain import Powertrain
-from argo_env.formatting import min_sec_text, rounded_time_text
 from argo_env.run.log import RunLog
 from argo_env.run.machine import Machine
 from argo_env.run.robot import RobotPower
 from argo_env.run.run_setup import RunSetup
+from argo_env.run.verdict import VerdictCode, VerdictPart
 
 TIME_LIMIT = 4 * 3600.0  # s of simulated time after which a run is stopped
 SETTLING = 120.0  # s that a robot at a standstill waits for findings of the last fault
 
 
-def reason_run_cannot_continue(now: float, supply: RobotPower) -> str | None:
+def reason_run_cannot_continue(now: float, supply: RobotPower) -> VerdictPart | None:
     """Return why the run can't continue at time `now` (s), whatever event occurs; None if it can.
 
     The reason is the time limit of a run, or an empty battery.
     """
     if now >= TIME_LIMIT:
-        return f"it was stopped after {rounded_time_text(now)}, Argo's limit for a run"
+        return VerdictPart(code=VerdictCode.RUN_TOO_LONG, times=(now,))
     if supply.empty:
-        return f"the battery was empty after {rounded_time_text(now)}"
+        return VerdictPart(code=VerdictCode.BATTERY_EMPTY, times=(now,))
     return None
 
 
 def standstill_reason(
     now: float, machine: Machine, setup: RunSetup, log: RunLog, acting: bool
-) -> str | None:
+) -> VerdictPart | None:
     """Return why the robot stands still for good at time `now` (s); None if it does not.
 
     For good means unless an event from outside occurs; the caller knows that none is scheduled. A
@@ -40,13 +40,11 @@ def standstill_reason(
     since, final_from = _standstill_times(setup, log)
     if now < final_from:
         return None
-    why = "held by its emergency stop" if is_stopped else "waiting for an event"
-    why = "paused" if machine.paused else why
-    since_text = f"the robot has stood still since {min_sec_text(since)}"
-    reason = f"{since_text}, {why}, and nothing more occurs"
-    if machine.paused and machine.hfsm.supervised and not log.tasks:
-        reason += ": a supervisory mission begins when a person resumes it (the event `resume`)"
-    return reason
+    why = VerdictCode.HELD_BY_STOP if is_stopped else VerdictCode.WAITS_IN_VAIN
+    if machine.paused:
+        begins = machine.hfsm.supervised and not log.tasks
+        why = VerdictCode.NEVER_BEGUN if begins else VerdictCode.STAYS_PAUSED
+    return VerdictPart(code=why, times=(since,))
 
 
 def is_emergency_stopped(setup: RunSetup) -> bool:

@@ -1,16 +1,20 @@
 """Headline of a run: the same words on the terminal, in reports, recordings and films.
 
-It begins with how the run ended, and continues with the verdict from `result.py`.
+It begins with how the run ended, and continues with the verdict from `result.py`. The planner page
+makes its own texts from the headline's data.
 `argo_planner/terminal/record_tables.py` chooses its colour on the terminal.
 """
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from enum import StrEnum
 
 from argo_compiler.base.model import Model
+from argo_compiler.il import EventKind, Response
+from argo_env.drives.drive import Trouble
+from argo_env.run.verdict import VerdictCode, VerdictPart, verdict_text
 
-AS_PLANNED = "everything was done as planned"
+AS_PLANNED = verdict_text((VerdictPart(code=VerdictCode.AS_PLANNED),))
 """verdict of a success without anything to add"""
 _NAMED = 3  # noticed things that are named at most; the others are counted
 
@@ -27,6 +31,55 @@ class Tone(StrEnum):
     """the mission is no success"""
 
 
+class Ending(StrEnum):
+    """Ending of a run, with which its headline begins."""
+
+    SUCCESS = "success"
+    DONE = "done"
+    """a success, in which something was noticed"""
+    COMPLETED_WITH_FAILURES = "completed_with_failures"
+    INTERRUPTED = "interrupted"
+    NO_SUCCESS = "no_success"
+
+
+class NoticedKind(StrEnum):
+    """Kind of a thing that was noticed in a run."""
+
+    FINDING = "finding"
+    LATE_TASK = "late task"
+    CONTACT = "contact"
+    MISHAP = "mishap"
+
+
+class Noticed(Model):
+    """Thing that was noticed in a run: in English words, and the data of its kind."""
+
+    kind: NoticedKind
+    text: str
+    t: float | None = None
+    """s"""
+    event: EventKind | None = None
+    """of a finding"""
+    checkpoint: str | None = None
+    """name and number of the checkpoint whose value is abnormal; None: the finding is no reading"""
+    value: float | None = None
+    unit: str | None = None
+    response: Response | None = None
+    """of the reaction to the finding; None: the mission has none"""
+    answered: bool = False
+    """whether that reaction began"""
+    over_at: float | None = None
+    """s, when the end of the finding was reported; None: it was not"""
+    task: str | None = None
+    """that ended after its time window"""
+    link: str | None = None
+    """of the robot, in contact"""
+    element: str | None = None
+    """of the site, in contact"""
+    trouble: Trouble | None = None
+    """of the drive"""
+
+
 class Headline(Model):
     """Headline of a run, one line."""
 
@@ -36,6 +89,10 @@ class Headline(Model):
     text: str
     """the rest, without a full stop"""
     tone: Tone
+    ending: Ending
+    verdict: tuple[VerdictPart, ...]
+    """empty in old records"""
+    noticed: tuple[Noticed, ...]
 
     def __str__(self) -> str:
         return f"{self.word}: {self.text}."
@@ -43,40 +100,40 @@ class Headline(Model):
 
 def run_headline(
     verdict: str,
+    parts: tuple[VerdictPart, ...],
     *,
     success: bool,
     ended: bool,
     only_tasks_failed: bool,
-    noticed: Mapping[str, Sequence[str]],
+    noticed: tuple[Noticed, ...],
 ) -> Headline:
-    """Return the headline of a run with the given result.
+    """Return the headline of a run with the given result, and with what was noticed.
 
-    `verdict`, `success`, `ended` and `only_tasks_failed` are those of the record's `Result`.
-    `noticed` lists what was noticed, in words, by its kind in the singular, such as `finding` or
-    `contact`.
+    `verdict`, `parts`, `success`, `ended` and `only_tasks_failed` are those of the record's
+    `Result`.
     """
+    if success:
+        ending, tone = (Ending.DONE, Tone.NOTICE) if noticed else (Ending.SUCCESS, Tone.GOOD)
+    elif only_tasks_failed:
+        ending, tone = Ending.COMPLETED_WITH_FAILURES, Tone.NOTICE
+    else:
+        ending, tone = (Ending.NO_SUCCESS, Tone.BAD) if ended else (Ending.INTERRUPTED, Tone.NOTICE)
     counts = ", ".join(
-        f"{len(things)} {name}{'s' if len(things) > 1 else ''}"
-        for name, things in noticed.items()
-        if things
+        f"{n} {kind}{'s' if n > 1 else ''}" for kind, n in Counter(n.kind for n in noticed).items()
     )
-    summary = _summarize([thing for things in noticed.values() for thing in things])
-    if not success:
-        word, tone = ("No success", Tone.BAD) if ended else ("Interrupted", Tone.NOTICE)
-        if only_tasks_failed:
-            word, tone = "Completed with failures", Tone.NOTICE
-        text = f"{verdict}. {counts}: {summary}" if counts else verdict
-        return Headline(word=word, text=text, tone=tone)
-    if not counts:
-        return Headline(word="Success", text=verdict, tone=Tone.GOOD)
-    if verdict != AS_PLANNED:
-        summary += f". {verdict[:1].upper()}{verdict[1:]}"
-    return Headline(word=f"Done, {counts}", text=summary, tone=Tone.NOTICE)
+    word, text = ending.replace("_", " ").capitalize(), verdict
+    if counts and success:
+        word, text = f"{word}, {counts}", _summarize(noticed)
+        if verdict != AS_PLANNED:
+            text += f". {verdict[:1].upper()}{verdict[1:]}"
+    elif counts:
+        text = f"{verdict}. {counts}: {_summarize(noticed)}"
+    return Headline(word=word, text=text, tone=tone, ending=ending, verdict=parts, noticed=noticed)
 
 
-def _summarize(things: Sequence[str]) -> str:
+def _summarize(noticed: Sequence[Noticed]) -> str:
     """Return the first few different texts with their counts, and how many items are left out."""
-    times = list(Counter(things).items())
-    named = [thing if n == 1 else f"{thing}, {n} times" for thing, n in times[:_NAMED]]
+    times = list(Counter(thing.text for thing in noticed).items())
+    named = [text if n == 1 else f"{text}, {n} times" for text, n in times[:_NAMED]]
     more = sum(n for _, n in times[_NAMED:])
     return "; ".join([*named, *([f"and {more} more"] if more else [])])

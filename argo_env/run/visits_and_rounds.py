@@ -90,7 +90,7 @@ def wait_runs(mission: Mission, visits: Sequence[VisitRun], now: float) -> tuple
 
     A visit that has not ended is returned up to time `now` (s).
     """
-    tasks = {t.name: t for t in mission.tasks if t.action is Action.WAIT and not _is_junction(t)}
+    tasks = {t.name: t for t in mission.tasks if t.action is Action.WAIT and not is_junction(t)}
     return tuple(
         WaitRun(
             task=visit.task,
@@ -134,7 +134,7 @@ def _awaited_in_words(task: Task) -> str:
     return wait_end_text(rule) + limit
 
 
-def _is_junction(task: Task) -> bool:
+def is_junction(task: Task) -> bool:
     """Return True if a WAIT task never waits, and only joins transitions."""
     return task.wait is not None and task.wait.duration == 0 and task.window is None
 

@@ -9,6 +9,7 @@ from argo_env.evaluation.rates import Decision, IntervalMethod, PlanRate, approx
 from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunOutcome, RunRow
 from argo_env.evaluation.runner import EvaluationProgress
+from argo_env.run.verdict import VerdictPart
 
 MOST_FAILING = 100
 """failed runs that are listed one by one; the rows have all of them"""
@@ -61,6 +62,9 @@ class FailedRun(Model):
     faults: str
     outcome: RunOutcome
     reason: str
+    """what is missing or went wrong, in English"""
+    verdict: tuple[VerdictPart, ...] = ()
+    """the same as data; empty if the run could not be carried out"""
     task: str | None
     """first task that failed, or the last task if none did"""
     duration: float | None
@@ -137,6 +141,7 @@ class RunCount:
                         faults=faults,
                         outcome=row.outcome,
                         reason=row.reason,
+                        verdict=row.verdict,
                         task=row.task,
                         duration=row.duration,
                     )

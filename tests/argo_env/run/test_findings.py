@@ -92,7 +92,8 @@ class TestEventsFromOutside:
         (finding,) = record.findings
         assert (finding.answered, finding.answer) == (False, "the reaction to it did not begin")
         assert record.headline.word == "No success"
-        assert "nothing more occurs. 1 finding: gas leak at 00:04" in record.headline.text
+        assert "nothing more occurs; 0 of 1 checkpoint read" in record.headline.text
+        assert "not done: MEASURE 1, A. 1 finding: gas leak at 00:04" in record.headline.text
 
     def test_what_was_written_down_gives_the_same(self, yard):
         kept, events = Entries(), logged_events((3.0, LEAK), (5.0, CLEAR))

@@ -140,7 +140,7 @@ class TestReactions:
     @pytest.mark.parametrize(
         ("reaction", "outcome", "says"),
         [
-            (react(EventKind.HOT_SPOT, Response.ABORT), Outcome.ABORTED, "was aborted"),
+            (react(EventKind.HOT_SPOT, Response.ABORT), Outcome.ABORTED, "ended the mission"),
             (react(EventKind.HOT_SPOT, Response.RETURN), Outcome.RETURNED, "returned to its dock"),
             (
                 react(EventKind.HOT_SPOT, Response.SAFE_AREA, pose=SHELTER),

@@ -332,7 +332,9 @@ class TestSteering:
         simulation.handle(StopRun("the tide came in"))
         record = simulation.record()
         assert (record.result.verdict, record.result.outcome) == (
-            "the tide came in; the robot is not docked in starting area 1", None,
+            "the tide came in; 0 of 3 checkpoints read, not #1, #2, #3; "
+            "not done: MEASURE 1, A, MEASURE 2, MEASURE 3; "
+            "the robot is not docked in starting area 1", None,
         )  # fmt: skip
         assert (record.result.duration, record.tasks[-1].outcome) == (2.5, "cancelled")
         for after in (simulation.step, lambda: simulation.handle(Pause())):

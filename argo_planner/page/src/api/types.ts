@@ -46,6 +46,10 @@ export type MissionWay = Schemas["MissionWay"];
 export type PreviewedWay = Schemas["PreviewedWay"];
 export type MissionReading = Schemas["MissionReading"];
 
+export type Headline = Schemas["Headline"];
+export type Noticed = Schemas["Noticed"];
+export type VerdictPart = Schemas["VerdictPart"];
+
 export type RunState = Schemas["RunState"];
 export type RunAsked = Schemas["RunAsked"];
 export type RequestState = Schemas["RequestState"];

@@ -340,7 +340,7 @@ export class EvaluateResult extends PageElement {
     return html`<li>
       <button class="bare" data-key=${one.key} ?disabled=${replaying.value !== null} @click=${() => replayRun(job, one)}>
         <b>${texts.failed(one.seed, withFaults ? texts.faultsNamed(one.faults) : null)}</b>
-        <span class="reason">${again ? texts.replaying : t().service.verdict(one.reason)}</span>
+        <span class="reason">${again ? texts.replaying : one.verdict.length > 0 ? t().verdict.verdict(one.verdict) : one.reason}</span>
       </button>
     </li>`;
   }

@@ -1,6 +1,6 @@
 /** The noteworthy events of a run, from its many entries. */
 
-import type { Entry, Trouble } from "../api/types";
+import type { Entry, Trouble, VerdictPart } from "../api/types";
 
 export type RunEvent =
   | { readonly kind: "done" | "by hand"; readonly task: string }
@@ -12,7 +12,7 @@ export type RunEvent =
   | { readonly kind: "mishap"; readonly trouble: Trouble; readonly detail: string }
   | { readonly kind: "contact"; readonly link: string; readonly element: string }
   | { readonly kind: "resumed" | "edited" }
-  | { readonly kind: "ended"; readonly stopped: string | null };
+  | { readonly kind: "ended"; readonly stopped: VerdictPart | null };
 
 export interface TimedEvent {
   /** s */

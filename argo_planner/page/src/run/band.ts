@@ -1,6 +1,5 @@
 /** The run at a glance: who controls the robot, what it does, and its progress. */
 
-import type { RunState } from "../api/types";
 import type { Outcome } from "../model/replay";
 import { shownMode, type ShownMode } from "../model/run-mode";
 import { mission, planId, revision } from "../state/plan";
@@ -159,7 +158,7 @@ export class RunBand extends PageElement {
     const texts = t().run;
     if (run === null) return "";
     if (run.status === "ended" && shownTime.value === null)
-      return run.headline ? headlineWords(run.headline) : "";
+      return run.headline ? t().verdict.headline(run.headline) : "";
     const text: string[] = [];
     if (run.reaction && now?.live) text.push(texts.reactsTo(t().words.event[run.reaction]));
     const task = now?.task ?? null;
@@ -208,11 +207,6 @@ export class RunBand extends PageElement {
           </dd>`}
       <dd id=${id}>${text}</dd>`;
   }
-}
-
-function headlineWords({ word, text }: NonNullable<RunState["headline"]>): string {
-  const { outcome, headline } = t().service;
-  return `${outcome(word)}: ${headline(text)}`;
 }
 
 function doneOf(outcomes: ReadonlyMap<string, Outcome>): number {

@@ -48,7 +48,7 @@ export function eventText(what: RunEvent): string {
     case "edited":
       return texts[what.kind];
     case "ended":
-      return what.stopped === null ? texts.ended : texts.stoppedRun(t().service.verdict(what.stopped));
+      return what.stopped === null ? texts.ended : texts.stoppedRun(t().verdict.verdict([what.stopped]));
   }
 }
 

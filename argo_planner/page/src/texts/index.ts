@@ -11,13 +11,13 @@ import { route } from "./route";
 import { run } from "./run";
 import { scene } from "./scene";
 import { script } from "./script";
-import { service } from "./service";
 import { strip } from "./strip";
+import { verdict } from "./verdict";
 import { words } from "./words";
 
 export type Language = "en" | "de";
 
-const AREAS = { evaluate, forms, frame, keys, list, route, run, scene, script, service, strip, words };
+const AREAS = { evaluate, forms, frame, keys, list, route, run, scene, script, strip, verdict, words };
 type Areas = typeof AREAS;
 export type Texts = { readonly [area in keyof Areas]: Areas[area]["en"] };
 

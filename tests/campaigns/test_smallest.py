@@ -18,6 +18,7 @@ COMMANDS = {
     "perception --trials 1 --jobs 1": r"wrong readings: 0 of 1 \(0.0 %\) of all readings",
     "route_missions --sizes 3 --sheets 1 --drive route": r"predicted and driven differ by 0.00%",
     "signals --placements 1 --missions 1 --drives 1 --duration 30": r"false alarms: 0 in 1 clean",
+    "storage --places 2": r"part swapped: 2 refused",
     "stairs --seeds 1 --towers west --storeys 1 --processes 1": r"west tower down +1 +1 +0 ",
 }
 """pattern of the output of each command, the name of a module and its arguments"""

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from argo_compiler.base.errors import NotFound
-from argo_env.evaluation.store import LOG, read_rows
+from argo_env.evaluation.store import LOG, RowStore, read_rows
 from tests.conftest import FIRST_SEED, examples
 from tests.e2e.conftest import ROOT, read_run_record, start_argo
 from tests.e2e.test_errors import require_refusal
@@ -204,6 +204,22 @@ def test_options_that_belong_in_the_file_are_refused(argo, file, tmp_path):
         argo("evaluate", file, "--out", tmp_path / "out", "--drive", "kinematic")
     )
     assert "write --drive into the file" in message
+
+
+def test_damaged_rows_are_told_and_repeated(argo, file, out):
+    rows = read_rows(out)
+    shutil.rmtree(out / "parts")
+    with RowStore(out) as store:
+        for row in rows:
+            store.add_if_new(row)
+    lines = (out / LOG).read_bytes().splitlines(keepends=True)
+    lines[2] = lines[2].replace(b"umad", b"amud")
+    (out / LOG).write_bytes(b"".join(lines))
+    refusal = require_refusal(argo("evaluate", "--compare", out, out))
+    assert f"{out / LOG}: damaged in line 3: evaluate again into this folder" in refusal
+    result = argo("evaluate", file, "--out", out, status=0)
+    assert f"{out / LOG}: damaged in line 3: the lost runs are repeated" in result.stderr
+    assert sorted(read_rows(out), key=lambda row: row.key) == sorted(rows, key=lambda row: row.key)
 
 
 def test_changed_faults_make_another_evaluation(argo, file, out, tmp_path):

@@ -200,3 +200,23 @@ def test_the_command_resumes_a_killed_run(
 )
 def test_wrong_events_and_journals_are_refused(argo, folder: Path, arguments, message) -> None:
     assert message in require_refusal(argo(*arguments, cwd=folder))
+
+
+def test_what_a_loss_of_power_left_is_told_when_the_run_is_resumed(argo, folder, tmp_path):
+    journal = tmp_path / "run.journal"
+    argo(*run_arguments(folder), "--journal", journal, status=0)
+    lines = journal.read_bytes().splitlines(keepends=True)
+    lines = lines[: len(lines) // 2]
+    marks = [k for k, line in enumerate(lines) if re.fullmatch(rb'\S+ {"n":\d+}\n', line)]
+    synced = b"".join(lines[: marks[-1] + 1])
+    journal.write_bytes(synced + bytes(4096) + b"".join(lines[marks[-1] + 4 :]))
+    resumed = argo("resume", journal, status=0)
+    says = rf"argo: {journal}: damaged from line {marks[-1] + 2} on, as by a loss of power: "
+    assert re.search(
+        says + r".*All lines before are whole: the run continues at \S+ s", resumed.stderr
+    )
+    again = argo("resume", journal, status=0)
+    assert "damaged" not in again.stderr
+    lines[1] = lines[1].replace(b"n", b"m")
+    journal.write_bytes(b"".join(lines))
+    assert "damaged from line 2 on" in require_refusal(argo("resume", journal))

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from argo_compiler.hfsm.conditions import CheckpointReading
 from argo_compiler.hfsm.tables import CompiledTransition, GroupNode, Guard, LeafNode, Tables
-from argo_compiler.hfsm.trace import TracedRound
+from argo_compiler.hfsm.trace import TracedRound, new_tuple
 from argo_compiler.hfsm.visits import TaskVisit
 
 _NEVER = math.inf
@@ -198,13 +198,18 @@ class Configuration:
         awaited = self.awaited_round
         end = None if awaited is None else awaited.group.depth + 1
         return tuple(
-            TracedRound(
-                frame.group.name,
-                frame.round,
-                self._round_due(frame) if frame.group.every else None,
-                frame is awaited,
-            )
-            for frame in self.frames[depth:end]
+            [
+                new_tuple(
+                    TracedRound,
+                    (
+                        frame.group.name,
+                        frame.round,
+                        self._round_due(frame) if frame.group.every else None,
+                        frame is awaited,
+                    ),
+                )
+                for frame in self.frames[depth:end]
+            ]
         )
 
     def update_visit_due(self) -> None:

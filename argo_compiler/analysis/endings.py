@@ -1,11 +1,12 @@
 """Diagnostics on the end of a mission: whether it can end, loops without limit, and the dock."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 
 from argo_compiler.analysis.non_terminating_loops import NonTerminatingLoop
 from argo_compiler.analysis.study import Study
 from argo_compiler.base.listing import brief_quoted_list
 from argo_compiler.base.model import Pose
+from argo_compiler.base.quantity_text import duration_text
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Task
 from argo_compiler.il.docked import is_at_dock
@@ -25,37 +26,50 @@ def diagnose_endings(
     """
     if not study.mission.tasks:
         return
-    traps = study.trap_leaves
-    yield from _endless_loops(study, traps)
+    yield from _endless_loops(study)
     yield from _non_terminating_loops(study, loops)
-    yield from _unbounded_loops(study, {leaf for trap in traps for leaf in trap})
+    yield from _unbounded_loops(study, {leaf for trap in study.trap_leaves for leaf in trap})
     yield from _ends_elsewhere(study)
 
 
-def _endless_loops(study: Study, traps: tuple[tuple[int, ...], ...]) -> Iterator[Diagnostic]:
+def _endless_loops(study: Study) -> Iterator[Diagnostic]:
+    """Yield diagnostics on loops that go on as planned, or one on a mission without an end.
+
+    A loop that the time limit of a task ends has its diagnostic there, as has a mission.
+    """
     severity = Severity.WARNING if study.may_end_by_reaction else Severity.ERROR
-    but = "nothing but a reaction" if study.may_end_by_reaction else "nothing but a failure"
-    can_end = study.nominal.is_reached(study.flow.end_node)
-    for trap in traps:
-        if not trap:
-            continue
-        path = study.shortest_path_text(trap[0])
+    kept = [nodes for nodes in study.trap_nodes if study.is_kept_as_planned(nodes)]
+    kept = [nodes for nodes in kept if any(map(study.flow.is_leaf, nodes))]
+    never_ends = not study.reached_as_planned[study.flow.end_node]
+    after_failure = study.with_failures.is_reached(study.flow.end_node)
+    for nodes in kept:
+        trap = tuple(filter(study.flow.is_leaf, nodes))
+        so = ""
+        if never_ends and len(kept) == 1:
+            so = ", and so the mission"
+            if after_failure and not study.leads_out_if_failing(nodes):
+                so += " unless an action fails before"
         yield study.diagnostic(
             "endless-loop",
-            f"{_tasks(study, trap)} {_follow(trap)} for ever: {but} or a person ends the loop "
-            f"(path: {path})",
+            f"{study.tasks_text(trap)} {_follow(trap)} for ever: nothing but "
+            f"{_what_ends(study, nodes)} ends the loop{so} "
+            f"(path: {study.shortest_path_text(trap[0])})",
             _REMEDY,
             trap[0],
             severity=severity,
         )
-    if not can_end:
+    if never_ends and len(kept) != 1 and not study.ends_by_time_up:
         why = (
             "each execution path runs into a loop that no transition leaves"
-            if traps
+            if kept
             else "no execution path leads to its end"
         )
-        if study.with_failures.is_reached(study.flow.end_node):
-            why += ", unless an action fails"
+        unless = [
+            *(["an action fails"] if after_failure else []),
+            *(["a reaction ends it"] if study.may_end_by_reaction else []),
+        ]
+        if unless:
+            why += f", unless {' or '.join(unless)}"
         yield study.diagnostic(
             "no-end",
             f"the mission never ends: {why}",
@@ -65,11 +79,25 @@ def _endless_loops(study: Study, traps: tuple[tuple[int, ...], ...]) -> Iterator
         )
 
 
+def _what_ends(study: Study, nodes: Collection[int]) -> str:
+    """Return what may end a loop that no transition leaves, in words."""
+    if study.ends_by_time_up:
+        assert study.mission.max_duration is not None
+        limit = duration_text(study.mission.max_duration)
+        by_reaction = [f"the reaction to time_up, after {limit},"]
+    else:
+        by_reaction = ["a reaction"] if study.may_end_by_reaction else []
+    by_failure = ["a failure"] if study.leads_out_if_failing(nodes) else []
+    *others, last = [*by_failure, *by_reaction, "a person"]
+    return f"{', '.join(others)} or {last}" if others else last
+
+
 def _non_terminating_loops(
     study: Study, loops: Iterable[NonTerminatingLoop]
 ) -> Iterator[Diagnostic]:
-    but = "nothing but a reaction" if study.may_end_by_reaction else "nothing but a failure"
     for loop in loops:
+        if not study.is_closed_as_planned(loop.nodes):
+            continue  # a time limit ends it
         leaves = tuple(sorted(filter(study.flow.is_leaf, loop.nodes)))
         name = study.object_text(loop.object_id)
         values = loop.readings & (loop.scale.missing_bit - 1)
@@ -79,10 +107,10 @@ def _non_terminating_loops(
         ]
         yield study.diagnostic(
             "kept-loop",
-            f"{_tasks(study, leaves)} {_follow(leaves)} for ever if {name} "
+            f"{study.tasks_text(leaves)} {_follow(leaves)} for ever if {name} "
             f"{' or '.join(shown)} when '{study.name(loop.leaf)}' is reached: "
-            f"nothing in the loop measures it, so {but}, a person or a value that others "
-            "report ends the loop",
+            "nothing in the loop measures it, so nothing but a value that others report, "
+            f"{_what_ends(study, loop.nodes)} ends the loop",
             f"measure {name} in the loop, or make it a group with a limit",
             loop.leaf,
         )
@@ -90,12 +118,6 @@ def _non_terminating_loops(
 
 def _follow(leaves: tuple[int, ...]) -> str:
     return "follows itself" if len(leaves) == 1 else "follow each other"
-
-
-def _tasks(study: Study, leaves: tuple[int, ...]) -> str:
-    return (
-        f"task{'s' if len(leaves) > 1 else ''} {brief_quoted_list([study.name(i) for i in leaves])}"
-    )
 
 
 def _unbounded_loops(study: Study, trapped: set[int]) -> Iterator[Diagnostic]:
@@ -111,15 +133,21 @@ def _unbounded_loops(study: Study, trapped: set[int]) -> Iterator[Diagnostic]:
         first = min([*loop.leaves, *(study.flow.groups[g].first for g in loop.groups)])
         if first in trapped:
             continue
+        nodes = study.nodes_within(loop.leaves, loop.groups)
+        if not study.repeats_as_planned(nodes):
+            continue  # a time limit ends it
         groups = [study.flow.groups[g].name for g in loop.groups]
         parts = [
-            *([_tasks(study, loop.leaves)] if loop.leaves else []),
+            *([study.tasks_text(loop.leaves)] if loop.leaves else []),
             *(
                 [f"group{'s' if len(groups) > 1 else ''} {brief_quoted_list(groups)}"]
                 if groups
                 else []
             ),
         ]
+        if not study.repeats_when_late(nodes):
+            yield _loop_until_window(study, " and ".join(parts), nodes, first)
+            continue
         single = len(loop.leaves) + len(loop.groups) == 1
         they = "it" if single else "they"
         remark = (
@@ -135,6 +163,23 @@ def _unbounded_loops(study: Study, trapped: set[int]) -> Iterator[Diagnostic]:
             "make it a group with max_repeat_count or max_repeat_duration that always ends",
             first,
         )
+
+
+def _loop_until_window(study: Study, what: str, nodes: Collection[int], first: int) -> Diagnostic:
+    """Return the diagnostic on a loop in which no round is complete after hard windows closed."""
+    leaves = study.flow.leaves
+    closing = sorted(n for n in nodes if study.flow.is_leaf(n) and leaves[n].deadline is not None)
+    last = max(leaves[n].deadline or 0.0 for n in closing)
+    windows = "window" if len(closing) == 1 else "windows"
+    close = "closes" if len(closing) == 1 else "have closed"
+    return study.diagnostic(
+        "loop-until-window",
+        f"{what} may be repeated until the {windows} of {study.tasks_text(closing)} {close}, "
+        f"{duration_text(last)} after the mission's start: no count and no other duration limits "
+        "the repetitions",
+        "make it a group with max_repeat_count or max_repeat_duration that always ends",
+        first,
+    )
 
 
 def _ends_elsewhere(study: Study) -> Iterator[Diagnostic]:

@@ -135,11 +135,16 @@ def _too_long(study: Study, duration: Bounds, limit: float) -> Iterator[Diagnost
         yield study.diagnostic(
             "maybe-too-long",
             f"the mission may take longer than its maximum duration of {limit_text(limit)}, as "
-            "something in it has no limit (shortest: "
+            f"{_without_limit(study)} (shortest: "
             f"{bound_path_text(duration.least, least_duration_text)})",
             "limit what is repeated, or add a reaction to time_up",
             subject="max_duration",
         )
+
+
+def _without_limit(study: Study) -> str:
+    """Return why a duration or energy has no upper bound, in words."""
+    return "no upper bound is known" if study.all_loops_end else "something in it has no limit"
 
 
 def _cut_short(
@@ -165,13 +170,14 @@ def _cut_short(
         for i in own
         if bounds.task_end_bounds[i].soonest <= limit < bounds.task_end_bounds[i].latest
     ]
-    up_to = "without limit" if most is None else f"up to {most_duration_text(most)}"
+    up_to = f"up to {most_duration_text(most)}, " if most is not None else "without limit, "
+    up_to = "" if most is None and study.all_loops_end else up_to
     ends = "the reaction to time_up then ends it"
     if longest is not None and longest.value is not None:
         ends += f", after {most_duration_text(longest.value)} at most"
     yield study.diagnostic(
         "cut-short",
-        f"the mission may take {up_to}, longer than its maximum duration of "
+        f"the mission may take {up_to}longer than its maximum duration of "
         f"{limit_text(limit)}: {ends}"
         + (
             f"; if nothing fails, {brief_quoted_list(lost)} will not be done in time"
@@ -199,6 +205,8 @@ def _battery_exceeded(study: Study, energy: Bounds, battery: float) -> Iterator[
         )
     elif most is None or most > battery:
         need = "without limit" if most is None else f"up to {most_energy_text(most)}"
+        if most is None and study.all_loops_end:
+            need = f"above {energy_text(battery)}, as {_without_limit(study)}"
         path = (
             f"least: {bound_path_text(energy.least, least_energy_text)}"
             if most is None

@@ -104,6 +104,10 @@ class StepCosts:
         """for each leaf, the possible positions of the robot when it has ended"""
         self.too_slow: dict[int, float] = {}
         """leaves that always exceed their time limit, and the least time (s) that they take"""
+        self.too_slow_anywhere: set[int] = set()
+        """those of them whose work alone exceeds the limit, wherever the robot comes from"""
+        self.sometimes_too_slow: set[int] = set()
+        """leaves that exceed their time limit from some pose"""
         self.too_many = False
         """whether there are more positions at a WAIT than are distinguished"""
         self.standing_power = 0.0 if travel is None else travel.standing_power
@@ -349,6 +353,9 @@ class StepCosts:
         fastest: dict[int, float] = {}
         for (_, target), cost in self._steps.items():
             fastest[target] = min(fastest.get(target, math.inf), cost.time.least)
+            limit = self.flow.leaves[target].leaf.task.time_limit
+            if limit is not None and cost.time.most > limit:
+                self.sometimes_too_slow.add(target)
         for target, taken in fastest.items():
             leaf = self.flow.leaves[target]
             limit = leaf.leaf.task.time_limit
@@ -356,6 +363,8 @@ class StepCosts:
             counted = self.action_cost(target).time.least if leaf.earliest else taken
             if limit is not None and counted > limit:
                 self.too_slow[target] = counted
+                if self.action_cost(target).time.least > limit:
+                    self.too_slow_anywhere.add(target)
 
     def _include_retries(self, clean_up: float) -> None:
         """Replace the costs of steps by ranges from 0 to the most that all attempts cost.

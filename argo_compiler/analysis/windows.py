@@ -34,7 +34,7 @@ def diagnose_windows(study: Study, bounds: MissionBounds) -> Iterator[Diagnostic
                 "do it earlier, or let its window close later",
                 leaf,
             )
-        elif end.latest > window.latest + _TOLERANCE:
+        elif end.latest > window.latest + _TOLERANCE and leaf not in study.leaves_until_window:
             yield study.diagnostic(
                 "window-maybe-missed",
                 f"task '{name}' may come too late: its window closes {latest} after the "
@@ -55,7 +55,25 @@ def diagnose_task_time_limits(study: Study) -> Iterator[Diagnostic]:
         yield study.diagnostic(
             "time-limit",
             f"task '{study.name(leaf)}' takes at least {exceeding_duration_text(taken, limit)} as "
-            f"planned, longer than its time limit of {limit_text(limit)}, so it fails",
+            f"planned, longer than its time limit of {limit_text(limit)}, "
+            f"{_consequence(study, leaf)}",
             "give it more time",
             leaf,
         )
+
+
+def _consequence(study: Study, leaf: int) -> str:
+    """Return what follows as a task takes longer than its time limit as planned."""
+    if leaf not in study.certain_failures:
+        return "so it can't be done as planned"
+    ended = [
+        tuple(filter(study.flow.is_leaf, nodes))
+        for nodes in study.trap_nodes
+        if leaf in nodes and any(n not in nodes for n in study.planned_successors[leaf])
+    ]
+    endless = [f"the loop of {study.tasks_text(leaves)}" for leaves in ended]
+    end = study.flow.end_node
+    if not study.nominal.is_reached(end) and study.reached_as_planned[end]:
+        endless.append("the mission")
+    without = f"; without a failure, {' and '.join(endless)} would never end" if endless else ""
+    return f"so it fails if nothing interrupts it{without}"

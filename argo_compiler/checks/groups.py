@@ -12,7 +12,7 @@ from argo_compiler.checks.checked_item import CheckedItem
 from argo_compiler.checks.instant_loops import MIN_TIME_S
 from argo_compiler.checks.timing import has_failure_branch_or_time_rule
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.il import Action, Group, Mission, Stop, Task
+from argo_compiler.il import Action, Group, Mission, OnFailure, Stop, Task
 from argo_compiler.il.grouping import (
     GroupNesting,
     GroupRange,
@@ -273,9 +273,14 @@ def _check_endless(
     for i, r in enumerate(nesting.ranges):
         left = lowest[i] < r.first or highest[i] > r.last
         if _is_endless(r.group) and not left and not bounded[i]:
+            ending = any(
+                task.on_failure in (OnFailure.ABORT, OnFailure.RETURN)
+                for task in mission.tasks[r.first : r.last + 1]
+            )
             yield CheckedItem(subjects.group_subject(r.index), r.group.source).diagnostic(
                 "il.endless-group",
-                f"group '{r.group.name}' is repeated without end: it has neither a count nor a "
+                f"group '{r.group.name}' is repeated without end"
+                f"{' unless a task fails' if ending else ''}: it has neither a count nor a "
                 "duration, and no transition that can be taken leaves it",
                 "give it max_repeat_count or max_repeat_duration, or a conditional transition to "
                 "a task outside",

@@ -32,6 +32,10 @@ ANALYSIS = {
         "Tasks repeat for ever with some reading, because none of them measures it again.",
         "Measure the checkpoint in the loop, or make it a group with a limit.",
     ),
+    "analysis.loop-until-window": warning(
+        "Tasks may be repeated until a hard time window closes, and nothing else limits that.",
+        "Make them a group with a limit.",
+    ),
     "analysis.maybe-too-long": warning(
         "Some execution path takes longer than the mission's maximum duration.",
         "Limit repetitions, or define by a reaction to `time_up` what happens then.",

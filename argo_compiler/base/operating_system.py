@@ -4,6 +4,7 @@ Signals and the start of worker processes differ too; see `argo_planner.terminal
 must not import this package, and `argo_env.worker_processes`.
 """
 
+import math
 import os
 import signal
 import sys
@@ -95,6 +96,37 @@ def raise_open_file_limit(wanted: int) -> None:
         limit = wanted if hard == resource.RLIM_INFINITY else min(wanted, hard)
         if soft != resource.RLIM_INFINITY and soft < limit:
             resource.setrlimit(resource.RLIMIT_NOFILE, (limit, hard))
+
+
+@contextmanager
+def limit_processor_time_and_memory(seconds: float, memory: int) -> Iterator[None]:
+    """Limit the processor time and the memory that this process takes in the block.
+
+    It is killed after so many seconds of processor time. More than `memory` bytes besides those
+    that it has before raise MemoryError, or end it where a library can't handle that; this is so
+    on Linux only. No-op on Windows.
+    """
+    if sys.platform == "win32":
+        yield
+        return
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    limits = {
+        resource.RLIMIT_CPU: math.ceil(used.ru_utime + used.ru_stime + seconds),
+        resource.RLIMIT_CORE: 0,  # a file as large as the memory, for each process that is killed
+    }
+    if sys.platform == "linux":
+        pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
+        limits[resource.RLIMIT_AS] = pages * resource.getpagesize() + memory
+    before = {kind: resource.getrlimit(kind) for kind in limits}
+    for kind, limit in limits.items():
+        soft, hard = before[kind]
+        if soft == resource.RLIM_INFINITY or limit < soft:
+            resource.setrlimit(kind, (limit, hard))
+    try:
+        yield
+    finally:
+        for kind, previous in before.items():
+            resource.setrlimit(kind, previous)
 
 
 def niceness() -> int:

@@ -122,6 +122,15 @@ def read_text(path: Path, kind: str, max_bytes: int) -> str:
     return decode_text(read_bytes(path, kind, max_bytes), path, kind)
 
 
+def size_on_disk(path: Path) -> int:
+    """Return the size of a file, or of all files of a folder, in bytes; 0 if it can't be found."""
+    try:
+        files = [path / name for name in os.listdir(path)] if os.path.isdir(path) else [path]
+        return sum(map(os.path.getsize, files))
+    except (OSError, ValueError):
+        return 0
+
+
 def require_size(content: bytes, name: object, kind: str, max_bytes: int) -> None:
     """Raise UnreadableFile if the content is too large; `name` and `kind` are for the message."""
     if len(content) > max_bytes:

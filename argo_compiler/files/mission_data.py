@@ -1,6 +1,6 @@
 """Validation of a mission file's data with bounded effort, however many errors there are.
 
-A file of 50 MB may contain tens of millions of errors, and pydantic would describe each of them. So
+A file of 16 MB may contain millions of errors, and pydantic would describe each of them. So
 the lists of a mission are validated in portions, until a limited number of errors has been found.
 """
 

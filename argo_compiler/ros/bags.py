@@ -1,17 +1,21 @@
 """Reading and writing of missions in ROS 1 bags, rosbag2 folders, and single storage files."""
 
 import os
+import re
+import sqlite3
 import struct
 import tempfile
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.limited_process import LimitExceeded, call_limited, limits_for_size
 from argo_compiler.diagnostics import DiagnosticError
-from argo_compiler.files.loading import FileError
+from argo_compiler.files.loading import FileError, size_on_disk
+from argo_compiler.files.mission_file import MAX_BYTES
 from argo_compiler.il import Mission
 from argo_compiler.ros.compression import (
     TooLargeError,
@@ -38,14 +42,14 @@ STAMP = 1_000_000_000
 The time is fixed so that equal missions give equal bags; it is not 0, which means unset in ROS 1.
 """
 
-MAX_BYTES = 50_000_000
-"""Largest size of a message, the same as for a mission's file."""
-
 _UNPACK = "unpack it first: rosbag decompress, or ros2 bag convert"
 _MAX_MESSAGES = 1000
 """Largest number of messages that may repeat the same mission."""
 _MAX_LISTED_TOPICS = 8
 """Number of topics that an error lists."""
+_MODULES = ("rosbags.rosbag1", "rosbags.rosbag2")
+_CALCULATED = re.compile(r"\bvirtual\b|\bgenerated\b|\bas\s*\(", re.IGNORECASE)
+"""parts of the definition of a table whose content is calculated"""
 
 
 class Storage(StrEnum):
@@ -122,13 +126,29 @@ def read_bag(path: Path, source_name: str | None = None) -> Received:
     """Return the mission on the topic /mission of a ROS 1 bag, a rosbag2 folder, or its file.
 
     The bag may contain the same mission several times, as happens when a latched topic is recorded.
-    Messages call the bag `source_name`, or by its path if that is None.
+    Messages call the bag `source_name`, or by its path if that is None. It is read in a process
+    with limits of time and memory.
 
     Raises:
-        DiagnosticError: The file is not such a bag, or contains no mission or different missions.
+        DiagnosticError: The file is not such a bag, or contains no mission or different missions,
+            or exceeds the limits.
         ArgoError: `rosbags` is not installed.
     """
     name = str(path) if source_name is None else source_name
+    limits = limits_for_size(size_on_disk(path))
+    try:
+        return call_limited(limits, _MODULES, read_bag_here, path, name)
+    except LimitExceeded as error:
+        raise_error(
+            name,
+            "file.beyond-limits",
+            f"the file {error}",
+            f"is it the right file? If it is, record {TOPIC} alone",
+        )
+
+
+def read_bag_here(path: Path, name: str) -> Received:
+    """Return the mission of a bag, as `read_bag`, but in this process and without its limits."""
     is_folder = os.path.isdir(path)
     if is_folder and not os.path.isfile(path / "metadata.yaml"):
         hint = "choose the script, mission or bag in it; a rosbag2 folder has a metadata.yaml"
@@ -148,7 +168,7 @@ def read_bag(path: Path, source_name: str | None = None) -> Received:
         with _open_reader(path, first) as reader:
             content = _read_message(name, reader, types)
         message = types.decode(content)
-    except DiagnosticError:
+    except (DiagnosticError, MemoryError):
         raise
     except TooLargeError as error:
         raise_error(name, "ros.compressed", f"the bag is not unpacked: {error}", _UNPACK)
@@ -170,11 +190,7 @@ def decode_bag(content: bytes | Mapping[str, bytes], source_name: str) -> Receiv
     """
     with tempfile.TemporaryDirectory() as folder:
         if isinstance(content, bytes):
-            # rosbags chooses the storage by the suffix.
-            first = content[: len(SQLITE)]
-            suffix = ".bag" if first.startswith(ROS1) else ".mcap"
-            suffix = ".db3" if first.startswith(SQLITE) else suffix
-            path = Path(folder) / f"bag{suffix}"
+            path = Path(folder) / f"bag{suffix_by_first_bytes(content[:16])}"
             path.write_bytes(content)
             return read_bag(path, source_name)
         for name, part in content.items():
@@ -184,6 +200,13 @@ def decode_bag(content: bytes | Mapping[str, bytes], source_name: str) -> Receiv
                 )
             (Path(folder) / name).write_bytes(part)
         return read_bag(Path(folder), source_name)
+
+
+def suffix_by_first_bytes(first: bytes) -> str:
+    """Return the suffix by which rosbags recognizes the storage of a file with these bytes."""
+    if first.startswith(ROS1):
+        return ".bag"
+    return ".db3" if first.startswith(SQLITE) else ".mcap"
 
 
 @contextmanager
@@ -206,6 +229,7 @@ def _open_reader(path: Path, first: bytes) -> Iterator[Any]:
                 require_small_mcap_chunks(file)
             elif start.startswith(SQLITE):
                 _require_whole_database(file)
+                _require_plain_tables(file)
         with Ros2Reader(path) as reader:
             yield reader
 
@@ -221,6 +245,18 @@ def _require_whole_database(file: Path) -> None:
     is_size_known = changes == changes_at_size
     if is_size_known and os.path.getsize(file) < pages * (65536 if page_size == 1 else page_size):
         raise ValueError("its end is missing")
+
+
+def _require_plain_tables(file: Path) -> None:
+    """Raise ValueError if an SQLite file has other parts than tables that hold their content.
+
+    The content of a view or a generated column is calculated, and may be without end.
+    """
+    database = sqlite3.connect(f"{file.absolute().as_uri()}?mode=ro&immutable=1", uri=True)
+    with closing(database):
+        for kind, name, definition in database.execute("SELECT type, name, sql FROM sqlite_master"):
+            if kind not in ("table", "index") or _CALCULATED.search(definition or ""):
+                raise ValueError(f"the content of its {kind} {name} is calculated, not recorded")
 
 
 def _read_message(name: str, reader: Any, types: RosTypes) -> bytes:

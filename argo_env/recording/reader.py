@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING, NoReturn
 from pydantic import ValidationError
 
 from argo_compiler.base.errors import Invalid, NotFound, Remedy
+from argo_compiler.base.limited_process import LimitExceeded, call_limited, limits_for_size
 from argo_compiler.files.json_places import format_path
-from argo_compiler.files.loading import FileError, FileProblem, read_bytes
+from argo_compiler.files.loading import FileError, FileProblem, read_bytes, size_on_disk
 from argo_env.files.yaml_messages import error_message
 from argo_env.recording.files import require_libraries
 from argo_env.recording.output import MAGIC, VERSION
@@ -26,7 +27,7 @@ from argo_env.site import Site, make_site
 from argo_env.site.spec import SiteSpec
 
 if TYPE_CHECKING:
-    from mcap.records import Attachment, McapRecord
+    from mcap.records import Attachment, Chunk, McapRecord
 
 _FOOTER = struct.Struct("<BQQQI")
 """opcode, length, positions of the index and of its offsets, checksum (MCAP specification)"""
@@ -64,6 +65,7 @@ def iter_verified_records(content: ContentStream) -> "Iterator[McapRecord]":
                 is_argos = True
                 yield record
             case Chunk():
+                _require_stated_size(record)
                 yield from breakup_chunk(record, validate_crc=True)
             case Attachment():
                 if not _is_intact(record, content):
@@ -111,7 +113,19 @@ def decoding_errors() -> tuple[type[Exception], ...]:
     from mcap.exceptions import McapError
     from zstandard import ZstdError
 
-    return McapError, ZstdError, struct.error, ValueError, OverflowError, MemoryError
+    return McapError, ZstdError, struct.error, ValueError, OverflowError
+
+
+def _require_stated_size(chunk: "Chunk") -> None:
+    """Raise McapError if a chunk is too large when it is unpacked, or larger than it states."""
+    from mcap.exceptions import McapError
+    from zstandard import frame_content_size
+
+    size = chunk.uncompressed_size
+    if size > MAX_CHUNK_BYTES:
+        raise McapError(f"a chunk has {size} bytes")
+    if chunk.compression == "zstd" and frame_content_size(chunk.data) not in (-1, size):
+        raise McapError("a chunk is larger than it states")
 
 
 def _is_intact(attachment: "Attachment", content: ContentStream) -> bool:
@@ -130,6 +144,9 @@ def _is_intact(attachment: "Attachment", content: ContentStream) -> bool:
 
 MAX_BYTES = 16 * 1024**3
 """greatest size of a recording; one with a camera's pictures takes some 100 MB an hour"""
+MAX_CHUNK_BYTES = 200_000_000
+"""greatest size of a chunk when it is unpacked; Argo's have ten seconds, of some megabytes"""
+_MODULES = ("mcap.stream_reader", "zstandard", "lz4.frame")
 _HINT = "name a file that a run was recorded in"
 
 
@@ -175,17 +192,21 @@ class Recording:
 def read_recording(path: Path) -> Recording:
     """Return the contents of a recording, also of one whose end is missing or damaged; see `flaw`.
 
-    All checksums of the returned data are verified. Raises ArgoError if the file can't be read, is
-    damaged before its end, or is not an .mcap file of Argo.
+    All checksums of the returned data are verified. The file is read in a process with limits of
+    time and memory. Raises ArgoError if it can't be read, is damaged before its end, is not an
+    .mcap file of Argo, or exceeds the limits.
     """
-    return decode_recording(_load(path), str(path))
+    size = size_on_disk(path)
+    try:
+        limits = limits_for_size(size, held=size)
+        return call_limited(limits, _MODULES, read_recording_here, path)
+    except LimitExceeded as error:
+        _raise_invalid(str(path), f"{error}: {_HINT}", Remedy.RECORD)
 
 
-def decode_recording(content: bytes, name: str) -> Recording:
-    """Return the contents of a recording from its bytes, like `read_recording`.
-
-    `name` is the name of the recording in messages.
-    """
+def read_recording_here(path: Path) -> Recording:
+    """Return the contents of a recording, as `read_recording`, but here and without its limits."""
+    content, name = _load(path), str(path)
     require_libraries()
     parts = _Parts()
     flaw = _read_parts(name, content, parts)

@@ -3,6 +3,11 @@
 from argo_compiler.diagnostics.codes.code import error, warning
 
 FILE = {
+    "file.beyond-limits": error(
+        "The file takes more time or memory to be read than any mission, or makes the library that "
+        "reads it crash.",
+        "Check that it is the right file; record or export the mission again.",
+    ),
     "file.directory": error("A folder is given instead of a file.", "Name the file in it."),
     "file.duplicate-key": error(
         "An object of the JSON file has the same field twice; readers would disagree on which "
@@ -31,7 +36,7 @@ FILE = {
         "The JSON is nested far deeper than any mission.", "Check that it is the right file."
     ),
     "file.too-large": error(
-        "The file is larger than 50 MB, far above any mission.", "Check that it is the right file."
+        "The file is larger than 16 MB, far above any mission.", "Check that it is the right file."
     ),
     "file.unreadable": error("The file can't be read.", "Check the path and its permissions."),
     "file.unsupported-version": error(

@@ -1,8 +1,11 @@
 """Tests of missions in bags, and of the errors for bags without a mission."""
 
+import os
+import sqlite3
 import sys
-from contextlib import suppress
+from contextlib import closing, suppress
 from functools import cache
+from runpy import run_path
 
 import pytest
 from hypothesis import given, settings
@@ -13,10 +16,12 @@ from rosbags.rosbag2 import Reader as Ros2Reader
 from rosbags.rosbag2 import Writer as Ros2Writer
 
 from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.limited_process import CallLimits, process_kept
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.il import Mission
 from argo_compiler.ros import (
     Storage,
+    bags,
     compression,
     is_bag,
     read_bag,
@@ -27,6 +32,7 @@ from argo_compiler.ros import (
     to_ros2_bag,
 )
 from argo_compiler.ros import types as ros_types
+from argo_compiler.ros.bags import read_bag_here
 from argo_compiler.ros.package import SPECIFICATION
 from tests.conftest import examples
 from tests.mission_writing import measure, start
@@ -37,6 +43,13 @@ PLAN = Mission(
     tasks=(start("S", "A"), measure("A", object_id="4")),
 )
 FORMS = ["ros1", *Storage]
+
+
+@pytest.fixture(autouse=True, scope="module")
+def one_process():
+    """Let one process read all bags, as each start takes a second."""
+    with process_kept():
+        yield
 
 
 def write(folder, form, mission=PLAN):
@@ -61,9 +74,10 @@ def _bag(form):
     return _make(form, PLAN)
 
 
-def read_error(path):
+def read_error(path, here=False):
+    """Return the error of a bag; `here`: without another process, which knows no monkeypatch."""
     with pytest.raises(DiagnosticError) as caught:
-        read_bag(path)
+        read_bag_here(path, str(path)) if here else read_bag(path)
     (diagnostic,) = caught.value.diagnostics
     assert str(caught.value).startswith(f"{path}: error: ")
     assert diagnostic.hint
@@ -208,7 +222,7 @@ def test_compressed_ros_1_bags_are_read_up_to_a_size(tmp_path, monkeypatch, form
         writer.write(connection, 1, encoded(PLAN))
     assert read_bag(path).mission == PLAN
     monkeypatch.setattr(compression, "MAX_CHUNK_BYTES", 100)
-    assert read_error(path).code == "ros.compressed"
+    assert read_error(path, here=True).code == "ros.compressed"
 
 
 @pytest.mark.parametrize("mode", [CompressionMode.FILE, CompressionMode.MESSAGE])
@@ -232,8 +246,8 @@ def test_compressed_mcap_chunks_are_read_up_to_a_size(tmp_path, monkeypatch):
     assert b"zstd" in (path / "bag.mcap").read_bytes()
     assert read_bag(path).mission == PLAN
     monkeypatch.setattr(compression, "MAX_CHUNK_BYTES", 100)
-    assert read_error(path).code == "ros.compressed"
-    assert read_error(path / "bag.mcap").code == "ros.compressed"
+    assert read_error(path, here=True).code == "ros.compressed"
+    assert read_error(path / "bag.mcap", here=True).code == "ros.compressed"
 
 
 def test_without_rosbags_the_error_gives_the_install_command(monkeypatch, tmp_path):
@@ -243,6 +257,65 @@ def test_without_rosbags_the_error_gives_the_install_command(monkeypatch, tmp_pa
     ros_types.ros1_types.cache_clear()
     try:
         with pytest.raises(ArgoError, match=r"need rosbags: pip install .*\[ros\]"):
-            read_bag(path)
+            read_bag_here(path, str(path))
     finally:
         ros_types.ros1_types.cache_clear()
+
+
+CALCULATED = {
+    "a view without end": (
+        "CREATE VIEW more AS WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x FROM c) "
+        "SELECT x AS schema_version FROM c WHERE x = 0",
+        "view more",
+    ),
+    "a generated column": (
+        "CREATE TABLE more(id INTEGER, data BLOB AS (zeroblob(900000000 + id)))",
+        "table more",
+    ),
+    "a trigger": (
+        "CREATE TRIGGER t AFTER INSERT ON topics BEGIN DELETE FROM messages; END",
+        "trigger t",
+    ),
+    "a virtual table": ("CREATE VIRTUAL TABLE words USING fts5(text)", "table words"),
+}
+
+
+@pytest.mark.parametrize("name", CALCULATED)
+def test_databases_that_calculate_their_content_are_refused(tmp_path, name):
+    definition, part = CALCULATED[name]
+    path = tmp_path / "bag.db3"
+    (data,) = write(tmp_path, Storage.SQLITE3).glob("mission.*")
+    path.write_bytes(data.read_bytes())
+    with closing(sqlite3.connect(path)) as database:
+        database.execute(definition)
+        database.commit()
+    diagnostic = read_error(path)
+    assert diagnostic.code == "ros.broken-bag"
+    assert f"the content of its {part} is calculated" in diagnostic.message
+
+
+@pytest.mark.parametrize(("script", "file"), [("endless", "evil.db3"), ("huge", "bomb.db3")])
+def test_the_bags_on_which_argo_hung_are_refused(tmp_path, fault_inputs, monkeypatch, script, file):
+    monkeypatch.chdir(tmp_path)
+    run_path(str(fault_inputs / f"{script}_bag.py"))
+    assert read_error(tmp_path / file).code == "ros.broken-bag"
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux limits the memory")
+def test_a_bag_that_takes_too_much_memory_is_refused_with_the_way_out(tmp_path, monkeypatch):
+    path = ros1_bag(tmp_path / "1.bag", [bytes(40_000_000)])
+    monkeypatch.setattr(bags, "limits_for_size", lambda _: CallLimits(10.0, 9_000_000))
+    diagnostic = read_error(path)
+    assert diagnostic.code == "file.beyond-limits"
+    assert diagnostic.message == "the file takes more than 9 MB of memory to read"
+    assert diagnostic.hint == "is it the right file? If it is, record /mission alone"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such files")
+def test_a_bag_that_takes_too_long_is_refused(tmp_path, monkeypatch):
+    path = tmp_path / "endless.bag"
+    os.mkfifo(path)
+    monkeypatch.setattr(bags, "limits_for_size", lambda _: CallLimits(0.1, 400_000_000))
+    diagnostic = read_error(path)
+    assert diagnostic.code == "file.beyond-limits"
+    assert diagnostic.message == "the file takes longer than 1 s to read"

@@ -1,6 +1,8 @@
 """Recordings read back: the same report, and the rest of files that are cut or damaged."""
 
 import json
+import os
+import sys
 from pathlib import Path
 
 import pytest
@@ -10,7 +12,8 @@ from mcap.reader import make_reader
 from mcap.writer import Writer
 
 from argo_compiler.base.errors import ArgoError
-from argo_env.recording import files
+from argo_compiler.base.limited_process import CallLimits, process_kept
+from argo_env.recording import files, reader
 from argo_env.recording.files import check_recording_path, recording_to
 from argo_env.recording.reader import read_recording
 from argo_env.report import write_report
@@ -24,6 +27,13 @@ from tests.yard import Watching, cut, opened
 pytestmark = pytest.mark.physics
 
 EMPTY = b"\x89MCAP0\r\n"
+
+
+@pytest.fixture(autouse=True, scope="module")
+def one_process():
+    """Let one process read all recordings, as each start takes a second."""
+    with process_kept():
+        yield
 
 
 def test_the_report_can_be_made_again(recorded, yard, tmp_path: Path) -> None:
@@ -210,6 +220,47 @@ def test_another_tools_recording_is_refused(tmp_path: Path) -> None:
         read_recording(tmp_path / "none.mcap")
     with pytest.raises(ArgoError, match="is a folder"):
         read_recording(tmp_path)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux limits the memory")
+def test_a_small_recording_that_unpacks_to_much_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "bomb.mcap"
+    with path.open("wb") as stream:
+        writer = Writer(stream, chunk_size=40_000_000)
+        writer.start()
+        channel = writer.register_channel("/readings", "json", 0)
+        for number in range(12):
+            writer.add_message(channel, number, bytes(45_000_000), 0)
+        writer.finish()
+    assert path.stat().st_size < 1_000_000
+    with pytest.raises(
+        ArgoError, match=r"bomb\.mcap takes more than 40. MB of memory to read: name"
+    ):
+        read_recording(path)
+
+
+def test_a_chunk_larger_than_any_is_damage(tmp_path: Path, monkeypatch) -> None:
+    path = tmp_path / "chunk.mcap"
+    with path.open("wb") as stream:
+        writer = Writer(stream)
+        writer.start()
+        channel = writer.register_channel("/readings", "json", 0)
+        writer.add_message(channel, 0, bytes(2_000), 0)
+        writer.finish()
+    monkeypatch.setattr(reader, "MAX_CHUNK_BYTES", 1_000)
+    with pytest.raises(ArgoError, match=r"is damaged after 0 s \(a chunk has 20\d\d bytes\)"):
+        reader.read_recording_here(path)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such files")
+def test_a_recording_that_takes_too_long_is_refused(tmp_path: Path, monkeypatch) -> None:
+    path = tmp_path / "endless.mcap"
+    os.mkfifo(path)
+    monkeypatch.setattr(reader, "limits_for_size", lambda _, **__: CallLimits(0.1, 400_000_000))
+    with pytest.raises(
+        ArgoError, match=r"endless\.mcap takes longer than 1 s to read: name a file"
+    ):
+        read_recording(path)
 
 
 def test_a_file_that_can_not_be_written_is_an_error(tmp_path: Path, monkeypatch) -> None:

@@ -25,6 +25,7 @@ async def _do_nothing(_: Job) -> None:
 class _RunningJob:
     work: JobProcess[Any]
     watching: asyncio.Task[None]
+    keep: OnEnd
     on_end: OnEnd
 
 
@@ -57,14 +58,20 @@ class Jobs:
         jobs = (self._jobs[id] for id in self._running)
         return [job for job in jobs if isinstance(job, kind)]
 
-    def start(self, job: Job, work: JobProcess[Any], on_end: OnEnd = _do_nothing) -> Job:
+    def start(
+        self,
+        job: Job,
+        work: JobProcess[Any],
+        on_end: OnEnd = _do_nothing,
+        keep: OnEnd = _do_nothing,
+    ) -> Job:
         """Start the work of a job, and return the job.
 
-        `on_end` is called after the work is done, has failed or was cancelled, not after
-        `kill_running`.
+        `keep` is called after the work is done or has failed, before anybody sees that. `on_end` is
+        called after that, also if the job was cancelled, but not after `kill_running`.
         """
         task = asyncio.get_running_loop().create_task(self._watch(job.id, work))
-        self._running[job.id] = _RunningJob(work, task, on_end)
+        self._running[job.id] = _RunningJob(work, task, keep, on_end)
         return self._store(job)
 
     async def cancel_running(self, id: str) -> Job:
@@ -114,6 +121,8 @@ class Jobs:
             state = JobState.INTERRUPTED if resumable else JobState.FAILED
             job = job.model_copy(update={"state": state, "problem": str(error)})
         await work.end()
+        if id in self._running:
+            await self._running[id].keep(job)
         running = self._running.pop(id, None)
         if running is not None:
             self._store(job)

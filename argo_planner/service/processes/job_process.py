@@ -12,6 +12,7 @@ from threading import Lock
 from typing import Any, Generic, TypeVar
 
 from argo_compiler.base.errors import ArgoError, Unavailable
+from argo_compiler.base.limited_process import CallLimits, exceeded_limit
 from argo_env.worker_processes import ignore_sigint_and_end_with_parent
 from argo_planner.service.processes.context import CONTEXT
 
@@ -23,7 +24,13 @@ ReportProgress = Callable[[Any], None]
 class JobProcess(Generic[Result]):
     """Function call in a separate process, which is started when the result is awaited."""
 
-    def __init__(self, work: Callable[..., Result], *arguments: Any, parent: bool = False) -> None:
+    def __init__(
+        self,
+        work: Callable[..., Result],
+        *arguments: Any,
+        parent: bool = False,
+        limits: CallLimits | None = None,
+    ) -> None:
         """Prepare the call `work(*arguments, report)`; all of it and its result must be picklable.
 
         Args:
@@ -31,7 +38,10 @@ class JobProcess(Generic[Result]):
             arguments: Its other arguments.
             parent: True if the work starts processes of its own, which it could not do in a daemon
                 process. `end` does not end these: they have to end by themselves after it.
+            limits: Limits that the work sets itself (`limited`), of which the time is enforced
+                here too; None: it has none.
         """
+        self._limits = limits
         self._receiver, self._sender = CONTEXT.Pipe(duplex=False)
         self._process = CONTEXT.Process(target=_run_work, args=(self._sender, work, arguments))
         self._process.daemon = not parent
@@ -43,16 +53,31 @@ class JobProcess(Generic[Result]):
         """Start the process, wait for the work to end, and return its result.
 
         Meanwhile, `on_progress` is called with each progress that the work reports. Raises the
-        ArgoError that the work has raised, or Unavailable if its process can't start or has died.
+        ArgoError that the work has raised, LimitExceeded if it has limits and exceeds them, or
+        Unavailable if its process can't start or has died.
         """
+        timed_out = False
+
+        def stop() -> None:
+            nonlocal timed_out
+            timed_out = True
+            self._process.kill()
+
         loop = asyncio.get_running_loop()
         thread = ThreadPoolExecutor(1)
+        timer: asyncio.TimerHandle | None = None
         try:
             await loop.run_in_executor(thread, self._start)
+            if self._limits is not None:
+                timer = loop.call_later(self._limits.total_seconds, stop)
             while True:
                 try:
                     kind, content = await loop.run_in_executor(thread, self._receiver.recv)
                 except (EOFError, OSError):
+                    if self._limits is not None and self._process.pid is not None:
+                        await loop.run_in_executor(thread, self._process.join)
+                        code = self._process.exitcode
+                        raise exceeded_limit(self._limits, code, timed_out) from None
                     raise Unavailable("the process of this job has died: try again") from None
                 match kind:
                     case "told":
@@ -63,6 +88,8 @@ class JobProcess(Generic[Result]):
                         result: Result = content
                         return result
         finally:
+            if timer is not None:
+                timer.cancel()
             thread.shutdown(wait=False)
 
     def _start(self) -> None:

@@ -2,8 +2,9 @@
 
 import asyncio
 from collections.abc import Callable, Coroutine
+from concurrent.futures import ThreadPoolExecutor
 from datetime import datetime
-from functools import wraps
+from functools import partial, wraps
 from typing import Any, ParamSpec, TypeVar
 
 from argo_compiler.base.catalog import Catalog
@@ -61,8 +62,11 @@ class PlanRoom:
         catalog: Catalog,
         analyst: Analyst | None,
         clock: Callable[[], datetime],
+        threads: ThreadPoolExecutor,
     ) -> None:
+        """Open the room of a plan; `threads` do its work on the disk."""
         self._file = file
+        self._threads = threads
         self._document = file.document
         self._catalog = catalog
         self._analyst = analyst
@@ -253,7 +257,7 @@ class PlanRoom:
             if self._closed:
                 return
             if move_file_first is not None:
-                await asyncio.to_thread(move_file_first)
+                await self._on_disk(move_file_first)
                 self._broadcast(DeletedTold())
             self.close_at_once()
 
@@ -289,9 +293,12 @@ class PlanRoom:
     # ---- the file, checks and analysis
 
     async def _write(self, document: PlanDocument, record: PlanRecord) -> None:
-        await asyncio.to_thread(self._file.append, document, record)
+        await self._on_disk(self._file.append, document, record)
         # After the file: a client that joins in the meantime gets this change as a message.
         self._document = document
+
+    async def _on_disk(self, work: Callable[..., object], *arguments: object) -> None:
+        await asyncio.get_running_loop().run_in_executor(self._threads, partial(work, *arguments))
 
     def _command_done(self, revision: Revision, author: str) -> CommandDone:
         plan = self.document.plan

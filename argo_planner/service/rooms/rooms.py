@@ -2,8 +2,10 @@
 
 import asyncio
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from datetime import datetime
 from functools import partial
+from typing import TypeVar
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.il import Mission
@@ -12,8 +14,10 @@ from argo_planner.service.rooms.room import PlanRoom
 from argo_planner.service.storage.folder import PlanFolder, summarize_plan
 from argo_planner.service.storage.outline import PlanSummary
 
+T = TypeVar("T")
 MOST_OPEN = 50
 """rooms without members that stay open"""
+MOST_THREADS = 4
 
 
 class PlanRooms:
@@ -31,6 +35,8 @@ class PlanRooms:
         self._analyst = analyst
         self._clock = clock
         self._rooms: dict[str, PlanRoom] = {}
+        self._threads = ThreadPoolExecutor(MOST_THREADS, thread_name_prefix="plans")
+        """Threads for plans only. An edit does not wait for other work that takes long."""
         self._turn = asyncio.Lock()
         self._listing = asyncio.Lock()  # separate from `_turn`: edits do not wait for lists
 
@@ -38,18 +44,20 @@ class PlanRooms:
         """Return summaries of all plans, the last changed ones first."""
         async with self._listing:
             open_plans = {id: summarize_plan(room.document) for id, room in self._rooms.items()}
-            return await asyncio.to_thread(self._folder.list_plans, open_plans)
+            return await self._on_disk(self._folder.list_plans, open_plans)
 
     async def list_deleted(self) -> list[PlanSummary]:
         """Return summaries of the deleted plans, which are in the bin, the last changed first."""
         async with self._listing:
-            return await asyncio.to_thread(self._folder.list_deleted)
+            return await self._on_disk(self._folder.list_deleted)
 
     async def create(self, name: str, mission: Mission) -> PlanRoom:
         """Create a plan and return its open room; raises the errors of `PlanFolder.create`."""
         async with self._turn:
-            file = await asyncio.to_thread(self._folder.create, name, mission, self._clock())
-            return self._add(PlanRoom(file, self._catalog, self._analyst, self._clock))
+            file = await self._on_disk(self._folder.create, name, mission, self._clock())
+            return self._add(
+                PlanRoom(file, self._catalog, self._analyst, self._clock, self._threads)
+            )
 
     async def open(self, id: str) -> PlanRoom:
         """Return the room of a plan, opened if needed; raises the errors of `PlanFolder.open`."""
@@ -58,8 +66,10 @@ class PlanRooms:
         async with self._turn:
             if (room := self._rooms.get(id)) is not None:
                 return room
-            file = await asyncio.to_thread(self._folder.open, id)
-            return self._add(PlanRoom(file, self._catalog, self._analyst, self._clock))
+            file = await self._on_disk(self._folder.open, id)
+            return self._add(
+                PlanRoom(file, self._catalog, self._analyst, self._clock, self._threads)
+            )
 
     def find_open(self, id: str) -> PlanRoom | None:
         """Return the room of a plan, or None if it is not open."""
@@ -78,7 +88,7 @@ class PlanRooms:
         async with self._turn:
             move_file = partial(self._folder.delete, id)
             if (room := self._rooms.get(id)) is None:
-                await asyncio.to_thread(move_file)
+                await self._on_disk(move_file)
             else:
                 await room.close(move_file)
                 self._rooms.pop(id, None)
@@ -86,20 +96,26 @@ class PlanRooms:
     async def restore(self, id: str) -> PlanRoom:
         """Move a plan out of the bin and open its room; raises NotFound if it is not in the bin."""
         async with self._turn:
-            await asyncio.to_thread(self._folder.restore, id)
+            await self._on_disk(self._folder.restore, id)
         return await self.open(id)
 
     async def delete_from_bin(self, id: str) -> None:
         """Delete a plan in the bin permanently; raises NotFound if the bin does not have it."""
         async with self._turn:
-            await asyncio.to_thread(self._folder.delete_from_bin, id)
+            await self._on_disk(self._folder.delete_from_bin, id)
 
     async def close(self) -> None:
         """Close all rooms and the folder."""
         for id, room in [*self._rooms.items()]:
             await room.close()
             self._rooms.pop(id, None)
+        self._threads.shutdown()
         self._folder.close()
+
+    async def _on_disk(self, work: Callable[..., T], *arguments: object) -> T:
+        """Call a function in one of the threads for plans, and return its result."""
+        loop = asyncio.get_running_loop()
+        return await loop.run_in_executor(self._threads, partial(work, *arguments))
 
     def _add(self, room: PlanRoom) -> PlanRoom:
         self._rooms[room.document.id] = room

@@ -30,6 +30,10 @@ _REPORT_ATTEMPTS = 50
 """number of times that a report which is being written is looked for"""
 _REPORT_PAUSE = 0.2
 """s between these attempts"""
+STOP_TIMEOUT = 30.0
+"""s after which a process that carries out no stop is killed, and another one stops the run"""
+REPORT_TIMEOUT = 300.0
+"""s after which a process that only stops a run or writes its report is killed"""
 
 
 class AfterRestart(StrEnum):
@@ -101,6 +105,8 @@ class RunHost:
         """process of the current run; None: it has none"""
         self._workers: set[RunProcess] = set()
         """this process, and those that are still writing the report of an earlier run"""
+        self._timers: dict[RunProcess, asyncio.TimerHandle] = {}
+        """for the processes that are killed if they do not end in time"""
         self._lock = asyncio.Lock()
         """held while the current run is started, gets a request or messages, or loses its process
 
@@ -211,6 +217,8 @@ class RunHost:
                 await self._start_process((request, by))
             elif worker is not None:
                 worker.send((request, by))
+                if request.kind == "stop":
+                    self._kill_after(worker, STOP_TIMEOUT)
             return accepted
 
     def find_request(self, run: str, id: str) -> RequestState:
@@ -326,6 +334,8 @@ class RunHost:
             return
         self._worker = worker
         self._workers.add(worker)
+        if worker.for_stop:
+            self._kill_after(worker, REPORT_TIMEOUT)
         worker.start_reading(
             lambda messages: asyncio.run_coroutine_threadsafe(
                 self._handle_messages(worker, messages), loop
@@ -344,6 +354,15 @@ class RunHost:
         async with self._lock:
             if worker is self._worker:
                 await self._current.apply_messages(messages)
+                if self._current.stored.state.status is RunStatus.ENDED:
+                    self._kill_after(worker, REPORT_TIMEOUT)
+
+    def _kill_after(self, worker: RunProcess, delay: float) -> None:
+        """Kill a process after `delay` s, unless it ends before; replaces an earlier time."""
+        if worker in self._timers:
+            self._timers[worker].cancel()
+        loop = asyncio.get_running_loop()
+        self._timers[worker] = loop.call_later(delay, worker.kill)
 
     async def _handle_exit(self, worker: RunProcess) -> None:
         """Handle the end of a process, with the run or before the run's end."""
@@ -355,6 +374,8 @@ class RunHost:
                     await self._handle_loss(problem, may_stop=not worker.for_stop)
         finally:
             self._workers.discard(worker)
+            if (timer := self._timers.pop(worker, None)) is not None:
+                timer.cancel()
 
     async def _handle_loss(self, problem: str, may_stop: bool) -> None:
         """Set and publish the state of the current run after its process is gone.

@@ -107,6 +107,10 @@ class RunProcess:
         self._reader = threading.Thread(target=pass_on, daemon=True)
         self._reader.start()
 
+    def kill(self) -> None:
+        """Kill the process, unless it has ended; the reading thread then calls `on_exit`."""
+        self._process.kill()
+
     def kill_and_wait(self) -> None:
         """Kill the process, and wait until the reading thread has called `on_exit` and ended.
 

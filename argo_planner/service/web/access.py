@@ -77,6 +77,8 @@ class Visitor:
     author: str
     named: bool = False
     """whether the name comes from the token"""
+    key: str = ""
+    """key of the token, the same for all that use it"""
 
     def require(self, role: AccessRole) -> None:
         """Raise AccessDenied if the visitor's role does not include `role`."""
@@ -120,10 +122,11 @@ def identify_visitor(
     """
     stated = headers.get(AUTHOR_HEADER) or query.get("author")
     if token.name is not None or not stated:
-        return Visitor(token.role, token.name or "somebody", token.name is not None)
+        name = token.name or "somebody"
+        return Visitor(token.role, name, token.name is not None, token.cookie)
     author = unquote(stated)
     require_displayable_name(author, "the author of this request")
-    return Visitor(token.role, author)
+    return Visitor(token.role, author, key=token.cookie)
 
 
 def read_tokens(path: Path) -> tuple[AccessToken, ...]:

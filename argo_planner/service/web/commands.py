@@ -1,6 +1,7 @@
 """Routes for the commands to a mission, its script, its plain sentences and its analysis."""
 
 import asyncio
+from collections.abc import AsyncIterator
 from typing import Annotated, Any
 
 from fastapi import Response
@@ -35,7 +36,6 @@ from argo_planner.service.web.requests import (
     make_router,
 )
 from argo_planner.use_cases.explaining import explain_mission
-from argo_planner.use_cases.importing import Upload, import_mission
 
 MAX_SCRIPT_LENGTH = 1_000_000
 """in characters"""
@@ -80,8 +80,7 @@ async def write_script(
 ) -> Response:
     """Replace the mission by that of a script, as a command that can be undone."""
     room = await service.rooms.open(id)
-    upload = Upload("script", given.script.encode(errors="replace"))
-    imported = await asyncio.to_thread(import_mission, upload, service.site)
+    imported = await service.scripts.import_upload("script", _parts(given.script), visitor.key)
     command = ReplacePlan.model_construct(id=given.id, mission=imported.mission, about="a script")
     answer = await execute_command(room, command, visitor.author, made_on)
     revision = room.document.plan.revision
@@ -106,6 +105,10 @@ async def read_last_analysis(service: Service, _: Viewer, id: PlanId) -> Respons
     if room.last_analysis is None:
         raise NotFound("the mission has not been analysed yet: ask again in a moment")
     return json_response(room.last_analysis)
+
+
+async def _parts(script: str) -> AsyncIterator[bytes]:
+    yield script.encode(errors="replace")
 
 
 async def execute_command(

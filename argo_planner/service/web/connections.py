@@ -26,11 +26,14 @@ class LimitedProtocol(HttpToolsProtocol):
 
     A connection without a request is closed after `FIRST_REQUEST_TIMEOUT`, or earlier, the oldest
     first, if there are more than `limit` connections. If all have sent a request, a new one is
-    refused.
+    refused. Connections whose last request is answered are closed like those without one, after
+    them.
     """
 
     waiting: ClassVar[OrderedDict[asyncio.Transport, "LimitedProtocol"]] = OrderedDict()
     """connections without a request so far, the oldest first"""
+    idle: ClassVar[OrderedDict[asyncio.Transport, "LimitedProtocol"]] = OrderedDict()
+    """connections whose requests are all answered, the one that has waited longest first"""
     limit: ClassVar[int] = MAX_CONNECTIONS
     _timeout: asyncio.TimerHandle | None = None
 
@@ -41,8 +44,10 @@ class LimitedProtocol(HttpToolsProtocol):
         """
         super().connection_made(transport)
         if len(self.connections) > self.limit:
-            oldest = next(iter(self.waiting.values()), self)
-            oldest.refuse_connection()
+            if self.idle and not self.waiting:
+                next(iter(self.idle.values())).close_silently()
+            else:
+                next(iter(self.waiting.values()), self).refuse_connection()
         if not transport.is_closing():
             self.waiting[transport] = self
             self._timeout = self.loop.call_later(FIRST_REQUEST_TIMEOUT, self.close_silently)
@@ -51,6 +56,12 @@ class LimitedProtocol(HttpToolsProtocol):
         """Stop waiting for the first request."""
         self._stop_waiting()
         super().on_headers_complete()
+
+    def on_response_complete(self) -> None:
+        """Note that the connection is idle, unless another request waits on it."""
+        super().on_response_complete()
+        if self.cycle.response_complete and not self.transport.is_closing():
+            self.idle[self.transport] = self
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Stop waiting for the first request of a connection that has ended."""
@@ -74,6 +85,7 @@ class LimitedProtocol(HttpToolsProtocol):
 
     def _stop_waiting(self) -> None:
         self.waiting.pop(self.transport, None)
+        self.idle.pop(self.transport, None)
         if self._timeout is not None:
             self._timeout.cancel()
             self._timeout = None

@@ -1,5 +1,7 @@
 """Guard in front of all routes: checks the origin, the token and the size of each request."""
 
+import asyncio
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from http import HTTPStatus
@@ -10,7 +12,7 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.errors import ArgoError, Unavailable
 from argo_planner.service.web.access import AccessToken, TokenBook, TokenMissing, identify_visitor
 from argo_planner.service.web.problems import (
     Problem,
@@ -19,7 +21,12 @@ from argo_planner.service.web.problems import (
     problem_from_error,
     problem_response,
 )
-from argo_planner.service.web.upload_limits import max_body_bytes
+from argo_planner.service.web.upload_limits import (
+    MOST_REQUESTS,
+    PART_TIMEOUT,
+    REQUEST_TIMEOUT,
+    max_body_bytes,
+)
 
 LOOPBACK = ("localhost", "127.0.0.1", "[::1]")
 
@@ -60,6 +67,8 @@ class Guard:
         self._app = app
         self._tokens = tokens
         self._settings = settings
+        self._under_way: Counter[str] = Counter()
+        """requests and pages under way, by the key of their token"""
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] == "lifespan":
@@ -86,16 +95,40 @@ class Guard:
                     refused = problem_from_error(error)
         if refused is None:
             refused = _check_content_length(scope, headers)
+        if refused is None and self._under_way[scope["visitor"].key] >= MOST_REQUESTS:
+            refused = problem_from_error(
+                Unavailable(
+                    f"{MOST_REQUESTS} requests with this token are under way: try again when some "
+                    "of them have ended"
+                )
+            )
         if refused is not None:
             await _refuse(refused, scope, receive, send)
             return
+        key = scope["visitor"].key
+        self._under_way[key] += 1
+        try:
+            await self._pass_on(scope, receive, send)
+        finally:
+            self._under_way[key] -= 1
+
+    async def _pass_on(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Let the application answer a request, within the limits of its size and time."""
         if scope["type"] == "websocket":
             await self._app(scope, receive, send)
-        else:
-            body = _LimitedBody(scope, receive)
-            await self._app(scope, body.receive, _add_headers(scope, body.wrap_send(send)))
-            if body.too_large:
-                await _refuse(problem_from_error(_too_large(scope)), scope, receive, send)
+            return
+        body = _LimitedBody(scope, receive)
+        refused: Problem | None = None
+        try:
+            async with asyncio.timeout(REQUEST_TIMEOUT):
+                await self._app(scope, body.receive, _add_headers(scope, body.wrap_send(send)))
+        except TimeoutError:
+            late = f"the request was not answered within {REQUEST_TIMEOUT:.0f} s: try again later"
+            refused = None if body.answered else problem_from_error(Unavailable(late))
+        if body.refusal is not None:
+            refused = problem_from_error(body.refusal)
+        if refused is not None:
+            await _refuse(refused, scope, receive, send)
 
     def _check_origin(self, scope: Scope, headers: Headers) -> Problem | None:
         """Return a problem if the header Host, Origin or Sec-Fetch-Site is not allowed."""
@@ -185,8 +218,14 @@ def _too_large(scope: Scope) -> TooLarge:
     return TooLarge(f"the request has more than {megabytes} MB: send at most {megabytes} MB")
 
 
+def _too_slow() -> ArgoError:
+    return Unavailable(
+        f"no part of the request's body arrived for {PART_TIMEOUT:.0f} s: send it again"
+    )
+
+
 class _LimitedBody:
-    """Counter of the bytes of a request's body, which stops reading at the limit.
+    """Reader of a request's body, which stops at the limit of its size, and if no part arrives.
 
     It does not rely on the header that states the size.
     """
@@ -194,31 +233,44 @@ class _LimitedBody:
     def __init__(self, scope: Scope, receive: Receive) -> None:
         self._scope, self._receive = scope, receive
         self._received = 0
-        self._answered = False
-        self.too_large = False
-        """whether the body is too large and no response has begun"""
+        self._complete = False
+        self.answered = False
+        """whether a response has begun"""
+        self.refusal: ArgoError | None = None
+        """why the rest of the body was not read, unless a response had begun"""
 
     async def receive(self) -> Message:
-        message = await self._receive()
+        try:
+            # After the whole body, this waits until the client disconnects.
+            async with asyncio.timeout(None if self._complete else PART_TIMEOUT):
+                message = await self._receive()
+        except TimeoutError:
+            raise self._refused(_too_slow()) from None
+        self._complete = not message.get("more_body", False)
         self._received += len(message.get("body", b""))
         if self._received > max_body_bytes(self._scope["path"]):
-            self.too_large = not self._answered
-            raise _too_large(self._scope)
+            raise self._refused(_too_large(self._scope))
         return message
 
+    def _refused(self, error: ArgoError) -> ArgoError:
+        """Return the error, and store it as the refusal unless a response has begun."""
+        if not self.answered:
+            self.refusal = error
+        return error
+
     def wrap_send(self, send: Send) -> Send:
-        """Return a function that sends a response, unless the body was too large.
+        """Return a function that sends a response, unless the body was refused.
 
         For such a body, the guard sends the response: the framework between it and the routes would
         answer that the request is bad, which is dropped here.
         """
 
-        async def send_unless_too_large(message: Message) -> None:
-            self._answered = True
-            if not self.too_large:
+        async def send_unless_refused(message: Message) -> None:
+            self.answered = True
+            if self.refusal is None:
                 await send(message)
 
-        return send_unless_too_large
+        return send_unless_refused
 
 
 def _add_headers(scope: Scope, send: Send) -> Send:

@@ -45,7 +45,7 @@ from argo_planner.service.web.requests import (
     openapi_links,
 )
 from argo_planner.use_cases.exporting import export_mission, to_script
-from argo_planner.use_cases.importing import ImportedMission, Upload, import_mission
+from argo_planner.use_cases.importing import ImportedMission
 
 MISSION_LINKS = openapi_links(
     "read_mission",
@@ -139,7 +139,7 @@ async def create_mission(service: Service, _: Planner, new: JsonBody[NewMission]
 async def import_a_mission(
     request: Request,
     service: Service,
-    _: Planner,
+    visitor: Planner,
     filename: Annotated[
         str, Query(max_length=200, description="name of the file; its ending shows the format")
     ],
@@ -148,9 +148,11 @@ async def import_a_mission(
     end_area: Annotated[int | None, Query(ge=-1000, le=1000)] = None,
 ) -> Response:
     """Create a mission from the body: a script, a mission in JSON, a ROS bag or an isar mission."""
-    upload = Upload(os.path.basename(filename) or "mission", await request.body())
-    imported = await asyncio.to_thread(import_mission, upload, service.site, start_area, end_area)
-    name = name or os.path.splitext(upload.name)[0]
+    file = os.path.basename(filename) or "mission"
+    imported = await service.imports.import_upload(
+        file, request.stream(), visitor.key, start_area, end_area
+    )
+    name = name or os.path.splitext(file)[0]
     return await _create(service, name, imported.mission, imported.diagnostics)
 
 
@@ -222,6 +224,7 @@ async def destroy_mission(service: Service, _: Planner, id: PlanId) -> Response:
     """Delete a mission in the bin for ever, with its evaluations."""
     await service.rooms.delete_from_bin(id)
     await service.evaluations.delete_for_mission(id)
+    await service.orders.delete_for_mission(id)
     delete_import_notes(service.folder, id)
     return Response(status_code=204)
 

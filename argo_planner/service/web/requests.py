@@ -18,6 +18,7 @@ from argo_compiler.base.extensions import InstalledExtension
 from argo_compiler.base.model import Model
 from argo_env.planning.opening import OpenedSite
 from argo_planner.service.evaluations.evaluations import Evaluations
+from argo_planner.service.jobs.imports import Imports
 from argo_planner.service.jobs.jobs import Jobs
 from argo_planner.service.jobs.order_searches import OrderSearches
 from argo_planner.service.rooms.rooms import PlanRooms
@@ -45,6 +46,10 @@ class PlanningService:
     rooms: PlanRooms
     jobs: Jobs
     orders: OrderSearches
+    imports: Imports
+    """uploads"""
+    scripts: Imports
+    """scripts that people edit, which don't wait for uploads"""
     evaluations: Evaluations
     runs: RunHost
     obstacles: ObstacleStore

@@ -16,6 +16,7 @@ from argo_compiler.base.errors import Unavailable
 from argo_env.planning.opening import OpenedSite
 from argo_planner.service.evaluations.evaluations import Evaluations
 from argo_planner.service.jobs.analysis import Analyst
+from argo_planner.service.jobs.imports import Imports
 from argo_planner.service.jobs.job import Job
 from argo_planner.service.jobs.jobs import Jobs
 from argo_planner.service.jobs.order_searches import OrderSearches
@@ -73,12 +74,13 @@ def make_service_opener(
 
             new_id = partial(secrets.token_hex, 6)
             jobs = Jobs(publish_job)
-            orders = OrderSearches(site.reference, jobs, new_id, _now)
+            orders = OrderSearches(site.reference, plans.path / "orders", jobs, new_id, _now)
             evaluations = Evaluations(plans.path / "evaluations", jobs, new_id, _now)
             runs = RunHost(plans.path / "runs", after_restart, _now, foxglove)
             obstacles = ObstacleStore(plans.path)
             await runs.open()
             await evaluations.open()
+            await orders.open()
             thread = ThreadPoolExecutor(1)
             try:
                 yield PlanningService(
@@ -87,6 +89,8 @@ def make_service_opener(
                     rooms=rooms,
                     jobs=jobs,
                     orders=orders,
+                    imports=Imports(site.reference),
+                    scripts=Imports(site.reference),
                     evaluations=evaluations,
                     runs=runs,
                     obstacles=obstacles,

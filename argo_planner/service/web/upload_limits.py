@@ -1,14 +1,17 @@
-"""Limits on the size of uploads, of other request bodies and of messages, in bytes."""
+"""Limits on requests: sizes in bytes, times in s, and the number of those under way."""
 
-from argo_compiler.files.mission_file import MAX_BYTES
-
-MAX_UPLOAD_BYTES = MAX_BYTES
-"""limit of an imported mission, the same as that of a mission file; scripts have a smaller limit of
-their own, in `argo_compiler/script/syntax/reading.py`"""
+MAX_UPLOAD_BYTES = 50_000_000
+"""limit of an import, which may be a bag; scripts and mission files have smaller limits"""
 MAX_BODY_BYTES = 2_000_000
 """limit of the body of any other request"""
 MAX_MESSAGE_BYTES = 1_000_000
 """limit of a message over a WebSocket"""
+MOST_REQUESTS = 500
+"""requests and pages of one token that may be under way at once, a quarter of all connections"""
+PART_TIMEOUT = 20.0
+"""time in which the next part of a body must arrive"""
+REQUEST_TIMEOUT = 180.0
+"""time in which a request must be answered, with its body"""
 _UPLOADS = ("/api/imports",)
 
 

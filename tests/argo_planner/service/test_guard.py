@@ -3,13 +3,20 @@
 import json
 import socket
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 
 import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection
 
-from argo_planner.service.web.connections import MAX_CONNECTIONS, raise_file_limit_for_connections
-from tests.argo_planner.service.served import ALL, Served, send_raw
+from argo_planner.service.web import guard
+from argo_planner.service.web.access import AccessRole
+from argo_planner.service.web.connections import (
+    MAX_CONNECTIONS,
+    LimitedProtocol,
+    raise_file_limit_for_connections,
+)
+from tests.argo_planner.service.served import ALL, SECRETS, Served, send_raw
 from tests.argo_planner.service.test_http import data, problem
 
 
@@ -298,3 +305,65 @@ def test_a_page_beyond_the_limit_of_connections_is_refused(service: Served, monk
             answer.status_code == 200
             for answer in pool.map(lambda _: service.client.get("/api/missions"), range(20))
         )
+
+
+def send_unfinished(service: Served, count: int, secret: str = ALL) -> list[socket.socket]:
+    """Open connections whose requests lack the rest of their bodies."""
+    host, _, port = service.address.partition(":")
+    head = (
+        f"POST /api/missions HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer {secret}\r\n"
+        "Content-Type: application/json\r\nContent-Length: 1000\r\n\r\n{"
+    )
+    connections = []
+    for _ in range(count):
+        connections.append(socket.create_connection((host, int(port)), timeout=30))
+        connections[-1].sendall(head.encode())
+    return connections
+
+
+def status_of(connection: socket.socket) -> bytes:
+    return connection.recv(65_536).split(b" ")[1]
+
+
+def test_unfinished_bodies_of_one_token_do_not_block_other_tokens(
+    service: Served, monkeypatch
+) -> None:
+    monkeypatch.setattr(guard, "MOST_REQUESTS", 5)
+    connections = send_unfinished(service, 8)
+    try:
+        assert [status_of(one) for one in connections[5:]] == [b"503"] * 3
+        other = service.as_("bob", SECRETS[AccessRole.PLAN])
+        assert other.get("/api/missions").status_code == 200
+        refused = problem(service.client.get("/api/missions"), 503, "unavailable")
+        assert "5 requests with this token are under way" in refused["detail"]
+    finally:
+        for one in connections:
+            one.close()
+
+
+def test_a_body_that_does_not_arrive_is_refused(service: Served, monkeypatch) -> None:
+    monkeypatch.setattr(guard, "PART_TIMEOUT", 0.2)
+    [connection] = send_unfinished(service, 1)
+    with connection:
+        answer = connection.recv(65_536)
+        assert answer.startswith(b"HTTP/1.1 503 ")
+        assert b"no part of the request's body arrived" in answer + connection.recv(65_536)
+
+
+def test_a_body_that_arrives_too_slowly_is_refused(service: Served, monkeypatch) -> None:
+    monkeypatch.setattr(guard, "REQUEST_TIMEOUT", 0.5)
+    [connection] = send_unfinished(service, 1)
+    connection.settimeout(0.05)
+    answer = b""
+    with connection:
+        while not answer:
+            connection.sendall(b" ")
+            with suppress(TimeoutError):
+                answer = connection.recv(65_536)
+    assert answer.startswith(b"HTTP/1.1 503 ")
+
+
+def test_connections_that_are_idle_make_room_for_others(service: Served, monkeypatch) -> None:
+    monkeypatch.setattr(LimitedProtocol, "limit", 4)
+    clients = [service.as_(f"person {k}") for k in range(12)]
+    assert [one.get("/api/missions").status_code for one in clients] == [200] * 12

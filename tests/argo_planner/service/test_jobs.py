@@ -3,12 +3,13 @@
 import json
 import time
 from collections.abc import Callable
+from pathlib import Path
 
 from argo_compiler.il import Mission
 from argo_env.planning.opening import OpenedSite
 from argo_planner.use_cases.importing import ImportedMission
 from argo_planner.use_cases.routing import suggest_order
-from tests.argo_planner.service.served import Served
+from tests.argo_planner.service.served import Served, served
 from tests.argo_planner.service.test_http import new_resource, problem
 
 SCRIPT = (
@@ -70,6 +71,23 @@ def test_an_order_is_found_watched_accepted_and_undone(service: Served, site: Op
     assert service.mission(id) == same.mission.model_dump(mode="json")
     service.command(id, 2, kind="undo")
     assert service.mission(id) == before
+
+
+def test_a_found_order_is_accepted_after_a_restart(tmp_path: Path, site: OpenedSite) -> None:
+    with served(tmp_path, site) as first:
+        id = import_script(first)
+        job = start_search(first, id)
+        found = wait_for_end(first, job)
+        assert found["found"]["mission"]
+        for file in (tmp_path / "orders").iterdir():
+            (tmp_path / "orders" / "0123456789ab.json").write_bytes(file.read_bytes()[:100])
+    with served(tmp_path, site) as second:
+        assert second.client.get(f"/api/jobs/{job}").json() == found
+        assert second.post(f"/api/jobs/{job}/accept", 1, id="o").status_code == 200
+        assert second.mission(id) == found["found"]["mission"]
+        second.client.delete(f"/api/missions/{id}")
+        second.client.delete(f"/api/bin/{id}")
+        assert [f.name for f in (tmp_path / "orders").iterdir()] == ["0123456789ab.json"]
 
 
 def test_an_order_of_an_earlier_revision_is_not_accepted(service: Served) -> None:

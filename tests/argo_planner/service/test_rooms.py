@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import threading
 from datetime import UTC, datetime
 from itertools import count
 
@@ -155,3 +156,16 @@ async def test_a_client_that_joins_during_a_command_gets_its_revision_once(rooms
         later = [m["revision"]["number"] for m in await waiting_messages(page, "revision")]
         assert later == [*range(known + 1, k + 2)]
         room.leave(str(k))
+
+
+async def test_an_edit_does_not_wait_for_other_work_in_threads(rooms) -> None:
+    room = await rooms.create("Round", mission("a", "b"))
+    free = threading.Event()
+    others = [asyncio.ensure_future(asyncio.to_thread(free.wait)) for _ in range(100)]
+    await asyncio.sleep(0.05)
+    try:
+        done = await asyncio.wait_for(room.execute(rename_command(1), "ann", 1), 30)
+    finally:
+        free.set()
+        await asyncio.gather(*others)
+    assert done.newest == 2

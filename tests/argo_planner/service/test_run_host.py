@@ -5,6 +5,7 @@ import json
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager, suppress
@@ -20,6 +21,7 @@ from argo_env.run.log import Entry
 from argo_env.run.record import RunRecord
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
+from argo_planner.service.runs import host as hosts
 from argo_planner.service.runs import requests as asked
 from argo_planner.service.runs.folder import RunFolder
 from argo_planner.service.runs.host import AfterRestart, RunHost
@@ -248,6 +250,18 @@ async def test_a_person_takes_over_drives_measures_skips_and_gives_back(tmp_path
         }
         record = await read_record(host)
         assert sum(run.by_hand for run in record.tasks) == 2
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows can't stop processes")
+async def test_a_run_whose_process_hangs_is_stopped(tmp_path, site, monkeypatch) -> None:
+    async with open_host(tmp_path) as host:
+        await start_run(host, site, after=10.0, speed=50.0)
+        [hung] = [p for p in multiprocessing.active_children() if p.name.startswith("run")]
+        os.kill(hung.pid, signal.SIGSTOP)
+        monkeypatch.setattr(hosts, "STOP_TIMEOUT", 0.3)
+        assert await ask_and_wait(host, asked.EndRun(id="e")) == "confirmed"
+        assert not hung.is_alive()
+        assert host.state.status is RunStatus.ENDED
 
 
 @pytest.mark.long

@@ -38,10 +38,10 @@ SIZES = (200, 2_000)
 
 
 @contextmanager
-def start_service(folder: Path) -> Iterator[tuple[str, int]]:
-    """Start a service, yield its address and process id, and end it."""
-    command = [sys.executable, "-m", "argo_planner", "serve", str(folder), "--port", "0"]
-    environment = os.environ | {"ARGO_TOKEN": TOKEN}
+def start_service(folder: Path, *options: str) -> Iterator[tuple[str, int]]:
+    """Start a service with more options, yield its address and process id, and end it."""
+    command = [sys.executable, "-m", "argo_planner", "serve", str(folder), "--port", "0", *options]
+    environment = os.environ | ({} if "--token-file" in options else {"ARGO_TOKEN": TOKEN})
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=environment) as process:
         assert process.stderr is not None
         for line in process.stderr:

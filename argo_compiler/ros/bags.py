@@ -143,7 +143,7 @@ def read_bag(path: Path, source_name: str | None = None) -> Received:
             name,
             "file.beyond-limits",
             f"the file {error}",
-            f"is it the right file? If it is, record {TOPIC} alone",
+            f"is it the right file, and whole? If it is, record {TOPIC} alone",
         )
 
 

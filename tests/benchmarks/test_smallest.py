@@ -45,6 +45,7 @@ COMMANDS = {
     "service --tasks 10 --edits 3 --subscribers 2 --seconds 3": (
         r"2 followers of a run: (.|\n)*one reads nothing: received by all +[\d.]+ "
     ),
+    "service_uploads --uploads 2 --seconds 2 --tasks 10": r"with 2 uploads at once +\d+ edits: ",
     f"service_world --site {SMALL}": r"preview with obstacles +1 parts",
 }
 """pattern of the output of each command, the name of a module and its arguments"""

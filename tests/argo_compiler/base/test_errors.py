@@ -16,6 +16,7 @@ from argo_compiler.base.errors import (
     Unavailable,
     Unreachable,
 )
+from argo_compiler.base.limited_process import LimitExceeded
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity, Span
 from argo_compiler.editing import EditConflict, EditError, EditInvalid, EditNotFound
 from argo_compiler.files.loading import FileError, FileProblem, MissingFile, UnreadableFile
@@ -52,6 +53,7 @@ MADE = [
     DiagnosticError("a.txt", FINDINGS),
     *(kind(FINDINGS) for kind in (EditError, EditNotFound, EditInvalid, EditConflict)),
     *(kind(*FILE) for kind in (FileError, MissingFile, UnreadableFile)),
+    LimitExceeded("takes longer than 60 s to read"),
     UnwritableRecording(Path("a.mcap"), "No space left on device"),
     *(kind("no") for kind in (CommandIdTaken, NothingToUndo, PlanTooLarge)),
     *(kind("no") for kind in (AccessDenied, TokenMissing, RevisionMissing, TooLarge)),

@@ -308,7 +308,7 @@ def test_a_bag_that_takes_too_much_memory_is_refused_with_the_way_out(tmp_path, 
     diagnostic = read_error(path)
     assert diagnostic.code == "file.beyond-limits"
     assert diagnostic.message == "the file takes more than 9 MB of memory to read"
-    assert diagnostic.hint == "is it the right file? If it is, record /mission alone"
+    assert diagnostic.hint == "is it the right file, and whole? If it is, record /mission alone"
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such files")

@@ -6,7 +6,7 @@ from argo_compiler.analysis.non_terminating_loops import NonTerminatingLoop
 from argo_compiler.analysis.study import Study
 from argo_compiler.base.listing import brief_quoted_list
 from argo_compiler.base.model import Pose
-from argo_compiler.base.quantity_text import duration_text
+from argo_compiler.base.quantity_text import limit_text
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Task
 from argo_compiler.il.docked import is_at_dock
@@ -83,7 +83,7 @@ def _what_ends(study: Study, nodes: Collection[int]) -> str:
     """Return what may end a loop that no transition leaves, in words."""
     if study.ends_by_time_up:
         assert study.mission.max_duration is not None
-        limit = duration_text(study.mission.max_duration)
+        limit = limit_text(study.mission.max_duration)
         by_reaction = [f"the reaction to time_up, after {limit},"]
     else:
         by_reaction = ["a reaction"] if study.may_end_by_reaction else []
@@ -175,7 +175,7 @@ def _loop_until_window(study: Study, what: str, nodes: Collection[int], first: i
     return study.diagnostic(
         "loop-until-window",
         f"{what} may be repeated until the {windows} of {study.tasks_text(closing)} {close}, "
-        f"{duration_text(last)} after the mission's start: no count and no other duration limits "
+        f"{limit_text(last)} after the mission's start: no count and no other duration limits "
         "the repetitions",
         "make it a group with max_repeat_count or max_repeat_duration that always ends",
         first,

@@ -21,24 +21,76 @@ if TYPE_CHECKING:
 def not_seen_from_pose_warnings(mission: Mission, site: "OpenedSite") -> Iterator[Diagnostic]:
     """Yield a warning for each MEASURE task with a pose from which its checkpoint can't be read.
 
+    The hint has the nearest pose from which it can.
+
     Everything is taken to be where the site's description has it. Tasks whose pose can't be reached
     get no warning, as the analysis reports them; nor do those without a pose.
     """
+    for task, reason, seeing in _hidden_checkpoints(mission, site):
+        nearest = "another pose" if seeing is None else f"the nearest that sees, {_text(seeing)},"
+        yield Diagnostic(
+            code="site.not-seen-from-pose",
+            severity=Severity.WARNING,
+            message=f"task '{task.name}' measures from a pose from which its checkpoint is "
+            f"not visible: {reason}",
+            hint=f"give {nearest} or none, so that the robot chooses one",
+            subject=subject_of("tasks", task.name, ".pose"),
+            span=task.source,
+        )
+
+
+def with_seeing_poses(
+    mission: Mission, site: "OpenedSite"
+) -> tuple[Mission, tuple[Diagnostic, ...]]:
+    """Replace each pose from which a checkpoint can't be read by the nearest one that sees it.
+
+    Returns:
+        The mission, and a warning for each replaced pose of this mission of isar. A task whose
+        checkpoint is not seen from anywhere keeps its pose.
+    """
+    moved = {task: (why, pose) for task, why, pose in _hidden_checkpoints(mission, site) if pose}
+    warnings = tuple(
+        Diagnostic(
+            code="isar.pose-moved",
+            severity=Severity.WARNING,
+            message=f"task '{task.name}' measures from {_text(pose)}, the nearest pose that sees "
+            f"its checkpoint, as it is not visible from the given one: {why}",
+            hint="check that the robot may stand there",
+            subject=subject_of("tasks", task.name, ".pose"),
+        )
+        for task, (why, pose) in moved.items()
+    )
+    tasks = tuple(
+        task.model_copy(update={"pose": moved[task][1]}) if task in moved else task
+        for task in mission.tasks
+    )
+    return mission.model_copy(update={"tasks": tasks}), warnings
+
+
+def _hidden_checkpoints(
+    mission: Mission, site: "OpenedSite"
+) -> Iterator[tuple[Task, str, Pose | None]]:
+    """Yield each task that can't measure from its pose, why, and the nearest pose where it can."""
     known = {str(checkpoint.id) for checkpoint in site.site.checkpoints}
     for task in mission.tasks:
         if task.action is not Action.MEASURE or task.pose is None or task.object_id not in known:
             continue
         reason = _find_obstruction(task, task.pose, site.navigator)
         if reason is not None:
-            yield Diagnostic(
-                code="site.not-seen-from-pose",
-                severity=Severity.WARNING,
-                message=f"task '{task.name}' measures from a pose from which its checkpoint is "
-                f"not visible: {reason}",
-                hint="give another pose, or none, so that the robot chooses one",
-                subject=subject_of("tasks", task.name, ".pose"),
-                span=task.source,
-            )
+            yield task, reason, _nearest_seeing_pose(task, task.pose, site.navigator)
+
+
+def _nearest_seeing_pose(task: Task, pose: Pose, navigator: "Navigator") -> Pose | None:
+    checkpoint = navigator.site.checkpoint_for(task.object_id)
+    try:
+        nearest = navigator.plan_to_view(pose, checkpoint.id).end
+    except Unreachable:
+        return None
+    return None if _find_obstruction(task, nearest, navigator) else nearest
+
+
+def _text(pose: Pose) -> str:
+    return f"x {pose.x:.2f}, y {pose.y:.2f}, z {pose.z:.2f}, yaw {pose.yaw:.2f}"
 
 
 def _find_obstruction(task: Task, pose: Pose, navigator: "Navigator") -> str | None:

@@ -67,7 +67,7 @@ def check_source(
     if guess_source_kind(upload) is not SourceKind.SCRIPT:
         require_no_areas(upload.name, start_area, end_area)
     try:
-        loaded = load_unchecked_mission(upload, catalog, start_area, end_area)
+        loaded = load_unchecked_mission(upload, catalog, start_area, end_area, site)
     except ArgoError as error:
         return error_diagnostics(error)
     found = check(loaded.mission, catalog)

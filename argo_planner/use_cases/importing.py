@@ -28,7 +28,7 @@ from argo_compiler.isar.recognition import find_isar_data
 from argo_compiler.ros.recognition import is_bag_content
 from argo_compiler.script.syntax.text.source import Source as Script
 from argo_env.planning.opening import OpenedSite
-from argo_env.planning.site_warnings import above_own_speed_warnings
+from argo_env.planning.site_warnings import above_own_speed_warnings, with_seeing_poses
 
 _log = logging.getLogger(__name__)
 
@@ -113,9 +113,15 @@ def guess_source_kind(upload: Upload) -> SourceKind:
 
 @stage("reading the mission")
 def load_unchecked_mission(
-    upload: Upload, catalog: Catalog, start_area: int | None = None, end_area: int | None = None
+    upload: Upload,
+    catalog: Catalog,
+    start_area: int | None = None,
+    end_area: int | None = None,
+    site: OpenedSite | None = None,
 ) -> LoadedMission:
     """Read the mission in an upload, without checking it.
+
+    With a site, poses of an isar mission that do not see their checkpoints are replaced.
 
     Raises:
         DiagnosticError: The upload can't be read as a mission.
@@ -135,7 +141,7 @@ def load_unchecked_mission(
         case SourceKind.BAG:
             return _load_bag(upload.content, name)
         case SourceKind.ISAR:
-            return _load_isar(upload.content, name, catalog)
+            return _load_isar(upload.content, name, catalog, site)
         case SourceKind.MISSION:
             file = decode_mission(upload.content, name)
             return LoadedMission(file.mission, file.diagnostics_with_positions(file.changes), file)
@@ -177,11 +183,16 @@ def _load_bag(content: bytes | Mapping[str, bytes] | Path, name: str) -> LoadedM
     return LoadedMission(read.mission, read.diagnostics, None)
 
 
-def _load_isar(content: bytes, name: str, catalog: Catalog) -> LoadedMission:
+def _load_isar(
+    content: bytes, name: str, catalog: Catalog, site: OpenedSite | None
+) -> LoadedMission:
     from argo_compiler.isar import from_isar
 
     imported = from_isar(find_isar_data(content), name, catalog)
-    return LoadedMission(imported.mission, imported.diagnostics, None)
+    if site is None:
+        return LoadedMission(imported.mission, imported.diagnostics, None)
+    mission, moved = with_seeing_poses(imported.mission, site)
+    return LoadedMission(mission, (*imported.diagnostics, *moved), None)
 
 
 def _load_script(
@@ -220,7 +231,7 @@ def import_mission(
         DiagnosticError: The upload can't be read as a mission, or `check` finds errors.
         Invalid: It is of a run, or areas are given for a mission that has its own.
     """
-    loaded = load_unchecked_mission(upload, site.catalog, start_area, end_area)
+    loaded = load_unchecked_mission(upload, site.catalog, start_area, end_area, site)
     found = check(loaded.mission, site.catalog)
     found += tuple(above_own_speed_warnings(loaded.mission, site.robot))
     found = by_position((*loaded.diagnostics, *loaded.diagnostics_with_positions(found)))

@@ -18,6 +18,11 @@ ISAR = {
         "The isar mission asks for an inspection other than an image.",
         "Argo reads checkpoints in images: use one of those types.",
     ),
+    "isar.pose-moved": warning(
+        "A checkpoint can't be read from the isar mission's pose on the planned site, so the "
+        "nearest pose that sees it takes its place.",
+        "Check that the robot may stand there.",
+    ),
     "isar.tag": error(
         "An inspection has no tag, so its checkpoint is unknown.",
         "Give it the checkpoint's tag.",

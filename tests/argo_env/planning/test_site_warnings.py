@@ -1,6 +1,7 @@
 """Warnings about a mission on its site: poses with hidden checkpoints, and speeds."""
 
 import math
+import re
 
 import pytest
 
@@ -26,6 +27,14 @@ def test_one_that_does_not(site):
     assert finding.severity == "warning"
     assert "gauge 1 is" in finding.message
     assert finding.subject == "tasks['MEASURE 1'].pose"
+
+
+def test_the_hint_has_the_nearest_pose_that_sees_it(site):
+    (finding,) = found(site, x=5.55, y=1.55)
+    offered = re.search(r"x (\S+), y (\S+), z (\S+), yaw (\S+), or none", finding.hint)
+    x, y, z, yaw = map(float, offered.groups())
+    assert found(site, x=x, y=y, yaw=yaw) == []
+    assert z == pytest.approx(0.02, abs=0.01)
 
 
 def test_one_where_the_robot_can_not_stand_is_not_its_matter(site):

@@ -3,12 +3,15 @@
 import pytest
 
 from argo_compiler.base.errors import ArgoError, Invalid, Remedy
+from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.files.mission_file import mission_text
 from argo_compiler.hfsm import lower
 from argo_compiler.isar import to_isar
 from argo_compiler.ros import Storage, to_ros1_bag, to_ros2_bag
 from argo_env.planning.inspection_views import inspection_views_by_object_id
+from argo_env.planning.site_warnings import not_seen_from_pose_warnings
+from argo_planner.use_cases.checking import check_source
 from argo_planner.use_cases.importing import (
     SourceKind,
     Upload,
@@ -122,3 +125,30 @@ def test_a_speed_beyond_the_robots_own_is_warned_of(speed, codes, site):
     script = SCRIPT.replace(b"checkpoint #2", f"checkpoint #2 at {speed} m/s".encode())
     found = import_mission(Upload("plan.txt", script), site).warnings
     assert [(d.code, d.span.line) for d in found] == [(code, 4) for code in codes]
+
+
+def test_a_checkpoint_of_isar_is_read_from_the_nearest_pose_that_sees_it(site):
+    hidden = Pose(x=5.55, y=1.55, z=0.02)
+    planned = mission(measure(1, pose=hidden), measure(2), start_area=1, end_area=1)
+    views = inspection_views_by_object_id(planned, site.navigator)
+    upload = Upload("plan.json", to_isar(planned, lower(planned), views).encode())
+    imported = import_mission(upload, site)
+    (warning,) = [d for d in imported.warnings if d.code == "isar.pose-moved"]
+    assert "not visible from the given one: " in warning.message
+    first, second = (t for t in imported.mission.tasks if t.object_id)
+    assert f"x {first.pose.x:.2f}, y {first.pose.y:.2f}" in warning.message
+    assert (first.pose.x, first.pose.y) != (hidden.x, hidden.y)
+    assert second.pose.x == pytest.approx(views["2"].pose.x)
+    assert list(not_seen_from_pose_warnings(imported.mission, site)) == []
+    codes = [diagnostic.code for diagnostic in check_source(upload, site.catalog, site=site)]
+    assert codes.count("isar.pose-moved") == 1
+    assert "site.not-seen-from-pose" not in codes
+
+
+def test_a_pose_of_isar_that_sees_its_checkpoint_stays(site):
+    views = inspection_views_by_object_id(PLAN, site.navigator)
+    upload = Upload("plan.json", to_isar(PLAN, lower(PLAN), views).encode())
+    imported = import_mission(upload, site)
+    assert not [d for d in imported.diagnostics if d.code == "isar.pose-moved"]
+    (task,) = (t for t in imported.mission.tasks if t.object_id == "1")
+    assert task.pose.x == pytest.approx(views["1"].pose.x)

@@ -40,6 +40,14 @@ class PlanComparison:
     any_time: bool = False
     """whether the number of pairs may depend on the outcomes of the runs"""
 
+    def __repr__(self) -> str:
+        """Return what is compared, without the pairs, of which there may be thousands."""
+        return (
+            f"PlanComparison(first={self.first!r}, second={self.second!r}, "
+            f"pairs=<{len(self.pairs)} pairs>, lost={self.lost}, unpaired={self.unpaired}, "
+            f"any_time={self.any_time}; {self.conclusion})"
+        )
+
     @cached_property
     def successes(self) -> SuccessPairs:
         """Numbers of pairs of runs by which of the two plans succeeded: both, one or none."""

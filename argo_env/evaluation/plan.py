@@ -58,6 +58,12 @@ class EvaluationPlan(Model):
     """objects that were added to the site's description, in words; if there are any, no run can be
     repeated from its spec alone"""
 
+    def __repr_args__(self) -> Iterator[tuple[str, object]]:
+        """Yield the name and the size; all fields would fill many screens."""
+        yield "name", self.name
+        yield "cases", len(self.cases)
+        yield "seeds", len(self.seeds)
+
     def with_changes(self, **fields: Any) -> "EvaluationPlan":
         """Return the plan with new values of the given fields.
 

@@ -54,6 +54,14 @@ class EvaluationResults:
     """whether the evaluation ended before its plan did; the intervals are then valid whatever ended
     it"""
 
+    def __repr__(self) -> str:
+        """Return the name and the size, without the rows, of which there may be a million."""
+        return (
+            f"EvaluationResults({self.plan.name!r}: {len(self.rows)} rows of "
+            f"{len(self.plan.cases)} cases in {len(self.plan.seeds)} worlds, "
+            f"cut_short={self.cut_short})"
+        )
+
     @staticmethod
     def from_worlds_before_first_gap(
         plan: EvaluationPlan, rows: Iterable[RunRow]

@@ -23,6 +23,7 @@ from PIL import GifImagePlugin, Image
 from argo_compiler.base.errors import Invalid, Unavailable, with_message_prefix
 from argo_compiler.base.extras import install_line
 from argo_compiler.base.process_pool import ProcessPool
+from argo_compiler.base.stages import stage
 from argo_compiler.files.atomic_write import atomic_draft, check_writable
 from argo_env.files.folders import CHOOSE_ANOTHER_PLACE, reporting_write_errors
 from argo_env.pictures.camera import Camera
@@ -321,7 +322,13 @@ def write_film(
         atomic_draft(file) as draft,
     ):
         with Scene(site, robot) as scene:
-            shots = [*plan_shots(motion, scene, times, (width, height), frame_time)]
+            shots = []
+            with stage("placing the film's camera") as report:
+                for shot in plan_shots(motion, scene, times, (width, height), frame_time):
+                    shots.append(shot)
+                    report(shot.t / motion.end_time if motion.end_time else None)
+                    if progress:
+                        progress(0.0)
             spread = _spread_times(times) if is_gif else []
             sampled = plan_shots(motion, scene, spread, (width, height), math.inf)
             samples = [draw_frame(record, scene, shot, motion.end_time) for shot in sampled]
@@ -348,9 +355,11 @@ def _repeat_frames(
 ) -> Iterator[Image.Image]:
     """Yield each frame as often as the film shows it."""
     count, done = sum(shot.repeats for shot in shots), 0
-    for frame, shot in zip(drawn, shots, strict=True):
-        for _ in range(shot.repeats):
-            yield frame
-            done += 1
-            if progress:
-                progress(done / count)
+    with stage("drawing the film") as report:
+        for frame, shot in zip(drawn, shots, strict=True):
+            for _ in range(shot.repeats):
+                yield frame
+                done += 1
+                report(done / count)
+                if progress:
+                    progress(done / count)

@@ -492,6 +492,11 @@ class RunRecord(Model):
     reordering: Reordering | None = None
     """change of the tasks' order before the run; None: they are in the order as written"""
 
+    def __repr_args__(self) -> Iterator[tuple[str, object]]:
+        """Yield what tells one run from another; all fields would fill hundreds of screens."""
+        for name in ("site", "robot", "drive", "sensor", "seed", "result"):
+            yield name, getattr(self, name)
+
     @model_validator(mode="before")
     @classmethod
     def _without_computed(cls, data: object) -> object:

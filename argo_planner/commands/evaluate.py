@@ -152,11 +152,11 @@ def evaluate_command(
         bool, typer.Option("--report/--no-report", help="write the report as a web page")
     ] = True,
     compare: Annotated[
-        tuple[Path, Path] | None,
+        Path | None,
         typer.Option(
             "--compare",
-            metavar="DIR DIR",
-            help="compare two evaluations by their folders; runs nothing",
+            metavar="DIR [DIR]",
+            help="compare two evaluations by their folders, or two plans of one; runs nothing",
         ),
     ] = None,
     plans: Annotated[
@@ -165,7 +165,7 @@ def evaluate_command(
             "--plan",
             metavar="NAME",
             help="with --compare: name of the plan, if an evaluation has several; give it once for "
-            "both evaluations, or once for each",
+            "both evaluations, or once for each; a single evaluation with two plans needs none",
         ),
     ] = None,
     trust: Annotated[
@@ -182,7 +182,7 @@ def evaluate_command(
     console = Console(highlight=False)
     if compare is not None:
         require_comparison_only(context, sources)
-        _compare(*compare, plans or [], out, report, force, console)
+        _compare(compare, sources[0] if sources else None, plans or [], out, report, force, console)
         return
     if plans:
         raise Invalid(
@@ -200,7 +200,9 @@ def evaluate_command(
     )
     require_folder_or_creatable(target / FAILING)
     digest = digest_contents(*contents_for_digest(file, folder), content)
-    plan = find_stored_plan(target, digest) or plan_evaluation(file, folder, read_upload)
+    plan = find_stored_plan(target, digest) or plan_evaluation(
+        file, folder, read_upload, policy_folder=folder
+    )
     cheap_plan = None if file.control is None else make_cheap_plan(plan, file.control)
     with open_rows(
         target, plan, digest, replace_and_keep_fitting=force, cheap_plan=cheap_plan
@@ -256,7 +258,7 @@ def _run_evaluation(
 
 def _compare(
     first: Path,
-    second: Path,
+    second: Path | None,
     plans: list[str],
     out: Path | None,
     report: bool,
@@ -270,7 +272,10 @@ def _compare(
         raise Invalid("--compare takes two plans: give --plan at most twice")
     if report:
         check_outputs((), folders=[(target, [COMPARISON])], force=force)
-    a, b = read_results(first), read_results(second)
+    a = read_results(first)
+    if second is None:
+        plans, second = _two_plans(a, plans), first
+    b = read_results(second)
     names = [None, None] if not plans else [plans[0], plans[-1]]
     chosen = [
         None if name is None else plan_by_label_or_mission(results, name)
@@ -286,6 +291,18 @@ def _compare(
 
         path = write_comparison_report(target, first, second, compared)
         console.print(f"Report: {escape(str(path))}", soft_wrap=True)
+
+
+def _two_plans(results: EvaluationResults, plans: list[str]) -> list[str]:
+    """Return the names of the two plans of one evaluation to compare; raise Invalid without two."""
+    known = [str(plan.label(results.plan.plans)) for plan in results.plan.plans]
+    chosen = plans or known
+    if len(set(chosen)) != 2:
+        raise Invalid(
+            f"--compare {results.plan.name}: name two of its plans by --plan, or a second "
+            f"evaluation; there are: {'; '.join(known)}"
+        )
+    return chosen
 
 
 def _folder_name(name: str) -> str:

@@ -25,6 +25,7 @@ from argo_planner.terminal.run_display import run_and_describe_recording
 from argo_planner.terminal.run_storage import (
     JOURNAL,
     RunStorage,
+    find_own_report,
     is_report_of,
     require_no_unfinished_run,
 )
@@ -77,6 +78,7 @@ def resume_command(
     with open_journal(journal) as book:
         if book.loss:
             print(f"argo: {book.loss}", file=sys.stderr)
+        report = report or find_own_report(book, journal)
         if report and not force:
             if os.path.realpath(report / JOURNAL) != os.path.realpath(journal):
                 require_no_unfinished_run(report)

@@ -18,7 +18,6 @@ from argo_env.run.record import RunRecord
 from argo_env.site import Site
 from argo_planner.terminal.files import write_content
 from argo_planner.terminal.record_tables import show_record
-from argo_planner.terminal.run_display import progress_bar
 from argo_planner.terminal.run_storage import RunStorage
 from argo_planner.terminal.signals import Interrupted, SignalWatch
 from argo_planner.terminal.verbosity import is_quiet
@@ -104,25 +103,18 @@ class Conclusion:
         self.interruption.raise_if_received()
         from argo_env.pictures import write_film
 
-        with progress_bar() as progress:
-            bar = progress.add_task("filming", total=1.0)
-
-            def report_progress(share: float) -> None:
-                self.interruption.raise_if_received()
-                progress.update(bar, completed=share)
-
-            try:
-                write_film(
-                    record,
-                    site_with_faults(site, record.faults),
-                    robot,
-                    file,
-                    progress=report_progress,
-                )
-            except ArgoError:
-                # Ctrl-C reaches the encoder too, which then fails.
-                self.interruption.raise_if_received()
-                raise
+        try:
+            write_film(
+                record,
+                site_with_faults(site, record.faults),
+                robot,
+                file,
+                progress=lambda _: self.interruption.raise_if_received(),
+            )
+        except ArgoError:
+            # Ctrl-C reaches the encoder too, which then fails.
+            self.interruption.raise_if_received()
+            raise
         return f"Film: {file}"
 
     def _print_unwritten(self, unwritten: list[Path]) -> None:

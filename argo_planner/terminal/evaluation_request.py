@@ -1,5 +1,6 @@
 """The evaluation that the command line of `argo evaluate` describes: a file, or missions."""
 
+import os
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -29,9 +30,10 @@ _OPTIONS = {
 
 def require_comparison_only(context: typer.Context, sources: list[Path] | None) -> None:
     """Raise Invalid for missions and options that `--compare` does not use."""
-    if sources:
+    if sources and (len(sources) > 1 or os.path.isfile(sources[0])):
         raise Invalid(
-            "--compare compares two stored evaluations and runs nothing: leave the missions out"
+            "--compare compares the evaluations in one or two folders and runs nothing: leave the "
+            "missions out"
         )
     for option in given_options(context):
         if option not in _OF_COMPARISON:

@@ -9,14 +9,17 @@ from pydantic import ValidationError
 
 from argo_compiler.base.errors import Conflict, Invalid
 from argo_env.files.checked_files import read_checked
-from argo_env.report.files import RECORD
+from argo_env.report.files import PAGE, RECORD
 from argo_env.run.journal import Journal, open_journal
 from argo_env.run.record import RunRecord
 from argo_env.run.simulation import SAMPLE_PERIOD
+from argo_planner.use_cases.reporting import REPORT_FILES
 
 _REMEDY = "restore it from a copy, or delete it: the report is written from the journal"
 JOURNAL = "run.journal"
 """name of the journal in a report's folder, unless another journal is named"""
+_RECORDED = (".gif", ".mp4", ".mcap")
+"""suffixes of films and recordings"""
 
 
 @dataclass(frozen=True)
@@ -114,3 +117,19 @@ def is_report_of(book: Journal, folder: Path) -> bool:
         and record.result.duration <= reached
         and (book.had_ended_when_opened or not record.result.ended)
     )
+
+
+def find_own_report(book: Journal, journal: Path) -> Path | None:
+    """Return the folder of the report to which a journal belongs; None: there is nothing to write.
+
+    `argo run --report` keeps the journal in the report's folder, which has nothing else then but
+    the report, films and recordings. A complete report is not written again.
+    """
+    folder = journal.parent
+    others = {name for name in os.listdir(folder) if os.path.splitext(name)[1] not in _RECORDED}
+    if journal.name != JOURNAL or not others <= {JOURNAL, *REPORT_FILES}:
+        return None
+    if not others & set(REPORT_FILES):
+        return folder
+    is_complete = book.had_ended_when_opened and PAGE in others
+    return folder if is_report_of(book, folder) and not is_complete else None

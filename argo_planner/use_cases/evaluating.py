@@ -51,7 +51,10 @@ class FaultSet:
 
 
 def plan_evaluation(
-    file: EvaluationFile, folder: Path, read: Callable[[Path], Upload]
+    file: EvaluationFile,
+    folder: Path,
+    read: Callable[[Path], Upload],
+    policy_folder: Path | None = None,
 ) -> EvaluationPlan:
     """Return the plan with all runs that an evaluation file asks for.
 
@@ -59,12 +62,14 @@ def plan_evaluation(
         file: the evaluation
         folder: folder that the paths in the file are relative to
         read: function that reads the file of a mission
+        policy_folder: folder whose modules may have policies, which are code that is run; None:
+            only installed modules may
 
     Raises:
         ArgoError: A file is missing or has errors, or a run is not possible.
     """
     sets = [*_fault_sets(file, folder)]
-    cases = [*_cases(file, folder, read, sets)]
+    cases = [*_cases(file, folder, read, sets, policy_folder)]
     if not cases:
         raise Invalid("nothing is to be run: `faults` is empty; give at least `none`")
     worlds = file.worlds
@@ -138,7 +143,11 @@ def make_workers(
 
 
 def _cases(
-    file: EvaluationFile, folder: Path, read: Callable[[Path], Upload], sets: list[FaultSet]
+    file: EvaluationFile,
+    folder: Path,
+    read: Callable[[Path], Upload],
+    sets: list[FaultSet],
+    policy_folder: Path | None,
 ) -> Iterator[EvaluationCase]:
     names: dict[str, str] = {}
     for mission_file in file.missions:
@@ -155,7 +164,7 @@ def _cases(
                 opened = open_site(_site(site, folder), load_robot(robot)).prepare()
                 imported = import_mission(upload, opened, entry.start_area, entry.end_area)
                 for policy in file.policies:
-                    mission = reorder_by_policy(imported, opened, policy)
+                    mission = reorder_by_policy(imported, opened, policy, policy_folder)
                     for drive in file.drives:
                         for sensor in file.sensors:
                             spec = RunSpec(
@@ -185,7 +194,9 @@ def make_case(
     )
 
 
-def reorder_by_policy(imported: ImportedMission, site: OpenedSite, policy: str) -> Mission:
+def reorder_by_policy(
+    imported: ImportedMission, site: OpenedSite, policy: str, folder: Path | None = None
+) -> Mission:
     """Return the mission with its tasks in the order that a policy chooses.
 
     Args:
@@ -193,6 +204,7 @@ def reorder_by_policy(imported: ImportedMission, site: OpenedSite, policy: str) 
         site: its site
         policy: `as written`, `optimised`, the name of an installed package's policy, or
             `module:function`: a function that takes mission and site, and returns a mission
+        folder: folder whose modules come before installed ones
 
     Raises:
         ArgoError: There is no such policy, or it fails, or no order is possible.
@@ -203,7 +215,7 @@ def reorder_by_policy(imported: ImportedMission, site: OpenedSite, policy: str) 
         found = suggest_order(imported, site)
         require_order(found, imported.source_name)
         return found.mission
-    function = _find_order_function(policy)
+    function = _find_order_function(policy, folder)
     try:
         mission = function(imported.mission, site)
     except Exception as error:  # a user's function may raise anything
@@ -213,13 +225,15 @@ def reorder_by_policy(imported: ImportedMission, site: OpenedSite, policy: str) 
     return mission
 
 
-def _find_order_function(policy: str) -> Callable[[Mission, OpenedSite], object]:
+def _find_order_function(
+    policy: str, folder: Path | None
+) -> Callable[[Mission, OpenedSite], object]:
     """Return the function that orders the tasks by a policy, neither as written nor optimised.
 
     Raises NotFound if there is none, Unavailable if an installed package's can't be used.
     """
     if ":" in policy:
-        return cast("Callable[..., object]", import_policy(policy))
+        return cast("Callable[..., object]", import_policy(policy, folder))
     if policy not in POLICIES:
         others = "".join(f", {name}" for name in installed_names(POLICIES.group))
         raise NotFound(

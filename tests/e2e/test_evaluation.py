@@ -135,6 +135,7 @@ def test_two_evaluations_are_compared(argo, file, out, tmp_path):
         (("--compare", "here", "there"), "here"),
         (("--compare", "here", "there", "--seeds", "0..3"), "runs nothing: leave --seeds out"),
         ((MISSION, "--compare", "here", "there"), "leave the missions out"),
+        ((MISSION, "--compare", "here"), "leave the missions out"),
     ],
 )
 def test_wrong_input_gets_one_message(argo, tmp_path, arguments, message):
@@ -280,8 +281,27 @@ def test_plans_of_one_evaluation_are_compared_by_name(argo, tmp_path):
     named = ("--plan", "mission_1, as written", "--plan", "mission_1, optimised")
     result = argo("evaluate", "--compare", out, out, *named, status=0)
     assert "A: mission_1, as written" in result.stdout
+    for arguments in ((), named):  # of one folder, two plans are compared, named or not
+        alone = argo("evaluate", "--compare", out, *arguments, "--no-report", status=0)
+        assert alone.stdout.partition("Report:")[0] == result.stdout.partition("Report:")[0]
+    single = argo("evaluate", "--compare", out, *named[:2], "--no-report")
+    assert "name two of its plans by --plan, or a second evaluation" in require_refusal(single)
     wrong = argo("evaluate", "--compare", out, out, "--plan", "mission_2", "--no-report")
     assert "no plan `mission_2`" in wrong.stderr
+
+
+def test_a_policy_may_stand_beside_the_file(argo, tmp_path):
+    for folder, order in (("one", "mission"), ("other", "1 / 0")):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "orders.py").write_text(f"def kept(mission, site): return {order}\n")
+        (tmp_path / folder / "file.yaml").write_text(
+            f"missions: [{{file: {ROOT / MISSION}, start_area: 1, end_area: 2}}]\n"
+            "policies: [orders:kept]\nseeds: 0..1\n"
+        )
+    result = argo("evaluate", tmp_path / "one" / "file.yaml", "--out", tmp_path / "out")
+    assert result.returncode == 0, result.stderr
+    other = argo("evaluate", tmp_path / "other" / "file.yaml", "--out", tmp_path / "other_out")
+    assert "policy `orders:kept`: ZeroDivisionError" in require_refusal(other)
 
 
 def test_an_evaluation_in_which_no_run_can_be_carried_out_fails(argo, file, tmp_path):

@@ -235,7 +235,8 @@ def test_a_run_interrupted_before_its_first_step_can_be_resumed(
     assert (process.returncode, "Traceback" in errors) == (130, False)
     assert "has not ended" in shown
     assert not read_run_record(report).result.ended
-    argo("resume", report / "run.journal", "--report", report, status=0)
+    result = argo("resume", report / "run.journal", status=0)  # its own report needs no option
+    assert f"Report: {report}" in result.stdout
     require_complete(read_run_record(report), simulated(PLAN, navigator, **settings(3)), ())
 
 

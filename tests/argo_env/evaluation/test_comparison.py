@@ -62,3 +62,13 @@ def test_where_outcomes_ended_an_evaluation_the_interval_decides(mission, failin
     power = "What this number of pairs can show"  # by a test, which does not decide here
     assert power in comparison_page(fixed)
     assert power not in comparison_page(open_end)
+
+
+def test_the_text_of_a_comparison_and_of_results_fits_one_screen(mission):
+    results = results_of(mission, range(300))
+    compared = compare_plans(results, results_of(mission, range(300), failing=range(30)))
+    for thing in (compared, results, results.plan):
+        assert len(repr(thing)) < 600
+    assert "300 pairs" in str(compared)
+    assert compared.conclusion in str(compared)
+    assert "300 rows" in str(results)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.stages import listen_to_stages
 from argo_compiler.il import Action, Mission, Task
 from argo_env.files import cache
 from argo_env.pictures import check_film, film, overview, write_film, write_overview
@@ -246,6 +247,18 @@ def test_an_mp4_has_a_frame_for_each_time(record, umad, robot, tmp_path):
 def test_invalid_numbers_for_a_film_are_refused(record, umad, robot, tmp_path, wrong):
     with pytest.raises(ArgoError, match="a film needs"):
         write_film(record, umad, robot, tmp_path / "film.gif", **wrong)
+
+
+@pytest.mark.physics
+def test_a_film_tells_its_progress_from_the_first_picture_on(record, umad, robot, tmp_path):
+    told = []
+    with listen_to_stages(lambda stage, share, _: told.append((stage, share))):
+        write_film(record, umad, robot, tmp_path / "film.gif", speed=100, fps=2, size=(64, 64))
+    for name in ("placing the film's camera", "drawing the film"):
+        shares = [share for stage, share in told if stage == name and share is not None]
+        assert len(shares) > 2
+        assert shares == sorted(shares)
+        assert shares[-1] == 1.0
 
 
 @pytest.mark.physics

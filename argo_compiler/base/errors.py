@@ -108,3 +108,8 @@ def with_message_prefix(error: ArgoError, prefix: str) -> ArgoError:
     kinds = (NotFound, Invalid, Unreachable, Conflict, Unavailable)
     kind = next((kind for kind in kinds if isinstance(error, kind)), ArgoError)
     return kind(f"{prefix}: {error}", remedies=error.remedies, about=error.about)
+
+
+def reason_text(error: Exception) -> str:
+    """Return why something failed in words, without the number that an OSError begins with."""
+    return getattr(error, "strerror", None) or str(error)

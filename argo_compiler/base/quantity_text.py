@@ -1,4 +1,4 @@
-"""Texts for durations and energies.
+"""Texts for durations, energies and numbers of things.
 
 Bounds are rounded such that they remain bounds: a lower one down, an upper one up.
 """
@@ -75,6 +75,11 @@ def least_energy_text(energy_wh: float) -> str:
 def most_energy_text(energy_wh: float) -> str:
     """Format an upper bound of an energy in Wh."""
     return energy_text(energy_wh, rounded_up)
+
+
+def counted_text(count: int, noun: str) -> str:
+    """Format a number of things, such as `1 run` and `2 runs`."""
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
 def _three_digits(value: float, to_whole: Callable[[float], int]) -> float:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 
-from argo_compiler.base.errors import Unavailable
+from argo_compiler.base.errors import Unavailable, reason_text
 from argo_compiler.base.extras import install_line
 from argo_compiler.base.operating_system import open_private, sync_folder
 from argo_compiler.files.json_places import format_path
@@ -66,7 +66,7 @@ def write_part(folder: Path, rows: Sequence[RunRow]) -> Path:
         os.replace(draft, path)
         sync_folder(parts)
     except OSError as error:
-        raise Unavailable(f"{path} can't be written: {error}") from error
+        raise Unavailable(f"{path} can't be written: {reason_text(error)}") from error
     return path
 
 

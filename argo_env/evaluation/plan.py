@@ -196,6 +196,14 @@ def parse_seeds(text: str) -> tuple[int, ...]:
     return tuple(seeds)
 
 
+def single_seed_note(seeds: str) -> str | None:
+    """Return a note if seeds such as `5` are one seed, which may have been meant as a number."""
+    if not seeds.strip().isdecimal() or int(seeds) < 2:
+        return None
+    number = int(seeds)
+    return f"seed {number} only; for {number} seeds: 0..{number - 1}"
+
+
 MOST_SEEDS = 1_000_000
 """largest number of seeds in an evaluation"""
 LARGEST_SEED = 2**63 - 1

@@ -13,6 +13,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from argo_compiler.base.errors import reason_text
 from argo_env.files.parts import NO_CACHE, Parts
 
 VARIABLE = "ARGO_CACHE_DIR"
@@ -106,7 +107,7 @@ def unwritable_reason() -> str | None:
         with TemporaryFile(dir=folder) as file:
             file.write(b"?")
     except (OSError, RuntimeError, ValueError) as error:
-        return getattr(error, "strerror", None) or str(error)
+        return reason_text(error)
     return None
 
 

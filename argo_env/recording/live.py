@@ -6,7 +6,7 @@ from importlib.util import find_spec
 from threading import Lock, Thread
 from typing import TYPE_CHECKING, Any, cast
 
-from argo_compiler.base.errors import Unavailable
+from argo_compiler.base.errors import Unavailable, reason_text
 from argo_compiler.base.extras import install_line
 from argo_env.recording.files import require_libraries
 from argo_env.recording.topic_writer import TopicWriter
@@ -104,7 +104,8 @@ def serve_live(port: int = PORT) -> Iterator[LiveWriter]:
             context=context,
         )
     except (RuntimeError, OSError) as error:
-        raise Unavailable(f"{HOST}:{port}: no live view can be served there: {error}") from None
+        why = reason_text(error)
+        raise Unavailable(f"{HOST}:{port}: no live view can be served there: {why}") from None
     listener.writer = writer = LiveWriter(server, context)
     try:
         yield writer

@@ -14,7 +14,7 @@ from typing import TypeVar
 
 from pydantic import BaseModel, Field, ValidationError, field_validator, model_validator
 
-from argo_compiler.base.errors import Invalid, NotFound
+from argo_compiler.base.errors import Invalid, NotFound, reason_text
 from argo_compiler.base.model import Model
 from argo_env.files import cache, resources
 
@@ -230,7 +230,7 @@ def _joints(urdf: str) -> frozenset[str]:
     try:
         parser.Parse((robot_folder() / urdf).read_bytes(), True)
     except (OSError, expat.ExpatError) as error:
-        raise ValueError(f"the robot's model {urdf} can't be read: {error}") from None
+        raise ValueError(f"the robot's model {urdf} can't be read: {reason_text(error)}") from None
     return frozenset(names)
 
 

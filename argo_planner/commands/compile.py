@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from argo_compiler.base.quantity_text import counted_text
 from argo_env.planning.opening import open_site
 from argo_planner.terminal.files import check_outputs, print_written, read_upload, write_content
 from argo_planner.terminal.importing import import_and_warn
@@ -37,4 +38,5 @@ def compile_command(
     if mermaid:
         write_content(mermaid, compiled.mermaid)
     machine = compiled.machine
-    print_written(output, f"{len(machine.leaves)} tasks, {len(machine.composites) - 1} groups")
+    tasks = counted_text(len(machine.leaves), "task")
+    print_written(output, f"{tasks}, {counted_text(len(machine.composites) - 1, 'group')}")

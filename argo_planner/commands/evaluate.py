@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.quantity_text import counted_text
 from argo_env.evaluation.control_variates import (
     ControlledMean,
     make_cheap_plan,
@@ -27,7 +28,7 @@ from argo_env.evaluation.folder import (
     read_results,
     replace_failing_specs,
 )
-from argo_env.evaluation.plan import EvaluationPlan
+from argo_env.evaluation.plan import EvaluationPlan, single_seed_note
 from argo_env.evaluation.pool.backend import WorkerBackend
 from argo_env.evaluation.pool.backends import BACKENDS, PROCESSES
 from argo_env.evaluation.rates import Decision
@@ -45,7 +46,7 @@ from argo_planner.terminal.evaluation_request import (
 )
 from argo_planner.terminal.evaluation_tables import show_comparison, show_means, show_results
 from argo_planner.terminal.files import check_outputs, read_upload
-from argo_planner.terminal.options import EndArea, Force, SiteOption, StartArea
+from argo_planner.terminal.options import EndArea, Force, SiteOption, StartArea, read_duration
 from argo_planner.terminal.signals import Interrupted
 from argo_planner.use_cases.evaluating import contents_for_digest, make_workers, plan_evaluation
 
@@ -140,7 +141,12 @@ def evaluate_command(
     ] = None,
     limit: Annotated[
         float | None,
-        typer.Option(help="longest time of a run in s; a longer run counts as died", min=1.0),
+        typer.Option(
+            parser=read_duration(least=1.0),
+            metavar="TIME",
+            help="longest time of a run, such as 10min; a number is in s; a longer run counts as "
+            "died",
+        ),
     ] = None,
     scoring: Annotated[
         Path | None,
@@ -200,6 +206,8 @@ def evaluate_command(
     )
     require_folder_or_creatable(target / FAILING)
     digest = digest_contents(*contents_for_digest(file, folder), content)
+    if note := single_seed_note(str(file.seeds)):
+        print(f"argo: {note}", file=sys.stderr)
     plan = find_stored_plan(target, digest) or plan_evaluation(
         file, folder, read_upload, policy_folder=folder
     )
@@ -247,8 +255,8 @@ def _run_evaluation(
             return run_with_control_variate(plan, control, make_runs, store.folder)
     except Interrupted as interrupted:
         print(
-            f"argo: interrupted; {len(store.rows)} runs are stored in {store.folder}: repeat the "
-            "command to continue",
+            f"argo: interrupted; {counted_text(len(store.rows), 'run')} stored in {store.folder}: "
+            "repeat the command to continue",
             file=sys.stderr,
         )
         raise typer.Exit(interrupted.status) from None

@@ -8,6 +8,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
+from argo_compiler.base.quantity_text import counted_text
 from argo_compiler.base.stages import stage
 from argo_env.files.folders import make_folder
 from argo_env.formatting import min_sec_text
@@ -54,7 +55,7 @@ def replay_command(
             soft_wrap=True,
         )
     count = sum(found.messages.values())
-    took = f"Reading {count} messages took {time.monotonic() - begun:.1f} s."
+    took = f"Reading {counted_text(count, 'message')} took {time.monotonic() - begun:.1f} s."
     with defer_first_signal() as interruption:
         Conclusion(
             report, render, RunStorage(recording=recording, force=force), interruption

@@ -23,7 +23,14 @@ from argo_planner.terminal.certificate_lines import show_certificate
 from argo_planner.terminal.completion import offer_names
 from argo_planner.terminal.files import check_outputs, read_upload, require_mission_output
 from argo_planner.terminal.importing import import_and_warn
-from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea
+from argo_planner.terminal.options import (
+    EndArea,
+    Force,
+    SiteOption,
+    Source,
+    StartArea,
+    read_duration,
+)
 from argo_planner.terminal.order_tables import reordered_mission_lines, show_order, show_risk
 from argo_planner.terminal.words import error_text, insert_keep_order_option
 from argo_planner.use_cases.importing import SourceKind, guess_source_kind, require_no_areas
@@ -74,7 +81,12 @@ def route_command(
         typer.Option(metavar="FILE.yaml", help="file with requirements; see `argo docs routes`"),
     ] = None,
     time_limit: Annotated[
-        float, typer.Option(help="longest time of the search in s", min=0.01)
+        float,
+        typer.Option(
+            parser=read_duration(least=0.01),
+            metavar="TIME",
+            help="longest time of the search, such as 10s or 2min; a number is in s",
+        ),
     ] = TIME_LIMIT,
     seed: Annotated[int, typer.Option(help="seed of the search", min=0)] = 0,
     solver: Annotated[

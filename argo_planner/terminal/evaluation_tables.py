@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from argo_compiler.base.quantity_text import counted_text
 from argo_env.evaluation.case import PlanName
 from argo_env.evaluation.comparison import PlanComparison
 from argo_env.evaluation.control_variates import ControlledMean
@@ -180,7 +181,8 @@ def _failing(results: EvaluationResults, files: Mapping[str, Path]) -> Iterator[
     if not rows:
         return
     repeat = "; to repeat one alone:" if files else ":"
-    yield f"{len(rows)} of {len(results.rows)} runs did not succeed{repeat}"
+    runs = counted_text(len(results.rows), "run")
+    yield f"{len(rows)} of {runs} did not succeed{repeat}"
     for row in rows[:_MAX_LISTED]:
         outcome = "" if row.is_completed else f"{row.outcome}: "
         plan = f"{row.plan.label(results.plan.plans)}, " if len(results.plan.plans) > 1 else ""

@@ -1,10 +1,12 @@
 """Arguments and options that several commands have."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from argo_compiler.base.errors import ArgoError
 from argo_planner.terminal import completion
 
 Source = Annotated[
@@ -43,6 +45,25 @@ Render = Annotated[
     typer.Option("--render", metavar="FILE.mp4|FILE.gif", help="write a film of the run"),
 ]
 Force = Annotated[bool, typer.Option("--force", help="replace existing files")]
+
+_LONGEST = 1e7  # s
+
+
+def read_duration(least: float) -> Callable[[str | float], float]:
+    """Return a parser of durations such as `10s` and `2 min`, in s, of at least `least` s."""
+
+    def read(option: str | float) -> float:
+        from argo_compiler.reorder.requirements import parse_seconds  # most commands need none
+
+        try:
+            seconds = parse_seconds(str(option))
+        except ArgoError as error:
+            raise typer.BadParameter(str(error)) from None
+        if not least <= seconds <= _LONGEST:
+            raise typer.BadParameter(f"`{option}` is not between {least:g} s and 115 days")
+        return seconds
+
+    return read
 
 
 def given_options(context: typer.Context) -> list[str]:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from argo_compiler.base.errors import Conflict, Invalid
+from argo_compiler.base.errors import Conflict, Invalid, Unavailable
 from argo_env.files.checked_files import read_checked
 from argo_env.report.files import PAGE, RECORD
 from argo_env.run.journal import Journal, open_journal
@@ -132,4 +132,8 @@ def find_own_report(book: Journal, journal: Path) -> Path | None:
     if not others & set(REPORT_FILES):
         return folder
     is_complete = book.had_ended_when_opened and PAGE in others
-    return folder if is_report_of(book, folder) and not is_complete else None
+    try:
+        is_own = is_report_of(book, folder)
+    except Unavailable:  # it is damaged
+        is_own = False
+    return folder if is_own and not is_complete else None

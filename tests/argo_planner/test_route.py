@@ -244,6 +244,14 @@ def test_a_budget_with_two_meanings_is_refused_with_both(argo, source, tmp_path)
     assert "wanted.yaml:1:9: error: budget: `12:30` can be read as 12 min 30 s or as 12 h" in text
 
 
+def test_the_time_limit_is_a_duration_as_the_budget_is(argo, source):
+    for text in ("2s", "00:00:02", "2"):
+        assert "Proven: " in argo("route", source, "--time-limit", text)
+    for text, why in (("12:30", "12 h 30 min"), ("0", "is not between"), ("soon", "20 min")):
+        said = re.sub(r"[\s│]+", " ", argo("route", source, "--time-limit", text, status=2))
+        assert why in said
+
+
 def test_errors_in_requirements_name_the_line(argo, source, tmp_path):
     wanted = tmp_path / "wanted.yaml"
     wanted.write_text("mandatory: [2]\nbudgets: 5 min\n")

@@ -298,9 +298,12 @@ def test_a_policy_may_stand_beside_the_file(argo, tmp_path):
             f"missions: [{{file: {ROOT / MISSION}, start_area: 1, end_area: 2}}]\n"
             "policies: [orders:kept]\nseeds: 0..1\n"
         )
-    result = argo("evaluate", tmp_path / "one" / "file.yaml", "--out", tmp_path / "out")
+    (one, out), (two, other_out) = (
+        (tmp_path / name / "file.yaml", tmp_path / f"{name}_out") for name in ("one", "other")
+    )
+    result = argo("evaluate", one, "--trust", "--out", out)
     assert result.returncode == 0, result.stderr
-    other = argo("evaluate", tmp_path / "other" / "file.yaml", "--out", tmp_path / "other_out")
+    other = argo("evaluate", two, "--trust", "--out", other_out)
     assert "policy `orders:kept`: ZeroDivisionError" in require_refusal(other)
 
 

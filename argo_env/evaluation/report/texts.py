@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 
+from argo_compiler.base.quantity_text import counted_text
 from argo_env.evaluation.case import PlanName
 from argo_env.evaluation.rates import Decision, IntervalMethod
 from argo_env.evaluation.results import EvaluationResults
@@ -68,7 +69,8 @@ def headline_and_rating(results: EvaluationResults) -> tuple[str, str]:
         return "no run could be carried out", "bad"
     if not results.unsuccessful_rows:
         return "no run failed", "good"
-    return f"{len(results.unsuccessful_rows)} of {len(results.rows)} runs are no success", "notice"
+    runs = counted_text(len(results.rows), "run")
+    return f"{len(results.unsuccessful_rows)} of {runs} without success", "notice"
 
 
 def explain_sequence(results: EvaluationResults, several_runs_per_world: bool) -> list[str]:

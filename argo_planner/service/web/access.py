@@ -11,7 +11,7 @@ from enum import StrEnum
 from pathlib import Path
 from urllib.parse import unquote
 
-from argo_compiler.base.errors import ArgoError, Invalid, Unavailable
+from argo_compiler.base.errors import ArgoError, Invalid, Unavailable, reason_text
 from argo_compiler.base.operating_system import NO_LINK_FLAGS
 from argo_planner.service.core.plan_limits import require_displayable_name
 
@@ -139,7 +139,7 @@ def read_tokens(path: Path) -> tuple[AccessToken, ...]:
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        raise Unavailable(f"{path} can't be read as a token file: {error}") from None
+        raise Unavailable(f"{path} can't be read as a token file: {reason_text(error)}") from None
     tokens = []
     for number, line in enumerate(text.splitlines(), start=1):
         words = line.partition("#")[0].split(maxsplit=2)
@@ -196,7 +196,7 @@ def load_or_make_secret(folder: Path) -> str:
             return validate_secret(stored.read().strip(), str(path))
     except (OSError, UnicodeDecodeError) as error:
         raise Unavailable(
-            f"{path}: the token can't be stored: {error}; choose another folder"
+            f"{path}: the token can't be stored: {reason_text(error)}; choose another folder"
         ) from None
 
 

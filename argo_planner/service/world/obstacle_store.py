@@ -5,7 +5,7 @@ from pathlib import Path
 
 from pydantic import Field, ValidationError
 
-from argo_compiler.base.errors import Unavailable
+from argo_compiler.base.errors import Unavailable, reason_text
 from argo_compiler.base.model import Model
 from argo_compiler.base.operating_system import NO_LINK_FLAGS, sync_folder
 from argo_env.files.checked_files import checked_json, read_checked
@@ -42,7 +42,7 @@ class ObstacleStore:
             self.present = read_checked(ObstacleList, content, self._path, _REMEDY)
         except (OSError, ValidationError) as error:
             raise Unavailable(
-                f"{self._path}: the obstacles can't be read: {error}; {_REMEDY}"
+                f"{self._path}: the obstacles can't be read: {reason_text(error)}; {_REMEDY}"
             ) from None
 
     def replace(self, obstacles: tuple[Obstacle, ...], made_on: int | None) -> ObstacleList:

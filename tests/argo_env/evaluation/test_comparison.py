@@ -3,7 +3,7 @@
 import pytest
 
 from argo_env.evaluation.comparison import compare_plans
-from argo_env.evaluation.plan import Stopping
+from argo_env.evaluation.plan import Stopping, single_seed_note
 from argo_env.evaluation.report.page import comparison_page
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.row import RunOutcome
@@ -72,3 +72,15 @@ def test_the_text_of_a_comparison_and_of_results_fits_one_screen(mission):
     assert "300 pairs" in str(compared)
     assert compared.conclusion in str(compared)
     assert "300 rows" in str(results)
+
+
+@pytest.mark.parametrize(
+    ("seeds", "note"),
+    [
+        ("5", "seed 5 only; for 5 seeds: 0..4"),
+        (" 20 ", "seed 20 only; for 20 seeds: 0..19"),
+        ("0", None), ("1", None), ("0..4", None), ("3,7", None),
+    ],
+)  # fmt: skip
+def test_a_single_seed_that_may_be_meant_as_a_number_is_named(seeds, note):
+    assert single_seed_note(seeds) == note

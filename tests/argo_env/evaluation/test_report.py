@@ -74,7 +74,7 @@ def results(mission) -> EvaluationResults:
 def test_the_page_has_the_numbers(results, tmp_path):
     replace_failing_specs(tmp_path, results)
     page = evaluation_page(results, tmp_path)
-    assert "2 of 40 runs are no success" in page
+    assert "2 of 40 runs without success" in page
     assert "95.0 %" in page  # over both cases; 90 % with a brick
     assert "90.0 %" in page
     assert f"argo run {tmp_path}/failing/{results.unsuccessful_rows[0].key}.json" in page

@@ -253,10 +253,10 @@ def test_invalid_numbers_for_a_film_are_refused(record, umad, robot, tmp_path, w
 def test_a_film_tells_its_progress_from_the_first_picture_on(record, umad, robot, tmp_path):
     told = []
     with listen_to_stages(lambda stage, share, _: told.append((stage, share))):
-        write_film(record, umad, robot, tmp_path / "film.gif", speed=100, fps=2, size=(64, 64))
+        write_film(record, umad, robot, tmp_path / "film.gif", speed=10, fps=2, size=(64, 64))
     for name in ("placing the film's camera", "drawing the film"):
         shares = [share for stage, share in told if stage == name and share is not None]
-        assert len(shares) > 2
+        assert len(set(shares)) > 2
         assert shares == sorted(shares)
         assert shares[-1] == 1.0
 

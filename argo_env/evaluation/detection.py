@@ -6,32 +6,13 @@ from dataclasses import dataclass
 from argo_compiler.base.model import Model
 from argo_compiler.il import EventKind
 from argo_env.drives.battery import ESTIMATE_ERROR
-from argo_env.faults.checkpoints import AbnormalValue
 from argo_env.faults.kinds import AnyFault
-from argo_env.run.record import Anomaly, Finding, RunRecord
+from argo_env.run.causes import false_all_clears, may_be_caused_by
+from argo_env.run.record import Finding, RunRecord
 from argo_env.run.run_setup import displayed_value, true_values
 from argo_env.run.spec import RunSpec, ValueProfile
 from argo_env.sensing.onboard import LOW
 from argo_env.site import Site
-
-
-def may_be_caused_by(anomaly: Anomaly, fault: AnyFault, record: RunRecord, site: Site) -> bool:
-    """Return True if this fault of the run may be the cause of the anomaly that the robot found.
-
-    The anomaly must match the fault's kind, its time, and its location as far as the anomaly has
-    one.
-    """
-    sign = fault.sign
-    if sign is None or (anomaly.kind, anomaly.source) != (sign.event, sign.source):
-        return False
-    if anomaly.t < fault.start_time or (
-        fault.end_time is not None and anomaly.t > fault.end_time + sign.outlasts
-    ):
-        return False
-    if isinstance(fault, AbnormalValue):
-        reading = record.abnormal_reading(anomaly)
-        return reading is not None and reading.checkpoint == fault.checkpoint
-    return fault.can_explain(anomaly.place, anomaly.noticed_from, site)
 
 
 class FaultDetection(Model):
@@ -133,11 +114,12 @@ charge, drive speed and camera noise"""
 
 
 def false_alarms(record: RunRecord, spec: RunSpec, site: Site) -> int:
-    """Return the number of false findings of the run of a spec on its site.
+    """Return the number of false findings and all-clears of the run of a spec on its site.
 
     A finding is false if no fault that had begun can be its cause, and the values, the battery, the
-    drive and the camera of this world were not as the finding states. Reports that a person gave
-    the robot don't count, as they are no findings of its own.
+    drive and the camera of this world were not as the finding states. `false_all_clears` states
+    which all-clears are false. Reports that a person gave the robot don't count, as they are not
+    its own.
     """
     truth = _GroundTruth(record, spec, site)
 
@@ -148,6 +130,7 @@ def false_alarms(record: RunRecord, spec: RunSpec, site: Site) -> int:
             truth, finding
         )
 
-    return sum(
+    false_findings = sum(
         not (finding.is_reported_from_outside or is_true(finding)) for finding in record.findings
     )
+    return false_findings + len(false_all_clears(record, site))

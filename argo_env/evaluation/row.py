@@ -71,7 +71,7 @@ class RunRow(Model):
     findings: int = 0
     false_alarms: int = 0
     """number of false findings, which neither a fault nor the values, battery, drive or camera of
-    this world explain"""
+    this world explain, and of all-clears while what was found went on"""
     contacts: int = 0
     mishaps: int = 0
     late: int = 0

@@ -47,7 +47,7 @@ class RobustnessRules(Model):
     detected: float = Field(ge=0, le=1)
     """share for faults that the robot finds"""
     no_false_alarm: float = Field(ge=0, le=1)
-    """share for a run without false findings"""
+    """share for a run without false findings and all-clears"""
     goes_on: float = Field(ge=0, le=1)
     """share for a robot that ends in its dock, or whose mission requires no dock"""
 

@@ -23,6 +23,7 @@ from argo_env.report.rounds import (
 from argo_env.report.svg import Node, drawing, markup, node, replace_non_xml_characters
 from argo_env.report.timeline import draw_charge_curve, draw_timeline, lacks_measuring_times
 from argo_env.report.track import colour
+from argo_env.run.causes import explain_false_all_clear, false_all_clears
 from argo_env.run.record import Anomaly, Reading, RunRecord
 from argo_env.site import Site
 from argo_env.site.site import SCALES
@@ -44,6 +45,7 @@ def page(record: RunRecord, site: Site) -> str:
         found=_findings(record),
         untold=any(map(lacks_measuring_times, record.tasks)),
         missed=record.faults_not_begun,
+        false_all_clears=[explain_false_all_clear(a) for a in false_all_clears(record, site)],
         failed=[t for t in record.tasks if t.outcome == "failed"],
         readings=[(reading, markup(_bar(reading))) for reading in record.readings],
         timeline=markup(draw_timeline(record)) if record.tasks or record.waits else None,

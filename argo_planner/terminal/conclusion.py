@@ -65,7 +65,7 @@ class Conclusion:
                 received = interrupted
                 unwritten.append(path)
         console = Console()
-        show_record(record, console)
+        show_record(record, site, console)
         if not is_quiet():
             console.print(duration_text, soft_wrap=True)
         for line in lines:

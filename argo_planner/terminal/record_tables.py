@@ -8,15 +8,17 @@ from rich.table import Table
 
 from argo_env.formatting import floor_and_position_text, min_sec_text
 from argo_env.report.rounds import all_waits
+from argo_env.run.causes import explain_false_all_clear, false_all_clears
 from argo_env.run.record import RunRecord, WindowOutcome
 from argo_env.run.verdict_line import Tone
+from argo_env.site import Site
 
 _WIDE = 100
 """width in characters from which a terminal shows the column with measuring times"""
 _STYLES = {Tone.GOOD: "bold green", Tone.NOTICE: "bold yellow", Tone.BAD: "bold red"}
 
 
-def show_record(record: RunRecord, console: Console) -> None:
+def show_record(record: RunRecord, site: Site, console: Console) -> None:
     """Print the readings, the tasks, findings and contacts, and the verdict."""
     console.print(_readings(record))
     measuring = console.width >= _WIDE and any(t.measuring_duration for t in record.tasks)
@@ -31,7 +33,7 @@ def show_record(record: RunRecord, console: Console) -> None:
         f"{result.climbed:.1f} m climbed, {touches}, {docked}",
         soft_wrap=True,
     )
-    for line in _problem_lines(record):
+    for line in _problem_lines(record, site):
         console.print(f"  {escape(line)}", style="yellow", soft_wrap=True)
     headline = record.headline
     console.print(
@@ -39,11 +41,12 @@ def show_record(record: RunRecord, console: Console) -> None:
     )
 
 
-def _problem_lines(record: RunRecord) -> Iterator[str]:
-    """Yield a line for each finding, contact and mishap, and each fault that did not happen."""
+def _problem_lines(record: RunRecord, site: Site) -> Iterator[str]:
+    """Yield a line for each finding, false all-clear, contact, mishap and fault not begun."""
     for finding in record.findings:
         detail = "" if finding.is_reading or not finding.detail else f": {finding.detail}"
         yield ", ".join(filter(None, (finding.in_words, finding.whereabouts))) + detail
+    yield from map(explain_false_all_clear, false_all_clears(record, site))
     for contact in record.contacts:
         yield (
             f"contact at {min_sec_text(contact.start)}: {contact.link} with {contact.element}, "

@@ -11,6 +11,7 @@ from argo_compiler.il import Action, Afterwards, EventKind, Mission, Reaction, R
 from argo_env.faults.plant import GasLeakFault
 from argo_env.faults.robot import ConnectionLoss
 from argo_env.formatting import distinct_time_texts, min_sec_text, rounded_time_text
+from argo_env.planning import open_site
 from argo_env.run.record import (
     Anomaly,
     Contact,
@@ -28,7 +29,7 @@ from tests.yard import record_of
 
 def shown(record: RunRecord, width: int = 140) -> str:
     console = Console(file=io.StringIO(), width=width, color_system=None)
-    show_record(record, console)
+    show_record(record, open_site(record.site).site, console)
     assert isinstance(console.file, io.StringIO)
     return console.file.getvalue()
 

@@ -14,6 +14,7 @@ COMMANDS = {
     "fault_pairs --runs 1 --drive route": r"of \d findings 0 without a cause; 0 missions failed",
     "faults --clean 1 --drive route --site darmstadt": r"0 false alarms, 0 missions without succ",
     "faults --bricks 1 --seed 1": r"detected in 1, contacts in 0, successful all the same 1",
+    "gas_leaks --leaks 2 --near-limit 0 --drives 1 --duration 60": r"false all-clears: 0 of 2 ",
     "hostile --only zeros": r"zeros .* refused\nworst: ",
     "perception --trials 1 --jobs 1": r"wrong readings: 0 of 1 \(0.0 %\) of all readings",
     "readers --count 3 --only sqlite mcap recording site": r"sqlite +3 inputs: .*; slowest ",

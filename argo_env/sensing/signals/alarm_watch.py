@@ -22,12 +22,19 @@ BEAT_RECORDINGS, MAX_MISMATCHES = 10, 1
 """recordings that are compared with the beat, and how many of them may differ from it"""
 MIN_TONE = 0.01  # s of tone in a recording from which it is detected
 IDLE_UPDATES = 2  # updates per recording while there is no tone
-CLEAR_TIME = 6.0  # s without the tone until the alarm is over
+CLEAR_TIME = 6.0  # s without the tone, and without noise that hides it, until the alarm is over
+HIDING = 6.0  # dB by which the loudest tone must exceed what is needed, or else noise may hide it
 _PHASES = np.arange(0.0, ALARM_PERIOD, 0.02)
 
 
 def has_alarm_tone(samples: NDArray[np.float32]) -> bool:
     """Return True if the alarm's tone stands out of a recording (Pa, `RATE` samples a second)."""
+    tone, needed = _tone_and_needed_power(samples)
+    return tone > needed
+
+
+def _tone_and_needed_power(samples: NDArray[np.float32]) -> tuple[float, float]:
+    """Return the power of the line at the tone, and the power from which it is the tone."""
     bins_per_hertz = len(samples) / RATE
     first, last = round(NOISE_BAND[0] * bins_per_hertz), round(NOISE_BAND[1] * bins_per_hertz)
     spectrum = np.fft.rfft(samples)[first:last]
@@ -38,7 +45,7 @@ def has_alarm_tone(samples: NDArray[np.float32]) -> bool:
     )
     tone = power[low - first : high - first]
     noise = (power.sum() - tone.sum()) / (len(power) - len(tone))
-    return bool(tone.max() > 10 ** (PROMINENCE / 10) * noise)
+    return float(tone.max()), float(10 ** (PROMINENCE / 10) * noise)
 
 
 def matches_alarm_beat(recordings: Sequence[tuple[float, bool]]) -> bool:
@@ -59,7 +66,11 @@ def matches_alarm_beat(recordings: Sequence[tuple[float, bool]]) -> bool:
 
 
 class AlarmWatch:
-    """Watch for the start and the end of the alarm. It holds the last recordings' results."""
+    """Watch for the start and the end of the alarm. It holds the last recordings' results.
+
+    Near a pump, a weak alarm can't be heard: silence counts only where the tone, as loud as it was,
+    would stand out.
+    """
 
     name = "alarm"
     period = 0.4
@@ -67,7 +78,8 @@ class AlarmWatch:
     def __init__(self, microphone: Microphone) -> None:
         self._microphone = microphone
         self._recordings: deque[tuple[float, bool]] = deque(maxlen=BEAT_RECORDINGS)
-        self._last_tone: float | None = None
+        self._last_tone: float | None = None  # s, of the last tone, or of noise that may hide it
+        self._loudest: float | None = None  # power of the loudest tone; None: not heard yet
         self._reported = False
         self._idle_updates = 0
 
@@ -80,9 +92,12 @@ class AlarmWatch:
         self._idle_updates = (self._idle_updates + 1) % IDLE_UPDATES
         if self._idle_updates != 1 and not any(has_tone for _, has_tone in self._recordings):
             return ()
-        tone = has_alarm_tone(self._microphone.record_sound(now, pose, RECORDING))
+        power, needed = _tone_and_needed_power(self._microphone.record_sound(now, pose, RECORDING))
+        tone = power > needed
         self._recordings.append((now, tone))
         if tone:
+            self._loudest = max(power, self._loudest or 0.0)
+        if tone or (self._loudest is not None and self._loudest < 10 ** (HIDING / 10) * needed):
             self._last_tone = now
         if not self._reported and tone and matches_alarm_beat(self._recordings):
             self._reported = True
@@ -90,5 +105,6 @@ class AlarmWatch:
         if self._reported and self._last_tone is not None and now - self._last_tone >= CLEAR_TIME:
             self._reported = False
             self._recordings.clear()
+            self._loudest = None
             return (Detection(EventKind.ALL_CLEAR, "the general platform alarm is over"),)
         return ()

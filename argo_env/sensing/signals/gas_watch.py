@@ -1,6 +1,7 @@
 """Watch for gas leaks, with its two instruments: a gas sensor and an ultrasonic microphone."""
 
 import math
+import statistics
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -115,10 +116,16 @@ HISS_ON, HISS_OFF = 62.0, 55.0
 VOTERS, GAS_VOTES, HISS_VOTES = 5, 3, 4
 """number of the last readings, and how many of them must be high for gas and for a hiss; a bang
 lasts for one reading only"""
-CLEAR_TIME = 10.0  # s without a signal until the danger is over
 WARMING_UP = 15.0  # s after a run is resumed until the sensors show a leak that has gone on
 SAME_LEAK = 8.0  # m from where a leak was sensed within which a signal belongs to it
-CLEAR_RANGE = 3.0  # m from where a leak was strongest within which silence means that it is over
+SAME_PLACE = 0.02
+"""m between positions of the robot's nose at one place; farther apart, a solid may hide the hiss at
+one of them, or a narrow plume may pass it by"""
+SIGNAL_READINGS, CLEAR_READINGS = 10, 30
+"""numbers of readings at a standstill, one a second, whose mean shows that there is a leak, and
+that there is none any more"""
+NO_GAS = 10.0
+"""ppm, largest mean of `CLEAR_READINGS` readings that shows that there is no gas"""
 
 
 class Hysteresis:
@@ -145,21 +152,61 @@ class Hysteresis:
         return self.active
 
 
+class _Standstill:
+    """Stay at one place. It holds the last readings there, and where the robot's nose is."""
+
+    def __init__(self, nose: Vector) -> None:
+        self.nose = nose
+        self._ppm: deque[float] = deque(maxlen=CLEAR_READINGS)
+        self._level: deque[float] = deque(maxlen=CLEAR_READINGS)
+        self._without_signal = 0
+
+    def add(self, ppm: float, level: float, has_signal: bool) -> None:
+        """Add the readings of a second: of gas, without the sensor's delay, and of hiss in dB.
+
+        `has_signal` is True if the last readings together show gas or a hiss.
+        """
+        self._ppm.append(ppm)
+        self._level.append(level)
+        self._without_signal = 0 if has_signal else self._without_signal + 1
+
+    @property
+    def strength(self) -> float:
+        """Mean signal relative to the limit from which there is gas or a hiss; 0 if it is short."""
+        if len(self._ppm) < SIGNAL_READINGS:
+            return 0.0
+        ppm, level = (list(values)[-SIGNAL_READINGS:] for values in (self._ppm, self._level))
+        # A bang of metal on metal changes a mean, but not the median.
+        hiss = 10 ** ((statistics.median(level) - HISS_ON) / 10)
+        return max(statistics.fmean(ppm) / GAS_ON, hiss)
+
+    @property
+    def is_quiet(self) -> bool:
+        """True if `CLEAR_READINGS` readings show neither gas nor hiss, each and in the mean."""
+        return (
+            self._without_signal >= CLEAR_READINGS
+            and statistics.fmean(self._ppm) < NO_GAS
+            and statistics.median(self._level) < HISS_OFF
+        )
+
+
 @dataclass
 class _Leak:
-    """A leak that was reported: the poses at which it was sensed, and the strongest signal."""
+    """A leak that was reported: the poses at which it was sensed, and its reference place."""
 
     poses: list[BodyPose]
     """apart from each other by more than `SAME_LEAK`"""
-    strongest_at: BodyPose
-    strength: float
-    """of the strongest signal, relative to the limit from which there is gas or a hiss"""
+    reference: Vector | None = None
+    """m, position of the nose where the robot stood in the strongest signal; None: nowhere yet"""
+    strength: float = 1.0
+    """of the signal there (`_Standstill.strength`)"""
 
 
 class GasWatch:
     """Watch for gas leaks. It holds the last readings and the leaks that it has reported.
 
-    It reports each leak once, and its end when nothing is sensed any more where it was strongest.
+    It reports each leak once. It reports the all-clear once the robot has stood without a signal
+    wherever a reported leak was strongest, of the places at which the robot stood in its signal.
     """
 
     name = "gas"
@@ -173,25 +220,23 @@ class GasWatch:
         self._hiss = Hysteresis(HISS_ON, HISS_OFF, HISS_VOTES)
         self._reported: list[_Leak] = []
         self._current: _Leak | None = None
-        self._quiet_since: float | None = None
+        self._last: tuple[float, float] | None = None  # s and ppm, of the last reading of gas
+        self._standstill: _Standstill | None = None
         self._valid_from = 0.0  # s, from when on silence means that there is no leak
 
     def restore(self, reported: Sequence[ReportedDetection], now: float) -> None:
-        """Restore the leaks that were reported and not cleared.
+        """Restore the leaks that were reported before the last all-clear.
 
-        The robot's pose at the report counts as the one at which the leak's signal was strongest.
+        Where the robot stood in their signals is unknown, so an all-clear needs new signals.
 
         Before `now` + `WARMING_UP` (s), the absence of gas and hiss does not mean that a leak has
         been left behind.
         """
         for detection in reported:
             if detection.kind is EventKind.GAS_LEAK:
-                self._reported.append(_Leak([detection.pose], detection.pose, 1.0))
-            elif self._reported:
-                pose = detection.pose
-                self._reported.remove(
-                    min(self._reported, key=lambda leak: _distance(pose, leak.strongest_at))
-                )
+                self._reported.append(_Leak([detection.pose]))
+            else:
+                self._reported.clear()
         self._current = self._reported[-1] if self._reported else None
         self._valid_from = now + WARMING_UP
 
@@ -201,19 +246,20 @@ class GasWatch:
             self._microphone.measure_level(pose),
         )
         has_gas, has_hiss = self._gas.update(ppm), self._hiss.update(level)
+        standstill = self._standstill_at(pose)
+        standstill.add(self._undelayed(now, ppm), level, has_gas or has_hiss)
         if not has_gas and not has_hiss:
             if now >= self._valid_from:
                 self._current = None
-            return self._all_clear(now, pose)
-        self._quiet_since = None
-        strength = max(ppm / GAS_ON, 10 ** ((level - HISS_ON) / 10))
+            return self._all_clear(standstill, pose)
         # A signal without a break belongs to one leak, however far its gas reaches.
         known = self._current or next((k for k in self._reported if _is_near(k, pose)), None)
-        self._current = known or _Leak([], pose, strength)
+        self._current = known or _Leak([])
         if not _is_near(self._current, pose):
             self._current.poses.append(pose)
-        if strength > self._current.strength:
-            self._current.strongest_at, self._current.strength = pose, strength
+        if standstill.strength >= self._current.strength:
+            self._current.reference = standstill.nose
+            self._current.strength = standstill.strength
         if known:
             return ()
         self._reported.append(self._current)
@@ -222,19 +268,40 @@ class GasWatch:
         detail = f"{' and '.join(signs)}, near {near}"
         return (Detection(EventKind.GAS_LEAK, detail, noticed_from=_position(pose)),)
 
-    def _all_clear(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:
-        leaks_here = [
-            leak for leak in self._reported if _distance(pose, leak.strongest_at) <= CLEAR_RANGE
+    def _standstill_at(self, pose: BodyPose) -> _Standstill:
+        """Return the present stay, a new one if the nose has moved."""
+        nose = to_rounded_vector(to_site(pose, NOSE))
+        if self._standstill is None or not _is_same_place(self._standstill.nose, nose):
+            self._standstill = _Standstill(nose)
+        return self._standstill
+
+    def _undelayed(self, now: float, ppm: float) -> float:
+        """Return the reading without the delay, by which it still shows the gas of other places."""
+        before, shown = self._last or (now, ppm)
+        self._last = now, ppm
+        if now <= before:
+            return ppm
+        return shown + (ppm - shown) / (1 - 10 ** ((before - now) / GasSensor.T90))
+
+    def _all_clear(self, standstill: _Standstill, pose: BodyPose) -> tuple[Detection, ...]:
+        over = [
+            leak
+            for leak in self._reported
+            if leak.reference is not None
+            and standstill.is_quiet
+            and _is_same_place(leak.reference, standstill.nose)
         ]
-        if not leaks_here:
-            self._quiet_since = None
+        if not over:
             return ()
-        self._quiet_since = now if self._quiet_since is None else self._quiet_since
-        if now - self._quiet_since < CLEAR_TIME:
+        self._reported = [leak for leak in self._reported if leak not in over]
+        if self._reported:
             return ()
-        self._reported = [leak for leak in self._reported if leak not in leaks_here]
         detail = "there is no gas any more where it was"
         return (Detection(EventKind.ALL_CLEAR, detail, noticed_from=_position(pose)),)
+
+
+def _is_same_place(a: Vector, b: Vector) -> bool:
+    return math.dist(a, b) <= SAME_PLACE
 
 
 def _position(pose: BodyPose) -> Vector:

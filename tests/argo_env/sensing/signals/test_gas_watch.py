@@ -7,7 +7,13 @@ from hypothesis import strategies as st
 
 from argo_compiler.il import EventKind
 from argo_env.robot.pose import BodyPose
-from argo_env.sensing.signals.gas_watch import GasSensor, GasWatch, Hysteresis, UltrasonicMicrophone
+from argo_env.sensing.signals.gas_watch import (
+    CLEAR_READINGS,
+    GasSensor,
+    GasWatch,
+    Hysteresis,
+    UltrasonicMicrophone,
+)
 from argo_env.sensing.watch import ReportedDetection
 from argo_env.surroundings import GasLeak, Surroundings, Weather
 from tests.argo_env.sensing.signals.plant import Z, detections_along, lane
@@ -46,20 +52,84 @@ def test_a_leak_is_reported_once_and_its_end_when_it_is_closed(site, world, site
     assert first[0].noticed_from == (here.x, here.y, here.z)
     assert first[0].place is None, "the signals have no direction"
     surroundings.remove(on_pipe(), 120.0)
-    later = [f for t, p in STAY[120:300] for f in watch.update(t, p)]
-    assert [detection.kind for detection in later] == [EventKind.ALL_CLEAR]
+    later = [(t, f) for t, p in STAY[120:300] for f in watch.update(t, p)]
+    assert [detection.kind for _, detection in later] == [EventKind.ALL_CLEAR]
+    assert 120 + CLEAR_READINGS <= later[0][0] < 220
     surroundings.add(on_pipe(), 300.0)
     again = [f for t, p in STAY[300:] for f in watch.update(t, p)]
     assert [detection.kind for detection in again] == [EventKind.GAS_LEAK]
 
 
+def events_of_drive(watch, *stays):
+    """Return the events while the robot stands at each pose for its number of seconds in turn."""
+    poses = [pose for pose, seconds in stays for _ in range(seconds)]
+    return [(t, f.kind) for t, p in enumerate(poses) for f in watch.update(float(t), p)]
+
+
+class TestAllClear:
+    """It is given only where the robot has stood in the strongest signal of each leak."""
+
+    def test_not_beside_a_narrow_plume_that_the_robot_has_crossed(self, site, world, site_map):
+        air = Surroundings(site, Weather(wind=(0.0, -20.0)))
+        watch, surroundings = make_watch(site, world, site_map, surroundings=air)
+        surroundings.add(GasLeak((6.0, 20.0, Z + 0.5), 0.02), -100.0)
+        crossing = [(BodyPose(4.2 + t / 5, 2.0, Z, 0.0), 1) for t in range(15)]
+        beyond = BodyPose(8.4, 2.0, Z, 0.0)
+        events = events_of_drive(watch, *crossing, (beyond, 300))
+        assert [kind for _, kind in events] == [EventKind.GAS_LEAK]
+
+    def test_not_behind_a_solid_that_hides_the_hiss(self, site, world, site_map):
+        air = Surroundings(site, Weather(wind=(0.0, 8.0)))
+        watch, surroundings = make_watch(site, world, site_map, surroundings=air)
+        surroundings.add(GasLeak((12.0, 6.2, Z + 1.0), 0.002))  # behind the vessel
+        heard, hidden = BodyPose(10.2, 6.5, Z, 0.0), BodyPose(10.4, 4.0, Z, 0.0)
+        events = events_of_drive(watch, (heard, 60), (hidden, 300))
+        assert [kind for _, kind in events] == [EventKind.GAS_LEAK]
+
+    @pytest.mark.parametrize(
+        "place", [BodyPose(8.0, 2.5, Z, 0.0), BodyPose(8.0, 2.0, Z + 2.5, 0.0)]
+    )
+    def test_only_where_the_robot_has_stood_in_the_strongest_signal(
+        self, site, world, site_map, place
+    ):
+        watch, surroundings = make_watch(site, world, site_map)
+        surroundings.add(on_pipe(), 0.0)
+        here, weaker = BodyPose(8.0, 2.0, Z, 0.0), BodyPose(12.0, 2.0, Z, 0.0)
+        begun = events_of_drive(watch, (weaker, 40), (here, 40))
+        assert [kind for _, kind in begun] == [EventKind.GAS_LEAK]
+        surroundings.remove(on_pipe(), 80.0)
+        later = enumerate([place] * 200 + [weaker] * 200 + [here] * 400, start=80)
+        cleared = [t for t, pose in later for _ in watch.update(float(t), pose)]
+        assert cleared == [480 + CLEAR_READINGS - 1]
+
+    def test_only_after_all_leaks(self, site, world, site_map):
+        watch, surroundings = make_watch(site, world, site_map)
+        one, other = on_pipe(), GasLeak((-40.0, 2.0, Z + 0.5), 0.02)
+        surroundings.add(one, 0.0)
+        surroundings.add(other, 0.0)
+        here, there = BodyPose(8.0, 2.0, Z, 0.0), BodyPose(-39.0, 2.0, Z, 0.0)
+        far = BodyPose(-80.0, 2.0, Z, 0.0)
+        events = events_of_drive(watch, (here, 60), (far, 60), (there, 60), (far, 60))
+        assert [kind for _, kind in events] == [EventKind.GAS_LEAK] * 2
+        surroundings.remove(one, 240.0)
+        assert [f for t in range(240, 500) for f in watch.update(float(t), here)] == []
+        surroundings.remove(other, 500.0)
+        later = [f.kind for t in range(500, 800) for f in watch.update(float(t), there)]
+        assert later == [EventKind.ALL_CLEAR]
+
+
 class TestResumed:
     """A new watch continues from the reports of the previous one."""
 
-    def test_the_end_of_a_leak_before_the_resume_is_reported(self, site, world, site_map):
-        watch, _ = make_watch(site, world, site_map)
+    def test_where_the_robot_stood_in_the_signal_is_forgotten(self, site, world, site_map):
+        watch, surroundings = make_watch(site, world, site_map)
         watch.restore([ReportedDetection(EventKind.GAS_LEAK, STAY[0][1])], 0.0)
-        assert [f.kind for *_, f in detections_along(watch, STAY[:60])] == [EventKind.ALL_CLEAR]
+        assert detections_along(watch, STAY[:100]) == [], "it may never have stood there"
+        surroundings.add(on_pipe(), 100.0)
+        assert [f for t, p in STAY[100:200] for f in watch.update(t, p)] == []
+        surroundings.remove(on_pipe(), 200.0)
+        later = [f.kind for t, p in STAY[200:] for f in watch.update(t, p)]
+        assert later == [EventKind.ALL_CLEAR]
 
     def test_a_reported_end_is_not_reported_again(self, site, world, site_map):
         watch, _ = make_watch(site, world, site_map)

@@ -142,6 +142,15 @@ def test_the_start_and_the_end_of_the_alarm_are_reported(site, start, seed):
     assert detection.kind is EventKind.ALL_CLEAR
 
 
+@pytest.mark.parametrize("level", [60.0, 64.0])
+def test_a_weak_alarm_that_noise_hides_is_not_over(site, level):
+    watch, surroundings = alarm_watch(site)
+    surroundings.add(Alarm(level), 0.0)
+    away, near = BodyPose(-30.0, 2.0, Z, 0.0), BodyPose(3.0, 4.6, Z, 0.0)
+    found = detections_at(watch, 120.0, 0.0, away) + detections_at(watch, 240.0, 120.0, near)
+    assert [f.kind for _, f in found] == [EventKind.PLATFORM_ALARM]
+
+
 def test_an_alarm_that_is_over_before_the_run_is_resumed(site):
     watch, _ = alarm_watch(site)
     watch.restore([ReportedDetection(EventKind.PLATFORM_ALARM, BESIDE)], 100.0)

@@ -32,6 +32,8 @@ def check_reactions(mission: Mission) -> Iterator[Diagnostic]:
         yield from _check_unused(item, reaction)
         if _may_hold(reaction.response) and reaction.until is not None:
             yield from _check_until(item, reaction, first)
+        if reaction.until is EventKind.ALL_CLEAR and reaction.hold_limit is None:
+            yield from _check_all_clear(item, reaction)
         for field, event in (("event", reaction.event), ("until", reaction.until)):
             if event is EventKind.TIME_UP and mission.max_duration is None:
                 yield item.diagnostic(
@@ -146,6 +148,32 @@ def _check_until(
             f"the reaction to {reaction.event} waits for {reaction.until}, which has a reaction of "
             "higher priority that is executed instead",
             "wait for another event, or give this reaction the higher priority",
+            ".until",
+        )
+
+
+def _check_all_clear(item: CheckedItem, reaction: Reaction) -> Iterator[Diagnostic]:
+    """Yield a diagnostic if the robot's own measurements may never end a wait for the all-clear."""
+    event, response = reaction.event, reaction.response
+    limit = "limit the wait, such as `until all clear for at most 10 minutes` (`hold_limit`)"
+    if not _may_hold(response) or event in (EventKind.PLATFORM_ALARM, EventKind.ALL_CLEAR):
+        return
+    if event is not EventKind.GAS_LEAK:
+        yield item.diagnostic(
+            "il.all-clear-not-sensed",
+            f"the reaction to {event} waits for all_clear without a limit, but the robot gives an "
+            "all-clear only after a gas leak or the platform alarm: otherwise the wait lasts until "
+            "somebody reports all_clear",
+            limit,
+            ".until",
+        )
+    elif response.drives:
+        yield item.diagnostic(
+            "il.all-clear-elsewhere",
+            "the reaction to gas_leak drives away and waits for all_clear without a limit, but the "
+            "robot gives the all-clear only where it has stood in the gas or has heard its hiss: "
+            "if neither reaches the place of the wait, it lasts until somebody reports all_clear",
+            f"{limit}, or wait where the leak is noticed, as by `pause until all clear`",
             ".until",
         )
 

@@ -216,8 +216,10 @@ def test_sound_mission_has_no_findings():
 
 
 DOCK = Pose(x=0, y=0, z=0)
-GAS, LOW, CLEAR, TIME_UP = (
+GAS, ALARM, HOT_SPOT, LOW, CLEAR, TIME_UP = (
     EventKind.GAS_LEAK,
+    EventKind.PLATFORM_ALARM,
+    EventKind.HOT_SPOT,
     EventKind.LOW_BATTERY,
     EventKind.ALL_CLEAR,
     EventKind.TIME_UP,
@@ -262,6 +264,10 @@ class TestReactions:
             ("il.unused-field", "until", [react(GAS, "abort", until=GAS)]),
             ("il.unused-field", "afterwards", [react(GAS, "pause", afterwards="wait")]),
             ("il.unused-field", "afterwards", [react(GAS, "report", afterwards="wait")]),
+            ("il.all-clear-elsewhere", "until", [react(GAS, "safe_area", pose=DOCK, until=CLEAR)]),
+            ("il.all-clear-elsewhere", "until", [react(GAS, "return", pose=DOCK, until=CLEAR)]),
+            ("il.all-clear-not-sensed", "until", [react(HOT_SPOT, "pause", until=CLEAR)]),
+            ("il.all-clear-not-sensed", "until", [react(LOW, "return", pose=DOCK, until=CLEAR)]),
             ("il.time-up-without-limit", "event", [react(TIME_UP, "report")]),
             ("il.time-up-without-limit", "until", [react(GAS, "pause", until=TIME_UP)]),
             (
@@ -279,7 +285,10 @@ class TestReactions:
     @pytest.mark.parametrize(
         "reactions",
         [
-            [react(GAS, "safe_area", pose=DOCK, until=CLEAR, afterwards="resume")],
+            [react(GAS, "safe_area", pose=DOCK, until=CLEAR, hold_limit=60, afterwards="resume")],
+            [react(ALARM, "safe_area", pose=DOCK, until=CLEAR, afterwards="resume")],
+            [react(HOT_SPOT, "pause", until=CLEAR, hold_limit=60)],
+            [react(GAS, "safe_area", pose=DOCK, afterwards="wait")],
             [react(LOW, "return", until=EventKind.BATTERY_CHARGED)],
             [react(GAS, "pause", until=CLEAR), react(CLEAR, "report", priority=9)],
             [react(GAS, "pause", until=CLEAR), react(CLEAR, "pause")],

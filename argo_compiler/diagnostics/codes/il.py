@@ -3,6 +3,17 @@
 from argo_compiler.diagnostics.codes.code import error, warning
 
 IL = {
+    "il.all-clear-elsewhere": warning(
+        "A reaction to a gas leak drives away and waits for the all-clear without a limit; if "
+        "neither gas nor hiss reaches that place, the robot can't give the all-clear there.",
+        "Limit the wait, such as `until all clear for at most 10 minutes`, or pause where the leak "
+        "is noticed.",
+    ),
+    "il.all-clear-not-sensed": warning(
+        "A reaction waits for the all-clear without a limit, but the robot gives one only after a "
+        "gas leak or the platform alarm.",
+        "Limit the wait, such as `until all clear for at most 10 minutes`.",
+    ),
     "il.battery-level": error(
         "A reaction has a battery level, but its event is not LOW_BATTERY.",
         "Leave `battery_below` out, or let the reaction respond to `low_battery`.",

@@ -25,7 +25,7 @@ import {
 
 const [WIDTH, HEIGHT] = [300, 110];
 /** The service's message about an evaluation that ended because the service ended. */
-const SERVICE_ENDED = "the service ended before all was run";
+const SERVICE_ENDED = "the service ended before the end of this evaluation was stored";
 
 @customElement("argo-evaluate-result")
 export class EvaluateResult extends PageElement {

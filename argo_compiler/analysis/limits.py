@@ -5,6 +5,7 @@ import math
 from collections.abc import Callable, Iterator
 
 from argo_compiler.analysis.bounds import MissionBounds
+from argo_compiler.analysis.charging import diagnose_charging
 from argo_compiler.analysis.reachability import objects_that_others_may_report
 from argo_compiler.analysis.results import Bound, Bounds, Stretch
 from argo_compiler.analysis.study import Study
@@ -53,6 +54,7 @@ def diagnose_limits_and_missing_paths(
     yield from _blocked_tasks(study)
     yield from _blocked_retreats(study, travel)
     yield from diagnose_task_time_limits(study)
+    yield from diagnose_charging(study, travel)
     bounds = study.bounds_if_computable
     if bounds is None or bounds.duration is None or bounds.energy is None:
         return

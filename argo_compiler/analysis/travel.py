@@ -43,6 +43,11 @@ class Travel(Protocol):
         ...
 
     @property
+    def charging_power(self) -> float | None:
+        """Power in W that charges the battery at a dock; None if it is unknown."""
+        ...
+
+    @property
     def longest_cancellation_time(self) -> float:
         """Greatest time in s from the cancellation of an action until the next one can start."""
         ...

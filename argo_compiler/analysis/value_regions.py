@@ -2,9 +2,9 @@
 
 The bounds that a mission compares an object with divide the number line into finitely many regions:
 the bounds themselves, the open intervals between them, and the two rays outside. A set of regions
-is an integer with one bit for each region, from the lowest one up. The three topmost bits say that
-there may be no reading, an unreadable one, or a failed one. The sets of all objects are packed into
-one long integer, so that a single `|` joins the states of two paths.
+is an integer with one bit for each region, from the lowest one up. The four topmost bits say that
+there may be no reading, an unreadable one, an unreachable one, or a failed one. The sets of all
+objects are packed into one long integer, so that a single `|` joins the states of two paths.
 """
 
 from bisect import bisect_left
@@ -39,22 +39,32 @@ class Scale:
         return self.missing_bit << 1
 
     @cached_property
-    def otherwise_failed_bit(self) -> int:
-        """Mask of the bit that says: the reading may have failed for another reason."""
+    def unreachable_bit(self) -> int:
+        """Mask of the bit that says: the checkpoint may have been unreachable."""
         return self.missing_bit << 2
 
     @cached_property
+    def otherwise_failed_bit(self) -> int:
+        """Mask of the bit that says: the reading may have failed for another reason."""
+        return self.missing_bit << 3
+
+    @cached_property
+    def failed_bits(self) -> int:
+        """Mask of all bits of failed readings, unreadable and unreachable ones included."""
+        return self.unreadable_bit | self.unreachable_bit | self.otherwise_failed_bit
+
+    @cached_property
     def without_value_bits(self) -> int:
-        return self.missing_bit | self.unreadable_bit | self.otherwise_failed_bit
+        return self.missing_bit | self.failed_bits
 
     @cached_property
     def width(self) -> int:
         """Number of bits of a set of readings."""
-        return 2 * len(self.bounds) + 4
+        return 2 * len(self.bounds) + 5
 
     @cached_property
     def all_bits(self) -> int:
-        """Mask of all bits: of all values, of no reading, and of unreadable and failed ones."""
+        """Mask of all bits: of all values, of no reading, and of failed ones."""
         return (1 << self.width) - 1
 
     def satisfying_bits(self, condition: Condition) -> int:
@@ -62,8 +72,10 @@ class Scale:
         match condition.type:
             case ConditionType.UNREADABLE:
                 return self.unreadable_bit
+            case ConditionType.UNREACHABLE:
+                return self.unreachable_bit
             case ConditionType.FAILED:
-                return self.unreadable_bit | self.otherwise_failed_bit
+                return self.failed_bits
             case ConditionType.STALE:
                 return self.missing_bit - 1
             case ConditionType.ABNORMAL:

@@ -37,12 +37,16 @@ class ClaimedScale:
         return self.missing_bit << 1
 
     @cached_property
-    def otherwise_failed_bit(self) -> int:
+    def unreachable_bit(self) -> int:
         return self.missing_bit << 2
 
     @cached_property
+    def otherwise_failed_bit(self) -> int:
+        return self.missing_bit << 3
+
+    @cached_property
     def width(self) -> int:
-        return 2 * len(self.bounds) + 4
+        return 2 * len(self.bounds) + 5
 
     @cached_property
     def all_bits(self) -> int:
@@ -71,8 +75,10 @@ class ClaimedScale:
         match condition.type:
             case ConditionType.UNREADABLE:
                 return self.unreadable_bit
+            case ConditionType.UNREACHABLE:
+                return self.unreachable_bit
             case ConditionType.FAILED:
-                return self.unreadable_bit | self.otherwise_failed_bit
+                return self.unreadable_bit | self.unreachable_bit | self.otherwise_failed_bit
             case ConditionType.STALE:
                 return all_values
             case ConditionType.ABNORMAL:

@@ -158,7 +158,7 @@ class MissionWalk:
         if task.action is not _MEASURE or o not in self.states.scales:
             return state
         scale = self.states.scales[o]
-        others = scale.unreadable_bit if self.failures else 0
+        others = scale.unreadable_bit | scale.unreachable_bit if self.failures else 0
         return self.states.set(state, o, scale.otherwise_failed_bit | others) | self._reported
 
     def _may_fail(self, task: Task) -> bool:

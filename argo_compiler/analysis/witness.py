@@ -2,9 +2,9 @@
 
 A set of readings of a checkpoint is an integer with one bit for each of them. The checkpoint's
 bounds divide the number line: bit 2k stands for the values between bound k - 1 and bound k, bit
-2k + 1 for bound k itself, and bit 2n, with n bounds, for the values above the last one. Three more
-bits follow: no reading, unreadable, failed. The sets of all checkpoints are packed into one long
-integer.
+2k + 1 for bound k itself, and bit 2n, with n bounds, for the values above the last one. Four more
+bits follow: no reading, unreadable, unreachable, failed. The sets of all checkpoints are packed
+into one long integer.
 """
 
 from dataclasses import dataclass

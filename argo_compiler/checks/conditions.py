@@ -105,7 +105,8 @@ def _check_state(
         "param2": condition.param2 is not None,
         "inclusive": condition.inclusive,
         "max_age": condition.max_age is not None
-        and condition.type in (ConditionType.UNREADABLE, ConditionType.FAILED),
+        and condition.type
+        in (ConditionType.UNREADABLE, ConditionType.UNREACHABLE, ConditionType.FAILED),
     }
     for name in (name for name, is_unused in unused.items() if is_unused):
         yield item.diagnostic(

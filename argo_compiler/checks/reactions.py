@@ -2,10 +2,13 @@
 
 from collections.abc import Iterator
 
+from argo_compiler.base.quantity_text import duration_text
 from argo_compiler.checks.checked_item import CheckedItem
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.il import Afterwards, EventKind, Mission, Reaction, Response
+from argo_compiler.il import Afterwards, EventKind, Mission, Reaction, Response, WaitRule
 from argo_compiler.il.subjects import Subjects
+
+_CHARGED = EventKind.BATTERY_CHARGED
 
 
 def check_reactions(mission: Mission) -> Iterator[Diagnostic]:
@@ -97,6 +100,62 @@ def _check_battery(item: CheckedItem, reaction: Reaction) -> Iterator[Diagnostic
             "on the battery",
             f"remove `battery_below`, or set the event of the reaction to {EventKind.LOW_BATTERY}",
             ".battery_below",
+        )
+    yield from check_charging(
+        item,
+        f"the reaction to {reaction.event}",
+        reaction,
+        reaction.until,
+        reaction.hold_limit,
+        "until",
+        "",
+    )
+    level, goal = reaction.battery_below, reaction.charge_to
+    if level is not None and goal is not None and goal <= level:
+        yield item.diagnostic(
+            "il.charge-below-level",
+            f"the reaction to {reaction.event} charges the battery to {goal:.0%}, and answers a "
+            f"charge below {level:.0%}: the robot leaves the dock with a battery that is still low",
+            "charge to a higher level than `battery_below`",
+            ".charge_to",
+        )
+
+
+def check_charging(
+    item: CheckedItem,
+    what: str,
+    rule: Reaction | WaitRule,
+    awaited: EventKind | None,
+    limit: float | None,
+    field_of_event: str,
+    path: str,
+) -> Iterator[Diagnostic]:
+    """Yield the diagnostics of the charge for which a hold or a wait waits.
+
+    Args:
+        item: the reaction or task.
+        what: its name for messages.
+        rule: the reaction or the wait rule.
+        awaited: the event for which it waits.
+        limit: s for which it waits at most; None: no limit.
+        field_of_event: name of the field with `awaited`.
+        path: path from the item to the rule, such as `.wait`.
+    """
+    for field in ("charge_to", "charge_for"):
+        if getattr(rule, field) is not None and awaited is not _CHARGED:
+            yield item.diagnostic(
+                "il.charge-without-wait",
+                f"{what} has `{field}`, but does not wait for {_CHARGED}",
+                f"set `{field_of_event}` to {_CHARGED}, or remove `{field}`",
+                f"{path}.{field}",
+            )
+    if rule.charge_for is not None and limit is not None and limit <= rule.charge_for:
+        yield item.diagnostic(
+            "il.charge-after-limit",
+            f"{what} charges the battery for {duration_text(rule.charge_for)} at least, but waits "
+            f"for {duration_text(limit)} at most: that limit always ends the wait",
+            "allow more time, or charge for a shorter time",
+            f"{path}.charge_for",
         )
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from argo_compiler.checks.checked_item import CheckedItem
+from argo_compiler.checks.reactions import check_charging
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Action, OnFailure, Task
 
@@ -56,6 +57,9 @@ def check_unused_fields(item: CheckedItem, task: Task) -> Iterator[Diagnostic]:
 def check_wait(item: CheckedItem, task: Task) -> Iterator[Diagnostic]:
     """Yield the diagnostics of the wait rule of a WAIT task, apart from its conditions."""
     rule = task.wait
+    if rule is not None:
+        name = f"the WAIT task '{task.name}'"
+        yield from check_charging(item, name, rule, rule.event, rule.limit, "event", ".wait")
     waits_for_something = rule is not None and (rule.event is not None or bool(rule.conditions))
     if rule is None or (rule.duration is None) == (not waits_for_something):
         fault = "does not say how long it lasts"
@@ -70,6 +74,7 @@ def check_wait(item: CheckedItem, task: Task) -> Iterator[Diagnostic]:
     elif (
         waits_for_something
         and rule.limit is None
+        and not (rule.charge_for is not None and rule.charge_to is None)
         and (task.window is None or task.window.latest is None)
     ):
         yield item.diagnostic(

@@ -48,8 +48,11 @@ _TRAVEL_PORTS = (
     ("input_port", "joint_efforts", "std::string", "Nm or N, separated by ;"),
 )  # fmt: skip
 
-_READING_PORTS = ("value", "known", "abnormal", "unreadable", "time")
+_READING_PORTS = ("value", "known", "abnormal", "unreadable", "unreachable", "time")
 """Output ports of a Measure node, and names of the blackboard entries that store them."""
+
+_FAILURE_PORTS = ("unreadable", "unreachable")
+"""Output ports that state how a measurement has failed."""
 
 _PORTS = {
     "Measure": (
@@ -60,6 +63,7 @@ _PORTS = {
         ("output_port", "known", "double", "1 if `value` was set, else 0"),
         ("output_port", "abnormal", "double", "1 if it is outside the nominal range, else 0"),
         ("output_port", "unreadable", "double", "1 if the robot could not read it, else 0"),
+        ("output_port", "unreachable", "double", "1 if the robot could not get to it, else 0"),
         ("output_port", "time", "double", "s on the clock of `Clock`"),
     ),
     "DriveTo": _TRAVEL_PORTS,
@@ -247,7 +251,7 @@ class _Tree:
         if task.action is Action.MEASURE:
             k = self.objects[task.object_id or ""]
             statements += [f"known_{k} := 0.0", f"failed_{k} := 1.0"]
-            statements.append(f"unreadable_{k} := unreadable")
+            statements += [f"{kind}_{k} := {kind}" for kind in _FAILURE_PORTS]
         return statements
 
     def _failure_transition(self, task: Task) -> list[str]:
@@ -271,18 +275,17 @@ class _Tree:
                 self._attempt(task)
             if task.action is Action.MEASURE:
                 k = self.objects[task.object_id or ""]
-                read = [f"{name}_{k} := {name}" for name in _READING_PORTS if name != "unreadable"]
-                self._script(
-                    "; ".join(
-                        [*read, f"failed_{k} := 1.0 - known", f"unreadable_{k} := 1.0 - known"]
-                    )
-                )
+                stored = [name for name in _READING_PORTS if name not in _FAILURE_PORTS]
+                statements = [f"{name}_{k} := {name}" for name in stored]
+                statements += [f"failed_{k} := 1.0 - known", f"unreadable_{k} := 1.0 - known"]
+                self._script("; ".join([*statements, f"unreachable_{k} := 0.0"]))
 
     def _attempt(self, task: Task) -> None:
         measures = task.action is Action.MEASURE
         if measures:
             self.xml.open("Sequence")
-            self._script("unreadable := 0.0")  # it stays so if the attempt times out
+            # They stay so if the attempt times out.
+            self._script("; ".join(f"{kind} := 0.0" for kind in _FAILURE_PORTS))
         if task.time_limit is None:
             self._action(task)
         else:
@@ -333,6 +336,8 @@ class _Tree:
         age = f"(now - time_{k})"
         if condition.type is ConditionType.UNREADABLE:
             return f"unreadable_{k} == 1"
+        if condition.type is ConditionType.UNREACHABLE:
+            return f"unreachable_{k} == 1"
         if condition.type is ConditionType.FAILED:
             return f"failed_{k} == 1"
         if condition.type is ConditionType.STALE:

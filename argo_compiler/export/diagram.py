@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from argo_compiler.hfsm import Composite, Hfsm, Leaf, StateTransition, TransitionKind
-from argo_compiler.hfsm.conditions import conjunction_text, wait_end_text
+from argo_compiler.hfsm.conditions import awaited_event_text, conjunction_text, wait_end_text
 from argo_compiler.hfsm.model import DONE
 from argo_compiler.il import Afterwards, Reaction, Response, Stop, Task, WaitRule
 
@@ -171,7 +171,7 @@ def reaction_label(reaction: Reaction) -> str:
     """Return a short text for the reaction, such as `gas leak: pause, until all clear`."""
     parts = [_RESPONSES[reaction.response]]
     if reaction.until is not None:
-        parts.append(f"until {reaction.until.replace('_', ' ')}")
+        parts.append(f"until {awaited_event_text(reaction.until, reaction)}")
     if reaction.response.drives:
         parts.append(f"then {_AFTERWARDS[reaction.afterwards]}")
     if reaction.hold_limit is not None:

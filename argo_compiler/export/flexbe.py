@@ -347,6 +347,7 @@ class _Behavior:
 
 _KINDS = {
     ConditionType.UNREADABLE: "unreadable",
+    ConditionType.UNREACHABLE: "unreachable",
     ConditionType.FAILED: "failed",
     ConditionType.STALE: "stale",
     ConditionType.ABNORMAL: "abnormal",

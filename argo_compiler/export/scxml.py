@@ -36,7 +36,7 @@ from argo_compiler.il.transitions import find_start_pose_task
 
 NAMESPACE = "http://www.w3.org/2005/07/scxml"
 
-_NONE, _VALUE, _UNREADABLE, _FAILED = range(4)
+_NONE, _VALUE, _UNREADABLE, _UNREACHABLE, _FAILED = range(5)
 """Values of `known_…` in the data: the kind of a checkpoint's last reading."""
 
 
@@ -373,8 +373,9 @@ class _Document:
                     ]
                 )
                 if event == "action.failed":
-                    with xml.nest_in("if", {"cond": "_event.data.unreadable == 1"}):
-                        assign(xml, f"known_{k}", str(_UNREADABLE))
+                    for name, kind in (("unreachable", _UNREACHABLE), ("unreadable", _UNREADABLE)):
+                        with xml.nest_in("if", {"cond": f"_event.data.{name} == 1"}):
+                            assign(xml, f"known_{k}", str(kind))
             if not task.optional:
                 assign(xml, "failures", "failures + 1")
             if transition is not None and transition.target == DONE:
@@ -419,6 +420,8 @@ class _Document:
                 tests = [known, *fresh, f"{low} {less} {value}", f"{value} {less} {upper}"]
             case ConditionType.UNREADABLE:
                 tests = [f"known_{k} == {_UNREADABLE}"]
+            case ConditionType.UNREACHABLE:
+                tests = [f"known_{k} == {_UNREACHABLE}"]
             case ConditionType.FAILED:
                 tests = [f"known_{k} >= {_UNREADABLE}"]
             case ConditionType.STALE:

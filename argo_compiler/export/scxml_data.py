@@ -127,6 +127,8 @@ def write_data_model(xml: XmlWriter, hfsm: Hfsm, ids: ChartIds) -> None:
                     "id": f"since_{state.reaction.event}",
                     "expr": "0",
                     "argo:battery_below": state.reaction.battery_below,
+                    "argo:charge_to": state.reaction.charge_to,
+                    "argo:charge_for": state.reaction.charge_for,
                 },
             )
             xml.add("data", {"id": f"over_{state.reaction.event}", "expr": "0"})
@@ -137,7 +139,7 @@ def task_attributes(task: Task) -> Attributes:
 
     They are in Argo's namespace, such as `argo:action`.
     """
-    joints, window = task.joint_states, task.window
+    joints, window, wait = task.joint_states, task.window, task.wait
     joint_states: Attributes = {}
     if joints is not None:
         joint_states = {
@@ -158,6 +160,8 @@ def task_attributes(task: Task) -> Attributes:
         "argo:priority": task.priority if task.priority != 1 else None,
         "argo:earliest": None if window is None else window.earliest or None,
         "argo:latest": None if window is None else window.latest,
+        "argo:charge_to": None if wait is None else wait.charge_to,
+        "argo:charge_for": None if wait is None else wait.charge_for,
     }
 
 

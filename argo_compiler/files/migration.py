@@ -6,13 +6,23 @@ from typing import Any
 from argo_compiler.base.listing import brief_quoted_list
 from argo_compiler.diagnostics import Diagnostic, diagnostic_of
 from argo_compiler.files.json_places import JsonPath
-from argo_compiler.il import Action, EventKind, Mission, Mode, OnFailure, Response, Task
+from argo_compiler.il import (
+    Action,
+    Condition,
+    ConditionType,
+    EventKind,
+    Mission,
+    Mode,
+    OnFailure,
+    Response,
+    Task,
+)
 from argo_compiler.il.velocities import departure_to_approach_velocities
 
-VERSION = 3
+VERSION = 4
 """Version of the mission format that Argo writes."""
 
-_NEW_FIELDS = {
+_FIELDS_OF_3 = {
     "tasks": (
         "wait",
         "failure_target",
@@ -26,6 +36,8 @@ _NEW_FIELDS = {
     "reactions": ("hold_limit", "on_limit", "area", "battery_below"),
 }
 """Fields that were added in version 3, by list of the mission."""
+_CHARGING_FIELDS = ("charge_to", "charge_for")
+"""Fields of reactions and waits that were added in version 4."""
 
 
 def copy_with_current_version(data: dict[str, Any]) -> tuple[dict[str, Any], int]:
@@ -45,11 +57,17 @@ def copy_with_current_version(data: dict[str, Any]) -> tuple[dict[str, Any], int
 def newer_fields(mission: Mission, version: int) -> Iterator[tuple[JsonPath, str]]:
     """Yield path and name of each non-default field that is newer than `version`.
 
-    This includes the `action` of WAIT tasks, with the name `WAIT`.
+    This includes the `action` of WAIT tasks, with the name `WAIT`, and the `type` of conditions
+    that are newer, with the name of the type.
     """
-    if version >= VERSION:
-        return
-    for name, new_fields in _NEW_FIELDS.items():
+    if version < 3:
+        yield from _fields_newer_than_2(mission)
+    if version < VERSION:
+        yield from _fields_newer_than_3(mission)
+
+
+def _fields_newer_than_2(mission: Mission) -> Iterator[tuple[JsonPath, str]]:
+    for name, new_fields in _FIELDS_OF_3.items():
         for i, part in enumerate(getattr(mission, name)):
             for field in new_fields:
                 if getattr(part, field) != type(part).model_fields[field].default:
@@ -61,14 +79,40 @@ def newer_fields(mission: Mission, version: int) -> Iterator[tuple[JsonPath, str
             yield ("tasks", i, "action"), "WAIT"
 
 
+def _fields_newer_than_3(mission: Mission) -> Iterator[tuple[JsonPath, str]]:
+    waits = [(("tasks", i, "wait"), t.wait) for i, t in enumerate(mission.tasks) if t.wait]
+    reactions = [(("reactions", i), reaction) for i, reaction in enumerate(mission.reactions)]
+    for path, part in (*waits, *reactions):
+        for field in _CHARGING_FIELDS:
+            if getattr(part, field) is not None:
+                yield (*path, field), field
+    for path, condition in _conditions(mission):
+        if condition.type is ConditionType.UNREACHABLE:
+            yield (*path, "type"), condition.type
+
+
+def _conditions(mission: Mission) -> Iterator[tuple[JsonPath, Condition]]:
+    """Yield path and condition of each condition of the mission."""
+    for i, task in enumerate(mission.tasks):
+        for k, transition in enumerate(task.transitions):
+            for c, condition in enumerate(transition.conditions):
+                yield ("tasks", i, "transitions", k, "conditions", c), condition
+        for c, condition in enumerate(task.wait.conditions if task.wait else ()):
+            yield ("tasks", i, "wait", "conditions", c), condition
+    for i, group in enumerate(mission.groups):
+        for c, condition in enumerate(group.until):
+            yield ("groups", i, "until", c), condition
+
+
 def upgrade(mission: Mission, version: int) -> tuple[Mission, tuple[Diagnostic, ...]]:
     """Return a mission with the meaning that its data had in an older version, and warnings.
 
     The warnings name meanings that the current version can't express. Version 2 added reactions,
     failure policies, the dock and inclusive bounds; a mission without these means the same in
-    versions 1 and 2.
+    versions 1 and 2. Version 4 added the levels to which a battery is charged, and unreachable
+    readings; a mission of version 3 means the same in it.
     """
-    return _to_3(mission) if version < VERSION else (mission, ())
+    return _to_3(mission) if version < 3 else (mission, ())
 
 
 def _to_3(mission: Mission) -> tuple[Mission, tuple[Diagnostic, ...]]:

@@ -8,6 +8,7 @@ __all__ = [
     "ActionFailed",
     "ActionStopped",
     "ActionSucceeded",
+    "AwaitedCharge",
     "ByHand",
     "Cancel",
     "CancelAction",
@@ -43,6 +44,7 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
+    from argo_compiler.hfsm.charging import AwaitedCharge
     from argo_compiler.hfsm.conditions import CheckpointReading, Measured
     from argo_compiler.hfsm.events import (
         ActionFailed,
@@ -84,6 +86,7 @@ else:
     __getattr__, __dir__ = lazy_names(
         __name__,
         {
+            "charging": ["AwaitedCharge"],
             "conditions": ["CheckpointReading", "Measured"],
             "events": [
                 "ActionFailed",

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from argo_compiler.hfsm.kinds import ReadingKind
-from argo_compiler.il import Condition, ConditionType, WaitRule
+from argo_compiler.il import Condition, ConditionType, EventKind, Reaction, WaitRule
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +40,8 @@ def reading_test(condition: Condition) -> ReadingTest:
     match condition.type:
         case ConditionType.UNREADABLE:
             return lambda reading, _: reading.kind is ReadingKind.UNREADABLE
+        case ConditionType.UNREACHABLE:
+            return lambda reading, _: reading.kind is ReadingKind.UNREACHABLE
         case ConditionType.FAILED:
             return lambda reading, _: reading.kind is not ReadingKind.VALUE
         case ConditionType.STALE:
@@ -117,9 +119,19 @@ def conjunction_text(conditions: Iterable[Condition]) -> str:
     return " and ".join(map(condition_text, conditions))
 
 
+def awaited_event_text(event: EventKind, rule: WaitRule | Reaction) -> str:
+    """Return the event that ends a WAIT or a hold, such as `battery charged to 60 %`."""
+    text = event.replace("_", " ")
+    if rule.charge_to is not None:
+        text += f" to {100 * rule.charge_to:g} %"
+    if rule.charge_for is not None:
+        text += f" for at least {rule.charge_for:g} s"
+    return text
+
+
 def wait_end_text(rule: WaitRule) -> str:
     """Return what ends a WAIT, such as `gas leak or #4 < 2`; empty if only its duration ends it."""
-    ends = [] if rule.event is None else [rule.event.replace("_", " ")]
+    ends = [] if rule.event is None else [awaited_event_text(rule.event, rule)]
     ends += [conjunction_text(rule.conditions)] if rule.conditions else []
     return " or ".join(ends)
 
@@ -128,6 +140,8 @@ def _state_text(condition: Condition, name: str) -> str:
     match condition.type:
         case ConditionType.UNREADABLE:
             return f"{name} unreadable"
+        case ConditionType.UNREACHABLE:
+            return f"{name} unreachable"
         case ConditionType.FAILED:
             return f"{name} failed"
         case ConditionType.STALE:

@@ -3,13 +3,14 @@
 import math
 from collections.abc import Sequence
 
+from argo_compiler.hfsm.charging import AwaitedCharge, awaited_charge
 from argo_compiler.hfsm.interrupt_state import AppliedRow, InterruptState, rows_taken_at
 from argo_compiler.hfsm.interrupts import Effect, Stage, Trigger
 from argo_compiler.hfsm.kinds import Cause, Outcome
 from argo_compiler.hfsm.machine_state import MachineState
 from argo_compiler.hfsm.progress import ByHand
 from argo_compiler.hfsm.tables import ReactionNode, Tables
-from argo_compiler.il import EventKind
+from argo_compiler.il import EventKind, Reaction, WaitRule
 
 _GOING = Stage.GOING  # used with each event; the look-up of an enumeration's member is slow
 _MISSION_ENDS = (Trigger.DONE, Trigger.ENDED)
@@ -66,6 +67,23 @@ class Control:
         """Earliest time (s) at which the mission or hold changes without an event; or infinity."""
         due = self.mission.next_due
         return due if due < self.hold_due else self.hold_due
+
+    @property
+    def awaited_charges(self) -> tuple[AwaitedCharge, ...]:
+        """Charges of the battery for which the present hold and the active WAIT wait."""
+        awaited: list[tuple[Reaction | WaitRule, float]] = []
+        active, charged = self.active_reaction, EventKind.BATTERY_CHARGED
+        if active is not None and self.reaction_is_holding:
+            reaction = active.state.reaction
+            if reaction.until is charged and not self.interrupt_state.active_until_occurred:
+                awaited.append((reaction, self.held_since))
+        visit = self.mission.configuration.visit
+        wait = None if visit.leaf is None else visit.leaf.task.wait
+        if wait is not None and wait.event is charged and not visit.occurred:
+            awaited.append((wait, visit.since))
+        return tuple(
+            awaited_charge(rule.charge_to, rule.charge_for, since) for rule, since in awaited
+        )
 
     def start(self, supervised: bool) -> None:
         """Start the mission, or continue it as restored; if `supervised`, paused until `resume`."""

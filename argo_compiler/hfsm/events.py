@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from argo_compiler.hfsm.kinds import ReadingKind
 from argo_compiler.hfsm.progress import ByHand
 from argo_compiler.il import EventKind, Task
 
@@ -48,6 +49,16 @@ class ActionFailed:
     unreadable: bool = False
     """MEASURE only: whether the robot looked at the checkpoint, but could not read a value"""
     id: int | None = None
+    unreachable: bool = False
+    """MEASURE only: whether the robot could not get to a pose from which it measures; not together
+    with `unreadable`"""
+
+    @property
+    def reading_kind(self) -> ReadingKind:
+        """Kind of the reading that a MEASURE has if it has failed for good in this way."""
+        if self.unreadable:
+            return ReadingKind.UNREADABLE
+        return ReadingKind.UNREACHABLE if self.unreachable else ReadingKind.FAILED
 
 
 @dataclass(frozen=True, slots=True)

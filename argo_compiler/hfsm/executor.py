@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 
+from argo_compiler.hfsm.charging import AwaitedCharge
 from argo_compiler.hfsm.conditions import CheckpointReading, Measured
 from argo_compiler.hfsm.control import Control
 from argo_compiler.hfsm.events import (
@@ -312,6 +313,14 @@ class Executor:
         return self._control.reaction_is_holding
 
     @property
+    def awaited_charges(self) -> tuple[AwaitedCharge, ...]:
+        """Charges of the battery for which the mission waits, with BATTERY_CHARGED (R12).
+
+        The robot raises the event when it has all of them. Empty if the mission waits for none.
+        """
+        return self._control.awaited_charges if self._started else ()
+
+    @property
     def configuration(self) -> tuple[str, ...]:
         """Ids of the active states: the mission, groups from the outermost, the leaf, the reaction.
 
@@ -465,7 +474,7 @@ class Executor:
         if leaf.time_limit is not None:
             mission.clear_time_limit()
         if failure is not None and self._running_turn == mission.configuration.visit.turn:
-            mission.retry_or_fail(leaf, failure.reason, failure.unreadable)
+            mission.retry_or_fail(leaf, failure.reason, failure.reading_kind)
 
     def _is_active_drive(self) -> bool:
         """Return whether the drive that has just ended belongs to the active reaction."""

@@ -64,4 +64,5 @@ class ReadingKind(StrEnum):
 
     VALUE = "value"
     UNREADABLE = "unreadable"
+    UNREACHABLE = "unreachable"
     FAILED = "failed"

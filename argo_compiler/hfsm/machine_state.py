@@ -230,10 +230,12 @@ class MachineState:
             object_id, CheckpointReading(_VALUE, at, value, abnormal), self.now
         )
 
-    def retry_or_fail(self, leaf: LeafNode, reason: str, unreadable: bool = False) -> None:
+    def retry_or_fail(
+        self, leaf: LeafNode, reason: str, kind: ReadingKind = ReadingKind.FAILED
+    ) -> None:
         """Retry the active task after a failure of its action, or let the task fail for good.
 
-        When a measurement fails for good, its reading is FAILED, or UNREADABLE if `unreadable`.
+        When a measurement fails for good, its reading is of this kind.
         """
         visit = self.configuration.visit
         if visit.attempt < leaf.retries:
@@ -245,19 +247,17 @@ class MachineState:
         elif leaf.is_return:
             self.end(Outcome.FAILED, Cause.FAILURE, failure=reason)
         else:
-            self._fail_for_good(leaf, reason, leaf.failure, unreadable)
+            self._fail_for_good(leaf, reason, leaf.failure, kind)
 
     def _fail_for_good(
         self,
         leaf: LeafNode,
         reason: str,
         transition: CompiledTransition | None,
-        unreadable: bool = False,
+        kind: ReadingKind = ReadingKind.FAILED,
     ) -> None:
         if leaf.measures is not None:
-            self._set_no_value(
-                leaf.measures, ReadingKind.UNREADABLE if unreadable else ReadingKind.FAILED
-            )
+            self._set_no_value(leaf.measures, kind)
         self.failed = self.failed or not leaf.optional
         self._count_end(leaf, failure=reason)
         if transition is None:

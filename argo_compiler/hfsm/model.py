@@ -160,7 +160,7 @@ class ReactionState(Model):
 class Hfsm(Model):
     """State machine. The composite `mission` begins in its `initial` state and ends in `final`."""
 
-    version: Literal[3] = 3
+    version: Literal[4] = 4
     """version of this format"""
     composites: tuple[Composite, ...]
     """the mission first; each one before those that lie in it"""

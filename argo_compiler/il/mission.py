@@ -66,8 +66,11 @@ class ConditionType(StrEnum):
     WITHIN = "MEASURED_VALUE_WITHIN"
     UNREADABLE = "READING_UNREADABLE"
     """the robot looked at the checkpoint, but could not read a value"""
+    UNREACHABLE = "READING_UNREACHABLE"
+    """the robot could not get to a pose from which it measures the checkpoint"""
     FAILED = "READING_FAILED"
-    """the last measurement gave no value, for whatever reason; this includes unreadable ones"""
+    """the last measurement gave no value, for whatever reason; this includes unreadable and
+    unreachable ones"""
     STALE = "READING_STALE"
     """there is a value, and it is older than `max_age`"""
     ABNORMAL = "READING_ABNORMAL"
@@ -166,6 +169,11 @@ class WaitRule(Model):
     """wait until all of them are satisfied"""
     limit: float | None = Field(default=None, gt=0, le=MAX_TIME_S)
     """s, with `event` or `conditions`: the task fails when it is over"""
+    charge_to: float | None = Field(default=None, gt=0, le=1)
+    """BATTERY_CHARGED: the share of the battery's charge, 0 to 1, with which the robot raises the
+    event for this wait; None: the robot's own level, or with `charge_for` any"""
+    charge_for: float | None = Field(default=None, gt=0, le=MAX_TIME_S)
+    """BATTERY_CHARGED: s since the wait began before which the robot does not raise the event"""
 
 
 class TimeWindow(Model):
@@ -282,6 +290,12 @@ class Reaction(Model):
     battery_below: float | None = Field(default=None, gt=0, lt=1)
     """LOW_BATTERY: the share of the battery's charge, 0 to 1, below which the robot raises the
     event in this mission; None: the robot's own level"""
+    charge_to: float | None = Field(default=None, gt=0, le=1)
+    """until BATTERY_CHARGED: the share of the battery's charge, 0 to 1, with which the robot raises
+    that event for this hold; None: the robot's own level, or with `charge_for` any"""
+    charge_for: float | None = Field(default=None, gt=0, le=MAX_TIME_S)
+    """until BATTERY_CHARGED: s since the hold began before which the robot does not raise that
+    event"""
     source: Span | None = None
 
     @model_validator(mode="before")
@@ -314,7 +328,7 @@ class Reaction(Model):
 class Mission(Model):
     """Mission: header, tasks in order, groups over them, and reactions to events."""
 
-    version: Literal[3] = 3
+    version: Literal[4] = 4
     """version of this format"""
     designation: str = ""
     site: str = ""

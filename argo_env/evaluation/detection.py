@@ -11,7 +11,7 @@ from argo_env.run.causes import false_all_clears, may_be_caused_by
 from argo_env.run.record import Finding, RunRecord
 from argo_env.run.run_setup import displayed_value, true_values
 from argo_env.run.spec import RunSpec, ValueProfile
-from argo_env.sensing.onboard import LOW
+from argo_env.sensing.battery_watch import LOW
 from argo_env.site import Site
 
 

@@ -100,6 +100,11 @@ class RunRow(Model):
         """True if the run was carried out to its end, with success or failure of the mission."""
         return self.outcome in (RunOutcome.SUCCESS, RunOutcome.FAILURE)
 
+    @property
+    def is_stranded(self) -> bool:
+        """True if the robot stands with an empty battery at the end."""
+        return self.charge is not None and self.charge <= 0.0
+
 
 def make_row(
     key: str, case: EvaluationCase, spec: RunSpec, record: RunRecord, site: Site

@@ -93,8 +93,12 @@ class RunScore(Model):
 
 
 def score_run(row: RunRow, rules: ScoringRules) -> RunScore:
-    """Compute the score of a run, which is 0 for a run that could not be carried out."""
-    if not row.is_completed:
+    """Compute the score of a run.
+
+    It is 0 for a run that could not be carried out, and for a robot that stands with an empty
+    battery: it is lost until a person fetches it.
+    """
+    if not row.is_completed or row.is_stranded:
         return RunScore(reliability=0.0, robustness=0.0, safety=0.0)
     # A successful mission with branches doesn't do all of its tasks.
     done = 1.0 if row.success or not row.tasks else row.done / row.tasks

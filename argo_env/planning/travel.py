@@ -126,6 +126,11 @@ class SiteTravel:
         return self._robot.power.standing
 
     @property
+    def charging_power(self) -> float:
+        """Power in W that charges the battery at a dock."""
+        return self._robot.power.charging
+
+    @property
     def longest_cancellation_time(self) -> float:
         """Greatest time in s from the cancellation of an action until the arm is stowed."""
         return self._round_up(self._robot.sensor.stowing_time) + self.time_step

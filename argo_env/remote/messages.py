@@ -65,6 +65,8 @@ class EndReport(Model):
     confidence: float = Field(default=1.0, ge=0, le=1)
     unreadable: bool = False
     """`failed`: true if the robot looked at the checkpoint but could not read a value"""
+    unreachable: bool = False
+    """`failed`: true if the robot could not get to a pose from which it measures the checkpoint"""
     reason: str = ""
     """`failed`: the reason, as a text for people"""
 

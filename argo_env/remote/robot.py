@@ -12,7 +12,13 @@ from typing import Any, Literal, NoReturn
 from pydantic import ValidationError
 
 from argo_compiler.base.errors import Unavailable
-from argo_compiler.hfsm import ActionFailed, ActionStopped, ActionSucceeded, StartAction
+from argo_compiler.hfsm import (
+    ActionFailed,
+    ActionStopped,
+    ActionSucceeded,
+    AwaitedCharge,
+    StartAction,
+)
 from argo_compiler.il import EventKind, Task
 from argo_env.drives.drive import DriveStatus, Incident
 from argo_env.navigation import Blockage, Navigator, Path
@@ -198,7 +204,7 @@ class RemoteAction:
         if report.outcome == "stopped" and self.cancelled is not None:
             return ActionStopped(name, id)
         reason = report.reason or f"the robot reported that the action has {report.outcome}"
-        return ActionFailed(name, reason, report.unreadable, id)
+        return ActionFailed(name, reason, report.unreadable, id, report.unreachable)
 
     def to_task_run(
         self, end: ActionEnd, now: float, total_distance: float, total_climbed: float
@@ -273,6 +279,7 @@ class RemoteRobot:
         """start order of the action, until it is sent"""
         self._restarts = 0  # restarts of the robot when the action was ordered
         self._cancelled_strays: set[str] = set()
+        self._awaited_charges: tuple[AwaitedCharge, ...] = ()
         self._await_state(patience)
 
     @property
@@ -311,6 +318,28 @@ class RemoteRobot:
 
     def restore_anomalies(self, reported: Sequence[tuple[Anomaly, BodyPose]], now: float) -> None:
         """No-op: the robot remembers by itself what it has reported."""
+
+    def set_awaited_charges(self, awaited: tuple[AwaitedCharge, ...]) -> None:
+        self._awaited_charges = awaited
+
+    @property
+    def expects_awaited_charge(self) -> bool:
+        return bool(self._awaited_charges)
+
+    def _has_awaited_charge(self, now: float) -> bool:
+        """Return True if the mission waits for charges that it names, and has them at `now` (s).
+
+        The robot reports by itself that it is fully charged, but does not know of other levels.
+        """
+        charge = self.supply.charge
+        return (
+            charge is not None
+            and bool(self._awaited_charges)
+            and all(
+                awaited.level is not None and charge >= awaited.level and now >= awaited.not_before
+                for awaited in self._awaited_charges
+            )
+        )
 
     def update_faults(self, now: float) -> None:
         """No-op: faults are not simulated."""
@@ -374,6 +403,12 @@ class RemoteRobot:
                 case FoundReport() as report if report.event is not EventKind.TIME_UP:
                     found.append(make_anomaly(report, site, self._drive.pose, now))
         self.odometry.add_motion(last_pose, self._drive.pose, (), now)
+        if self._has_awaited_charge(now):
+            charged = FoundReport(
+                event=EventKind.BATTERY_CHARGED, detail=f"{self.supply.charge:.0%} charged"
+            )
+            found.append(make_anomaly(charged, site, self._drive.pose, now))
+            self._awaited_charges = ()
         if own is None or ended is None:
             return Sensed(found=tuple(found))
         reading = make_reading(own.task, ended, site, self._drive.pose, now)

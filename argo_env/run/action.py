@@ -249,7 +249,7 @@ class SimulatedAction:
                 return self._start_retreat()
             if self._views > 1:
                 return self._try_next_view(str(error))
-            return self._failed(str(error))
+            return self._failed(str(error), unreachable=True)
         except ArgoError as error:
             return self._failed(str(error))
         self.path = self.arrival_path = path
@@ -284,7 +284,8 @@ class SimulatedAction:
             case DriveStatus.MOVING:
                 return None
             case DriveStatus.FAILED:
-                return self._failed(self._setup.drive.failure or "the drive failed")
+                failure = self._setup.drive.failure or "the drive failed"
+                return self._failed(failure, unreachable=True)
             case DriveStatus.ARRIVED:
                 return following()
 
@@ -389,8 +390,10 @@ class SimulatedAction:
     def _stop(self) -> ActionEnd:
         return ActionStopped(self.task.name, self._id)
 
-    def _failed(self, reason: str) -> ActionFailed:
-        return ActionFailed(self.task.name, reason, self._tried_to_read, self._id)
+    def _failed(self, reason: str, unreachable: bool = False) -> ActionFailed:
+        """Return the failure; a checkpoint that was looked at is not unreachable."""
+        read = self._tried_to_read
+        return ActionFailed(self.task.name, reason, read, self._id, unreachable and not read)
 
     def _count_down(self) -> bool:
         """Subtract a time step from the phase's remaining time; return True if none remains."""

@@ -77,6 +77,7 @@ class LoggedEvent(Model):
     value: float | None = None
     abnormal: bool | None = None
     unreadable: bool | None = None
+    unreachable: bool | None = None
     reason: str | None = None
     event: EventKind | None = None
     detail: str | None = None
@@ -141,6 +142,9 @@ class Entry(Model):
     """m, upwards since the mission's start"""
     charge: float | None = None
     """charge of the battery, 0 to 1"""
+    battery_alarm: float | None = None
+    """charge, 0 to 1, below which the robot reports a low battery next; None: the mission's level,
+    or no battery"""
     given: int = 0
     """number of scheduled events that had occurred"""
     added: tuple[tuple[float, LoggedEvent], ...] = ()

@@ -6,6 +6,7 @@ from typing import Protocol
 from argo_compiler.base.errors import Conflict
 from argo_compiler.hfsm import (
     ActionStopped,
+    AwaitedCharge,
     CancelAction,
     Command,
     Event,
@@ -40,6 +41,8 @@ class Machine(Protocol):
     def reaction(self) -> EventKind | None: ...
     @property
     def next_deadline(self) -> float | None: ...
+    @property
+    def awaited_charges(self) -> tuple[AwaitedCharge, ...]: ...
     @property
     def configuration(self) -> tuple[str, ...]: ...
     @property
@@ -118,6 +121,10 @@ class OpenMachine:
     @property
     def hfsm(self) -> Hfsm:
         return self._executor.hfsm
+
+    @property
+    def awaited_charges(self) -> tuple[AwaitedCharge, ...]:
+        return self._executor.awaited_charges
 
     @property
     def finished(self) -> bool:

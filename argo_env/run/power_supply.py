@@ -169,5 +169,9 @@ class PowerSupply:
         least, most = float(predicted.remaining.min()), float(predicted.remaining.max())
         return least / self._battery.capacity, most / self._battery.capacity
 
+    def can_charge_at(self, pose: BodyPose) -> bool:
+        """Return True if the battery is charged while the robot stands at this pose."""
+        return self._battery is not None and self._battery.charge < 1.0 and self._docked(pose)
+
     def _docked(self, pose: BodyPose) -> bool:
         return any(is_at_dock(pose, dock) for dock in self._docks)

@@ -7,7 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from argo_compiler.hfsm import ActionFailed, ActionStopped, ActionSucceeded, StartAction
+from argo_compiler.hfsm import (
+    ActionFailed,
+    ActionStopped,
+    ActionSucceeded,
+    AwaitedCharge,
+    StartAction,
+)
 from argo_compiler.il import Task
 from argo_env.navigation import Blockage, Path
 from argo_env.robot.pose import BodyPose
@@ -113,6 +119,14 @@ class AnyRobot(Protocol):
 
         Each comes with the robot's pose then.
         """
+
+    def set_awaited_charges(self, awaited: tuple[AwaitedCharge, ...]) -> None:
+        """Set the charges of the battery for which the mission waits now."""
+
+    @property
+    def expects_awaited_charge(self) -> bool:
+        """True if the robot will report by itself that it has the charge that is waited for."""
+        ...
 
     def update_faults(self, now: float) -> None:
         """Begin and end the simulated faults that are due at `now` (s)."""

@@ -584,7 +584,10 @@ class Simulation(Closing):
             raise Conflict("an observer can't command its run: give commands between two steps")
 
     def _standstill_reason(self) -> VerdictPart | None:
-        if self._state.scheduled.pending or self._vehicle.supply.charging:
+        vehicle = self._vehicle
+        if vehicle.supply.charging or vehicle.expects_awaited_charge:
+            return None
+        if self._state.scheduled.pending:
             return None
         acting = self._state.supervision.acting
         return standstill_reason(self.now, self.machine, self.setup, self._state.log, acting)

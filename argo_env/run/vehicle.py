@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.base.model import Pose
-from argo_compiler.hfsm import StartAction
+from argo_compiler.hfsm import AwaitedCharge, StartAction
 from argo_env.drives.battery import power_draw_per_step
 from argo_env.drives.powertrain import Powertrain, StepsAhead
 from argo_env.navigation import Blockage, Path
@@ -29,6 +29,7 @@ from argo_env.run.power_supply import NO_STEPS, PowerSupply
 from argo_env.run.record import Anomaly
 from argo_env.run.robot import RobotAction, Sensed
 from argo_env.run.run_setup import RunSetup
+from argo_env.sensing.battery_watch import BatteryWatch
 
 
 class StepBatch:
@@ -140,6 +141,7 @@ class Vehicle:
         self._action: SimulatedAction | None = None
         """the action that was started last"""
         self._perception = Perception(setup.watches, site, setup.drive.time_step)
+        self._battery_watch = next((w for w in setup.watches if isinstance(w, BatteryWatch)), None)
 
     def begin_at(self, pose: BodyPose, now: float) -> None:
         """Begin or continue a run at time `now` (s): set the robot's pose and update the faults."""
@@ -166,6 +168,20 @@ class Vehicle:
         """Restore the odometry and the power supply from the last entry."""
         self.odometry.restore(last)
         self.supply.restore(last)
+        if self._battery_watch is not None:
+            self._battery_watch.alarm_level = last.battery_alarm
+
+    def set_awaited_charges(self, awaited: tuple[AwaitedCharge, ...]) -> None:
+        """Set the charges of the battery for which the mission waits now."""
+        if self._battery_watch is not None:
+            self._battery_watch.awaited = awaited
+
+    @property
+    def expects_awaited_charge(self) -> bool:
+        watch = self._battery_watch
+        if watch is None or not watch.awaited:
+            return False
+        return watch.has_awaited_charge or self.supply.can_charge_at(self.setup.drive.pose)
 
     def update_faults(self, now: float) -> None:
         """Begin and end the faults that are due at time `now` (s)."""
@@ -240,8 +256,8 @@ class Vehicle:
     def state_for_entry(self) -> dict[str, Any]:
         """Return the robot's present state as fields of an `Entry` of the log, by name.
 
-        These are pose, distance, climb, charge and open contacts, and the mishaps and ended
-        contacts that no entry has yet.
+        These are pose, distance, climb, charge, the level of the next report of a low battery and
+        open contacts, and the mishaps and ended contacts that no entry has yet.
         """
         pose, odometry = self.setup.drive.pose, self.odometry
         return {
@@ -249,6 +265,7 @@ class Vehicle:
             "distance": odometry.distance,
             "climbed": odometry.climbed,
             "charge": self.supply.charge,
+            "battery_alarm": self._battery_watch.alarm_level if self._battery_watch else None,
             "mishaps": tuple(odometry.mishaps),
             "contacts": tuple(odometry.ended_contacts),
             "touching": odometry.touching,

@@ -1,4 +1,4 @@
-"""Watches for the robot itself: battery, connection, emergency stop, drive and camera.
+"""Watches for the robot itself: connection, emergency stop, drive and camera.
 
 Each reads a signal that such a robot has: voltage and current, replies of the base station, the
 circuit of the emergency stop, the distance driven compared with the planned one, pictures of a test
@@ -16,12 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.il import EventKind
-from argo_env.drives.battery import ESTIMATE_ERROR, Battery, estimated_charge
+from argo_env.drives.battery import Battery
 from argo_env.drives.powertrain import Powertrain
 from argo_env.navigation.path import Path, wrap
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec
 from argo_env.seeding import generator
+from argo_env.sensing.battery_watch import LOW, BatteryWatch
 from argo_env.sensing.sensor import Measurement, MeasurementError, Sensor
 from argo_env.sensing.watch import Detection, ReportedDetection, Watch
 from argo_env.site import Site
@@ -82,50 +83,11 @@ class SensorWithFaults:
         return tuple((spread * self._tests.standard_normal(_SHOTS)).tolist())
 
 
-LOW, FULL = 0.2, 0.99
-"""charge, 0 to 1, below which the battery is low, and from which on it is charged again"""
 WINDOW = 10.0  # s over which the distance driven is compared with the planned one
 SLOW = 0.6  # share of the planned speed below which something is wrong
 _SAMPLE = 0.2  # s between the poses of the planned path that the robot's pose is compared with
 _RADIAN = 0.3  # m that a radian counts as in this comparison
 NOISY = 0.01  # standard deviation in the test pattern above which the camera is too noisy
-
-
-class BatteryWatch:
-    """Watch for the charge of the battery, estimated from voltage and current.
-
-    It reports a low battery once, and then once that the battery is charged again; only after that
-    it reports a low battery again.
-    """
-
-    name = "battery"
-    period = 1.0
-
-    def __init__(self, battery: Battery, low: float = LOW) -> None:
-        """`low`: the charge, 0 to 1, below which the battery is low."""
-        self._battery = battery
-        self._level = low
-        self._low = False
-
-    def restore(self, reported: Sequence[ReportedDetection], now: float) -> None:  # noqa: ARG002
-        self._low = bool(reported) and reported[-1].kind is EventKind.LOW_BATTERY
-
-    def can_skip_updates(self, lowest_charge: float, highest_charge: float) -> bool:
-        """Return True if no estimate of the charge can reach the level of the next detection."""
-        if self._low:
-            return highest_charge + ESTIMATE_ERROR < FULL
-        return lowest_charge - ESTIMATE_ERROR > self._level
-
-    def update(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
-        voltage = self._battery.voltage
-        charge = estimated_charge(voltage, self._battery.current)
-        if not self._low and charge < self._level:
-            self._low = True
-            return (Detection(EventKind.LOW_BATTERY, f"{voltage:.1f} V, {charge:.0%} charged"),)
-        if self._low and charge >= FULL:
-            self._low = False
-            return (Detection(EventKind.BATTERY_CHARGED, f"{voltage:.1f} V, {charge:.0%} charged"),)
-        return ()
 
 
 class ConnectionWatch:

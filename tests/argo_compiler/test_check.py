@@ -216,6 +216,7 @@ def test_sound_mission_has_no_findings():
 
 
 DOCK = Pose(x=0, y=0, z=0)
+CHARGED = EventKind.BATTERY_CHARGED
 GAS, ALARM, HOT_SPOT, LOW, CLEAR, TIME_UP = (
     EventKind.GAS_LEAK,
     EventKind.PLATFORM_ALARM,
@@ -239,6 +240,26 @@ class TestReactions:
                 "['gas_leak'].battery_below",
                 [react(GAS, "pause", battery_below=0.3)],
             ),
+            (
+                "il.charge-without-wait",
+                "['gas_leak'].charge_to",
+                [react(GAS, "pause", until=CLEAR, charge_to=0.6)],
+            ),
+            (
+                "il.charge-without-wait",
+                "['low_battery'].charge_for",
+                [react(LOW, "pause", charge_for=60)],
+            ),
+            (
+                "il.charge-below-level",
+                "['low_battery'].charge_to",
+                [react(LOW, "pause", until=CHARGED, battery_below=0.3, charge_to=0.3)],
+            ),
+            (
+                "il.charge-after-limit",
+                "['low_battery'].charge_for",
+                [react(LOW, "pause", until=CHARGED, charge_for=60, hold_limit=60)],
+            ),
         ],
     )
     def test_errors(self, code, field, reactions):
@@ -254,6 +275,14 @@ class TestReactions:
         for level in (0.0, 1.0, -0.1, 30.0):
             with pytest.raises(ValidationError):
                 react(LOW, "pause", battery_below=level)
+
+    @pytest.mark.rule("R12")
+    def test_a_charge_is_a_share_and_a_time(self):
+        low = react(LOW, "pause", until=CHARGED, charge_to=1.0, charge_for=60)
+        assert check(Mission(tasks=CHAIN, reactions=[low])) == ()
+        for field, value in (("charge_to", 0.0), ("charge_to", 1.1), ("charge_for", 0.0)):
+            with pytest.raises(ValidationError):
+                react(LOW, "pause", until=CHARGED, **{field: value})
 
     @pytest.mark.parametrize(
         ("code", "field", "reactions"),

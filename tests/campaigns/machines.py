@@ -74,7 +74,8 @@ class CountingReference(Reference):
         super().action_succeeded(run, event)
 
     def measured(self, object_id, reading):
-        self.count("unreadable", reading.kind == "unreadable")
+        for kind in ("unreadable", "unreachable"):
+            self.count(kind, reading.kind == kind)
         super().measured(object_id, reading)
 
     def over(self, outcome):

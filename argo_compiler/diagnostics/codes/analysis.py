@@ -15,6 +15,15 @@ ANALYSIS = {
         "Some execution path needs more energy than the battery gives.",
         "Limit repetitions, or react to `low_battery`.",
     ),
+    "analysis.charge-cut-short": warning(
+        "The reaction to a low battery continues the mission before the battery is charged as far "
+        "as it has to be.",
+        "Allow more time in `hold_limit`, or charge to a lower level (`charge_to`).",
+    ),
+    "analysis.charging-too-long": warning(
+        "Charging a low battery alone takes longer than the mission's maximum duration.",
+        "Charge to a lower level (`charge_to`), or allow more time.",
+    ),
     "analysis.cut-short": warning(
         "The mission may take longer than its maximum duration, and a reaction to `time_up` then "
         "ends it.",

@@ -25,6 +25,19 @@ IL = {
         "A task leads elsewhere when it has failed, but has no target for this case.",
         "Give it a `failure_target`, or another `on_failure`.",
     ),
+    "il.charge-after-limit": error(
+        "The battery is to be charged for longer than the hold or the wait may last.",
+        "Allow more time in `hold_limit` or `limit`, or charge for a shorter time.",
+    ),
+    "il.charge-below-level": error(
+        "The battery is charged to a level at which the robot still calls it low.",
+        "Charge to a higher level than `battery_below`.",
+    ),
+    "il.charge-without-wait": error(
+        "A level or a least time of charging is given for something else than a wait for "
+        "BATTERY_CHARGED.",
+        "Wait for `battery_charged`, or leave `charge_to` and `charge_for` out.",
+    ),
     "il.condition-bound": error(
         "A LESS, GREATER or WITHIN condition has no bound.",
         "Give the bound that the value is compared with as `param1`.",

@@ -7,9 +7,9 @@ def new_memory(to):
     `to` holds the target of the last transition: the number of a task; or -1 for the end of a round
     of the outermost group, -2 for the next group inside, and so on; or `end` or `aborted`. `groups`
     lists the groups that have been entered, from the outermost to the innermost. `readings` maps
-    each checkpoint to its last measurement: the result (value, unreadable or failed), the time, the
-    value, and whether it is abnormal. `failures` is True if a task that is not optional has failed
-    with all retries.
+    each checkpoint to its last measurement: the result (value, unreadable, unreachable or
+    failed), the time, the value, and whether it is abnormal. `failures` is True if a task that is
+    not optional has failed with all retries.
     """
     return {"to": to, "readings": {}, "groups": [], "failures": False}
 
@@ -18,14 +18,14 @@ def is_satisfied(condition, memory, now):
     """Return True if the condition (kind, object_id, low, high, inclusive, max_age) is satisfied.
 
     The kind is `value`, which compares the reading with its bounds (None: no bound), or one of
-    `unreadable`, `failed`, `stale` and `abnormal`.
+    `unreadable`, `unreachable`, `failed`, `stale` and `abnormal`.
     """
     kind, object_id, low, high, inclusive, max_age = condition
     if object_id not in memory["readings"]:
         return False
     result, time, value, abnormal = memory["readings"][object_id]
-    if kind == "unreadable":
-        return result == "unreadable"
+    if kind in ("unreadable", "unreachable"):
+        return result == kind
     if kind == "failed":
         return result != "value"
     old = max_age is not None and now - time > max_age

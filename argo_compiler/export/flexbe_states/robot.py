@@ -31,9 +31,9 @@ class Robot:
     def result(self):
         """Return None while the action runs, then its outcome, and its value or None.
 
-        The outcome is 'done', 'failed', or 'unreadable' if a measurement failed because the robot
-        could not read the checkpoint. The value is a number, or a tuple of a number and a bool that
-        is True if the number is abnormal.
+        The outcome is 'done', 'failed', or for a measurement 'unreadable' if the robot could not
+        read the checkpoint, and 'unreachable' if it could not get to it. The value is a
+        number, or a tuple of a number and a bool that is True if the number is abnormal.
         """
         raise NotImplementedError
 

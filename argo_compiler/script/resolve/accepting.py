@@ -39,7 +39,10 @@ _USED: Mapping[type[ScriptOrder], frozenset[str]] = {
     orders.Home: OF_TASKS | ROUND | _CASE,
     orders.VisitOrder: frozenset(["speed"]),
     orders.Start: OF_TASKS,
-    orders.WaitOrder: OF_TASKS - {"speed"} | _CASE | {"duration", "until", "pose", "person"},
+    orders.WaitOrder: OF_TASKS - {"speed"}
+    | _CASE
+    | {"duration", "until", "pose", "person"}
+    | {"charge", "charge_time"},
     orders.Patrol: OF_TASKS - {"reading_limit", "object_id"} | ROUND | _CASE | {"order"},
     orders.Repeat: ROUND | {"time_limit", "order"},
     orders.Follow: ROUND | {"time_limit", "order", "by_importance"},
@@ -85,6 +88,8 @@ _WORDS = {
     "mission_time": "the duration of the mission",
     "person": "a person to wait for",
     "on_limit": "what happens when the waiting time ends",
+    "charge": "a charge of the battery",
+    "charge_time": "a least time for charging",
 }
 
 

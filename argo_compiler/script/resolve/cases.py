@@ -48,7 +48,12 @@ _POLICIES = {
     PlainWord.END: OnFailure.ABORT,
     PlainWord.GO_ON: OnFailure.CONTINUE,
 }
-_EXCEPTIONS = (TaskState.FAILED, TaskState.UNREADABLE, TaskState.STALE)
+_EXCEPTIONS = (
+    TaskState.FAILED,
+    TaskState.UNREADABLE,
+    TaskState.UNREACHABLE,
+    TaskState.STALE,
+)
 """states that can't be asked for turned round"""
 
 
@@ -97,7 +102,7 @@ class Cases:
             else:
                 self._rest(case, block)
             return
-        condition = self._turned(condition)
+        condition = self._turned(self._as_failure_of_drive(condition))
         asked = [test for tests in condition.alternatives for test in tests]
         values = any(isinstance(test, Test) for test in asked)
         late = any(isinstance(test, TooLate) for test in asked)
@@ -351,6 +356,17 @@ class Cases:
             hint = "name the checkpoint: `if checkpoint #1 has not failed, ...`"
             self.diagnostics.refuse("ambiguous-pronoun", message, test.span, hint)
         return found if test.negated else condition
+
+    def _as_failure_of_drive(self, condition: SaidCondition) -> SaidCondition:
+        """Return `if it is unreachable` after a drive as `if it fails`, which means the same."""
+        drives = {do.action for do in self.context.recent} == {Action.WAYPOINT}
+        match condition.alternatives:
+            case ((Test(predicate=InState(state=TaskState.UNREACHABLE) as said_) as test,),) if (
+                drives and _is_of_it(test)
+            ):
+                failed = replace(said_, state=TaskState.FAILED)
+                return replace(condition, alternatives=((replace(test, predicate=failed),),))
+        return condition
 
     def _too_late(self, case: Case, condition: SaidCondition) -> None:
         """Plan the orders that are carried out if the last task misses its window."""

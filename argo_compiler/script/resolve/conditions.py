@@ -41,6 +41,7 @@ _TYPES = {
 _STATES = {
     TaskState.ABNORMAL: ConditionType.ABNORMAL,
     TaskState.UNREADABLE: ConditionType.UNREADABLE,
+    TaskState.UNREACHABLE: ConditionType.UNREACHABLE,
     TaskState.FAILED: ConditionType.FAILED,
     TaskState.STALE: ConditionType.STALE,
 }

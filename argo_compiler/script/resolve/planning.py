@@ -271,7 +271,7 @@ class Planner:
 
     def _order(self, order: ScriptOrder, block: ProgramBlock) -> None:
         context = self.context
-        order = self._staying(context.counted(order), block)
+        order = _as_wait_for_battery(self._staying(context.counted(order), block))
         if self.done:
             hint = "move `Done!` to the end"
             self.diagnostics.refuse("after-done", "this comes after `Done!`", order.span, hint)
@@ -347,9 +347,11 @@ class Planner:
                 return True
             context.program.remove(docked)  # `go home and dock in area 2`
             return False
-        if isinstance(order, orders.WaitOrder) and order.manner and order.manner.duration:
-            context.docked = None  # `stay there for 5 minutes`: it goes on behind that
-            return False
+        if isinstance(order, orders.WaitOrder):
+            manner = order.manner or Manner()
+            if order.recharges or manner.duration or manner.until:
+                context.docked = None  # `stay there for 5 minutes`: it goes on behind that
+                return False
         line = docked.source.line if docked.source else 0
         message = f"line {line} has already returned the robot to its docking station"
         hint = "move the return to the end, or write how to go on: `then go to step 3`"
@@ -460,3 +462,13 @@ class Planner:
             else:
                 message = f"checkpoint #{key} is not in the mission anyway, so this has no effect"
                 context.diagnostics.note("no-effect", message, span)
+
+
+def _as_wait_for_battery(order: ScriptOrder) -> ScriptOrder:
+    """Return `recharge` as the wait that it is; another order is returned as it is."""
+    match order:
+        case orders.Plain(word=PlainWord.RECHARGE):
+            return orders.WaitOrder(
+                span=order.span, manner=order.manner, name=order.name, recharges=True
+            )
+    return order

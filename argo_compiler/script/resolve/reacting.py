@@ -8,21 +8,31 @@ from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Afterwards, EventKind, Reaction, Response
 from argo_compiler.script.resolve.accepting import said, words_of
+from argo_compiler.script.resolve.charging import (
+    FULL,
+    AwaitedEvent,
+    awaited_event,
+    charge_share,
+    low_level,
+)
 from argo_compiler.script.resolve.lookup import Lookup
 from argo_compiler.script.syntax.text.source import Diagnostics
 from argo_compiler.script.syntax.tree import orders
 from argo_compiler.script.syntax.tree.conditions import (
     Asked,
-    BatteryDrops,
+    BatteryLevel,
     Occurs,
-    Relation,
     SaidCondition,
 )
 from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.orders import Case, PlainWord, ScriptOrder
 from argo_compiler.script.syntax.tree.places import FloorName
 
-_USED = frozenset({"priority", "until", "duration", "time_limit", "on_limit"})
+_USED = frozenset(
+    {"priority", "until", "duration", "time_limit", "on_limit", "charge", "charge_time"}
+)
+
+_CHARGED = EventKind.BATTERY_CHARGED
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +50,12 @@ class _Answer:
     hold_limit: float | None = None
     on_limit: Afterwards | None = None
     priority: int | None = None
+    charge: float | None = None
+    """0 to 1, to which the battery is charged"""
+    charge_time: float | None = None
+    """s for which it is charged at least"""
+    fully: bool = False
+    """whether it waits until the battery is charged, by these words"""
 
     @property
     def drives(self) -> bool:
@@ -102,13 +118,16 @@ class Reactions:
                     on_limit=answer.on_limit or Afterwards.WAIT,
                     priority=answer.priority,
                     battery_below=level,
+                    charge_to=answer.charge,
+                    charge_for=answer.charge_time,
                     source=case.span,
                 )
             )
 
     def _trigger(self, test: Asked) -> _Trigger:
-        if isinstance(test, BatteryDrops):
-            return _Trigger(EventKind.LOW_BATTERY, test.span, self._level(test))
+        if isinstance(test, BatteryLevel):
+            level = low_level(test, self.diagnostics)
+            return _Trigger(EventKind.LOW_BATTERY, test.span, level)
         if not isinstance(test, Occurs):
             message = "one condition can't contain both values and events"
             self.diagnostics.refuse("reaction", message, test.span, "write a sentence for each")
@@ -117,22 +136,6 @@ class Reactions:
             hint = "write `a positive obstacle` or `a negative obstacle`"
             self.diagnostics.refuse("ambiguous-event", message, test.span, hint)
         return _Trigger(test.event, test.span)
-
-    def _level(self, battery: BatteryDrops) -> float:
-        """The share of the charge below which the battery is to be called low."""
-        amount = battery.level
-        hint = "write, for example, `if the battery drops below 30 %`"
-        if battery.relation not in (Relation.LESS, Relation.AT_MOST):
-            message = "a reaction needs a battery that becomes low, not one that is charged"
-            hint += ", or `wait until the battery is charged`"
-        elif amount.unit != "%":
-            unit = f"in {amount.unit}" if amount.unit else "without a unit"
-            message = f"the battery's charge is given in %, not as a number {unit}"
-        elif not 0.0 < amount.value < 100.0:
-            message = "this must be more than 0 % and less than 100 %"
-        else:
-            return amount.value / 100.0
-        self.diagnostics.refuse("battery", message, battery.span, hint)
 
     # ---- what is done
 
@@ -153,7 +156,7 @@ class Reactions:
             case orders.Plain(word=PlainWord.PAUSE):
                 return answer.pausing
             case orders.Plain(word=PlainWord.RECHARGE):
-                return self._until(EventKind.BATTERY_CHARGED, answer, order.span).pausing
+                return self._until(_CHARGED, answer, order.span).pausing
             case orders.Plain(word=PlainWord.GO_ON):
                 return self._afterwards(order, answer, Afterwards.RESUME)
             case orders.Plain(word=PlainWord.ABORT | PlainWord.END) if not answer.drives:
@@ -190,14 +193,30 @@ class Reactions:
             on_limit=manner.on_limit or answer.on_limit,
             priority=answer.priority if manner.priority is None else manner.priority,
         )
+        if manner.charge is not None:
+            answer = self._charges(
+                charge_share(manner.charge, manner.charge.span, self.diagnostics), answer, order
+            )
+        if manner.charge_time is not None:
+            if answer.charge_time is not None:
+                self._twice(order.span)
+            answer = replace(answer, charge_time=manner.charge_time)
         if manner.until is None:
             return answer
-        return self._until(self._awaited(manner.until), answer, order.span)
+        event, charge = self._awaited(manner.until)
+        answer = self._until(event, replace(answer, fully=event is _CHARGED), order.span)
+        return answer if charge is None else self._charges(charge, answer, order)
 
-    def _awaited(self, condition: SaidCondition) -> EventKind:
+    def _charges(self, charge: float, answer: _Answer, order: ScriptOrder) -> _Answer:
+        if answer.charge is not None:
+            self._twice(order.span)
+        return replace(answer, charge=charge)
+
+    def _awaited(self, condition: SaidCondition) -> AwaitedEvent:
         match condition.alternatives:
-            case ((Occurs(event=EventKind() as event),),):
-                return event
+            case ((test,),):
+                if (found := awaited_event(test, self.diagnostics)) is not None:
+                    return found
         hint = "write, for example, `until the all clear`"
         self.diagnostics.refuse("reaction", "a reaction waits for one event", condition.span, hint)
 
@@ -247,6 +266,13 @@ class Reactions:
 
     def _held(self, answer: _Answer, span: Span) -> _Answer:
         """The answer with what happens when the time for which it holds is over."""
+        charges = answer.charge is not None or answer.charge_time is not None
+        if charges and answer.until is not _CHARGED:
+            message = "only a battery that is charged has a level or a least time"
+            hint = "write, for example, `return, recharge to 80 % and resume`"
+            self.diagnostics.refuse("reaction", message, span, hint)
+        if answer.charge_time is not None and answer.charge is None and answer.fully:
+            answer = replace(answer, charge=FULL)
         if answer.hold_limit is None:
             return answer
         if answer.drives and answer.until is None:

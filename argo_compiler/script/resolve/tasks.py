@@ -7,13 +7,13 @@ from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Action, EventKind, WaitRule
 from argo_compiler.script.resolve.accepting import said
+from argo_compiler.script.resolve.charging import FULL, awaited_event, charge_share
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.lookup import told
 from argo_compiler.script.resolve.manners import Manners, make_round, timed
 from argo_compiler.script.resolve.program import Do, ProgramRound, dock, measurement
 from argo_compiler.script.resolve.starting import Starting
 from argo_compiler.script.syntax.tree import orders
-from argo_compiler.script.syntax.tree.conditions import Occurs
 from argo_compiler.script.syntax.tree.manner import Manner
 from argo_compiler.script.syntax.tree.nouns import AllOf, Labelled
 from argo_compiler.script.syntax.tree.orders import PlainWord, ScriptOrder, Side
@@ -106,6 +106,8 @@ class TaskMaker:
         diagnostics = self.context.diagnostics
         manner = order.manner or Manner()
         until, duration, limit = manner.until, manner.duration, manner.time_limit
+        if order.recharges:
+            return self._recharge_rule(order, manner)
         if order.person:
             hint = "an operator can pause the run; or write a duration: `wait 5 minutes`"
             diagnostics.refuse("wait", "a mission can't wait for a person", order.span, hint)
@@ -123,15 +125,64 @@ class TaskMaker:
             diagnostics.refuse("repeated-limit", message, order.span, "remove one of them")
         limit = duration if limit is None else limit
         event: EventKind | None = None
+        charge: float | None = None
         match until.alternatives:
-            case ((Occurs(event=EventKind() as awaited),), *others) if len(others) < 2:
-                event, until = awaited, replace(until, alternatives=tuple(others))
+            case ((test,), *others) if len(others) < 2:
+                if (awaited := awaited_event(test, diagnostics)) is not None:
+                    event, charge = awaited
+                    until = replace(until, alternatives=tuple(others))
+        charge, charge_time = self._charge(order, manner, event, charge)
         conditions = self.context.conditions.alternatives(until)
         if len(conditions) > 1:
             message = "a wait can end when all conditions are satisfied, not when one of several is"
             hint = "join them with `and` if all are meant, or wait for one of them only"
             diagnostics.refuse("wait", message, until.span, hint)
-        return WaitRule(event=event, conditions=conditions[0] if conditions else (), limit=limit)
+        return WaitRule(
+            event=event,
+            conditions=conditions[0] if conditions else (),
+            limit=limit,
+            charge_to=FULL if charge is None and charge_time is not None else charge,
+            charge_for=charge_time,
+        )
+
+    def _recharge_rule(self, order: orders.WaitOrder, manner: Manner) -> WaitRule:
+        """How long it recharges. Raises RefusedError if that is not clear."""
+        diagnostics = self.context.diagnostics
+        limits = [t for t in (manner.duration, manner.time_limit) if t is not None]
+        if manner.until is not None or len(limits) > 1:
+            message = "this says twice how long it recharges"
+            diagnostics.refuse("repeated-limit", message, order.span, "remove one of them")
+        charge, charge_time = self._charge(order, manner, EventKind.BATTERY_CHARGED, None)
+        return WaitRule(
+            event=EventKind.BATTERY_CHARGED,
+            limit=limits[0] if limits else None,
+            charge_to=charge,
+            charge_for=charge_time,
+        )
+
+    def _charge(
+        self,
+        order: orders.WaitOrder,
+        manner: Manner,
+        event: EventKind | None,
+        charge: float | None,
+    ) -> tuple[float | None, float | None]:
+        """The charge (0 to 1) and the least time (s) of a wait; `charge` is that of its condition.
+
+        Raises RefusedError if it waits for something else than the battery, or names two charges.
+        """
+        diagnostics = self.context.diagnostics
+        if manner.charge is not None:
+            if charge is not None:
+                message = "the charge is given twice"
+                diagnostics.refuse("repeated-limit", message, order.span, "remove one of them")
+            charge = charge_share(manner.charge, manner.charge.span, diagnostics)
+        charges = charge is not None or manner.charge_time is not None
+        if charges and event is not EventKind.BATTERY_CHARGED:
+            message = "only a battery that is charged has a level or a least time"
+            hint = "write, for example, `wait until the battery is charged to 80 %`"
+            diagnostics.refuse("wait", message, order.span, hint)
+        return charge, manner.charge_time
 
     def patrol_rounds(self, order: orders.Patrol) -> tuple[list[ProgramRound], list[Do]]:
         """Return a patrol's rounds, one for each floor or one through the places, and stops."""

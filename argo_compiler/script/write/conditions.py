@@ -9,6 +9,7 @@ from argo_compiler.il import (
     EventKind,
     Reaction,
     Response,
+    WaitRule,
 )
 from argo_compiler.il.exclusive_conditions import are_contradictory
 from argo_compiler.script.write.text import Places, UnwritableError, duration, number, point, quote
@@ -21,6 +22,7 @@ _RELATIONS = {
 }
 _STATES = {
     ConditionType.UNREADABLE: "is unreadable",
+    ConditionType.UNREACHABLE: "is unreachable",
     ConditionType.FAILED: "has failed",
     ConditionType.ABNORMAL: "is abnormal",
 }
@@ -120,7 +122,9 @@ def reaction_said(reaction: Reaction, places: Places) -> str:
     _require_used(reaction)
     clauses = [f"if {_occurs(reaction)}", _response(reaction, places)]
     holding = _holding(reaction)
-    if holding and reaction.until is not None and reaction.response in _DRIVES:
+    if recharges_for_time(reaction.until, reaction):
+        clauses.append(f"recharge {holding}")
+    elif holding and reaction.until is not None and reaction.response in _DRIVES:
         clauses.append(f"wait {holding}")
     elif holding:
         clauses[-1] += f" {holding}"
@@ -135,17 +139,54 @@ def _occurs(reaction: Reaction) -> str:
     level = reaction.battery_below
     if level is None:
         return EVENTS[reaction.event]
-    percent = next((p for p in (level * 100, round(level * 100, 9)) if p / 100 == level), None)
-    if percent is None or reaction.event is not EventKind.LOW_BATTERY:
-        raise UnwritableError("this level of the battery is not a percentage: `battery_below`")
-    return f"the battery drops below {number(percent)} %"
+    if reaction.event is not EventKind.LOW_BATTERY:
+        raise UnwritableError("only a low battery has a level: `battery_below`")
+    return f"the battery drops below {percentage(level, 'battery_below')} %"
+
+
+def awaited(event: EventKind, rule: Reaction | WaitRule, other: str = "") -> str:
+    """What ends a hold or a wait: `until the battery is charged to 80 %`.
+
+    `other` is what ends it besides the event: ` or checkpoint #1 is above 3`.
+    """
+    charged = event is EventKind.BATTERY_CHARGED
+    if (rule.charge_to, rule.charge_for) != (None, None) and not charged:
+        raise UnwritableError("only a battery is charged: `charge_to`, `charge_for`")
+    said = f"until {EVENTS[event]}"
+    if rule.charge_to is not None:
+        level = percentage(rule.charge_to, "charge_to")
+        said = f"until the battery is at {level} %" if other else f"{said} to {level} %"
+    elif rule.charge_for is not None and other:
+        raise UnwritableError("a wait for a time of charging has no other end: `charge_for`")
+    said += other
+    return said if rule.charge_for is None else f"{said} for at least {duration(rule.charge_for)}"
+
+
+def recharges_for_time(event: EventKind | None, rule: Reaction | WaitRule) -> bool:
+    """Whether it recharges for a least time only, whatever the charge is then."""
+    charged = event is EventKind.BATTERY_CHARGED
+    return charged and rule.charge_to is None and rule.charge_for is not None
+
+
+def percentage(share: float, field: str) -> str:
+    """A share of the battery's charge in %. Raises UnwritableError; `field` is for the message."""
+    percent = next((p for p in (share * 100, round(share * 100, 9)) if p / 100 == share), None)
+    if percent is None:
+        raise UnwritableError(f"this level of the battery is not a percentage: `{field}`")
+    return number(percent)
 
 
 def _holding(reaction: Reaction) -> str:
     """What it waits for, for how long, and what it does then."""
     said = []
     if reaction.until is not None:
-        said.append(f"until {EVENTS[reaction.until]}")
+        if recharges_for_time(reaction.until, reaction):
+            assert reaction.charge_for is not None
+            said.append(f"for at least {duration(reaction.charge_for)}")
+        else:
+            said.append(awaited(reaction.until, reaction))
+    elif (reaction.charge_to, reaction.charge_for) != (None, None):
+        raise UnwritableError("nothing is charged: `charge_to`, `charge_for`")
     if reaction.hold_limit is not None:
         said.append(f"for at most {duration(reaction.hold_limit)}")
     if reaction.hold_limit is not None or reaction.on_limit is not Afterwards.WAIT:

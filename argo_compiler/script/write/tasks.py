@@ -5,7 +5,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from argo_compiler.il import Action, JointState, OnFailure, Task, TimeWindow, WaitRule
-from argo_compiler.script.write.conditions import EVENTS, checkpoint, conditions
+from argo_compiler.script.write.conditions import (
+    awaited,
+    checkpoint,
+    conditions,
+    recharges_for_time,
+)
 from argo_compiler.script.write.text import (
     Places,
     UnwritableError,
@@ -47,13 +52,26 @@ def _wait(rule: WaitRule) -> str:
         if rule.event is not None or rule.conditions or rule.limit is not None:
             raise UnwritableError("a wait for a time has nothing else: `event`, `limit`")
         return f"wait {duration(rule.duration)}" if rule.duration else "go on here"
-    until = [] if rule.event is None else [EVENTS[rule.event]]
-    until += [conditions(rule.conditions)] if rule.conditions else []
-    if not until:
-        raise UnwritableError("it has no condition to wait for: `wait`")
-    joint = ", or " if len(rule.conditions) > 1 else " or "
-    said = f"wait until {joint.join(until)}"
+    if recharges_for_time(rule.event, rule) and not rule.conditions:
+        assert rule.charge_for is not None
+        said = f"recharge for at least {duration(rule.charge_for)}"
+    else:
+        said = f"wait {_until(rule)}"
     return said if rule.limit is None else f"{said},\nfor at most {duration(rule.limit)}"
+
+
+def _until(rule: WaitRule) -> str:
+    """What ends a wait: `until all clear is given or checkpoint #1 is above 3`."""
+    if rule.event is None:
+        if not rule.conditions:
+            raise UnwritableError("it has no condition to wait for: `wait`")
+        if (rule.charge_to, rule.charge_for) != (None, None):
+            raise UnwritableError("nothing is charged: `charge_to`, `charge_for`")
+        return f"until {conditions(rule.conditions)}"
+    if not rule.conditions:
+        return awaited(rule.event, rule)
+    joint = ", or " if len(rule.conditions) > 1 else " or "
+    return awaited(rule.event, rule, f"{joint}{conditions(rule.conditions)}")
 
 
 def manners(task: Task, group: str) -> Iterator[str]:

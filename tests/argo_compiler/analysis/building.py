@@ -78,6 +78,7 @@ class ConstantTravel:
 
     longest_cancellation_time = 1.0
     standing_power = 0.0
+    charging_power = None
 
     def __init__(self, blocked=(), battery=100.0):
         self.blocked = blocked

@@ -178,6 +178,7 @@ class MadeUpTravel:
         self.longest_cancellation_time = clean_up
         self.battery = 5.0
         self.standing_power = standing_power
+        self.charging_power = None
         self.blocked = blocked
 
     def start_pose(self, mission):  # noqa: ARG002
@@ -410,7 +411,13 @@ class _World:
             )
             event = ActionSucceeded(task.name, value, abnormal)
             if failed:
-                event = ActionFailed(task.name, "failed", unreadable=rng.random() < 0.5)
+                kind = rng.choice(["unreadable", "unreadable", "failed", "unreachable"])
+                event = ActionFailed(
+                    task.name,
+                    "failed",
+                    unreadable=kind == "unreadable",
+                    unreachable=kind == "unreachable",
+                )
         self._execute(result.executor.handle(event, now))
 
     def _value(self, object_id):

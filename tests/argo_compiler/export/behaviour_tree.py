@@ -54,7 +54,7 @@ class Interpreter:
     """Interpreter of one tree; holds its blackboard, its clock and its log of actions.
 
     `outcomes` yields the duration, value and failure of each action in turn. A value of 5 or more
-    is abnormal; a failure with a value is unreadable.
+    is abnormal; a failure with an even value is unreadable, one with an odd value unreachable.
     """
 
     def __init__(self, text, outcomes):
@@ -175,12 +175,14 @@ class Interpreter:
 
     def Measure(self, node):  # noqa: N802
         value, failed = yield from self.act(node)
-        known = value is not None and not failed
+        has_value = value is not None
+        known = has_value and not failed
         outputs = {
             "value": value if known else 0.0,
             "known": float(known),
             "abnormal": float(known and value >= 5),
-            "unreadable": float(failed == (value is not None)),
+            "unreadable": float(failed and has_value and value % 2 == 0),
+            "unreachable": float(failed and has_value and value % 2 == 1),
             "time": self.now,
         }
         for port, output in outputs.items():

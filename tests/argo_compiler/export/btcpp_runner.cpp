@@ -1,8 +1,8 @@
 // Runs a behaviour tree with replaced nodes: `runner TREE.xml STEPS < outcomes`.
 //
 // A line of input is the outcome of one action: its duration (s), whether it reads a value, the
-// value, whether the value is abnormal, and whether the action fails; a failure with a value is
-// unreadable. The outcomes are used in turn. A line of output is the start of an action: the time
+// value, whether the value is abnormal, and whether the action fails; a failure with an
+// even value is unreadable, one with an odd value unreachable. The outcomes are used in turn. A line of output is the start of an action: the time
 // and the node's name. The last line is the blackboard entry `outcome`, or 0.
 //
 //   c++ -std=c++17 -O1 btcpp_runner.cpp -lbehaviortree_cpp -o runner
@@ -77,7 +77,7 @@ public:
     ports.insert({ BT::InputPort<std::string>("object_id"), BT::InputPort<double>("reading_limit"),
                    BT::OutputPort<double>("value"), BT::OutputPort<double>("known"),
                    BT::OutputPort<double>("abnormal"), BT::OutputPort<double>("unreadable"),
-                   BT::OutputPort<double>("time") });
+                   BT::OutputPort<double>("unreachable"), BT::OutputPort<double>("time") });
     return ports;
   }
   BT::NodeStatus tick() override
@@ -87,7 +87,9 @@ public:
     setOutput("value", known ? outcome.value : 0.0);
     setOutput("known", known ? 1.0 : 0.0);
     setOutput("abnormal", known && outcome.abnormal ? 1.0 : 0.0);
-    setOutput("unreadable", outcome.reads == outcome.fails ? 1.0 : 0.0);
+    const bool odd = static_cast<long>(outcome.value) % 2 == 1;
+    setOutput("unreadable", outcome.fails && outcome.reads && !odd ? 1.0 : 0.0);
+    setOutput("unreachable", outcome.fails && outcome.reads && odd ? 1.0 : 0.0);
     setOutput("time", now);
     return outcome.fails ? BT::NodeStatus::FAILURE : BT::NodeStatus::SUCCESS;
   }

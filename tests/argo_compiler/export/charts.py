@@ -8,7 +8,7 @@ from statemachine.io import load
 NS = {"s": "http://www.w3.org/2005/07/scxml"}
 TASK, GROUP = re.compile(r"t\d+"), re.compile(r"g\d+")
 ARGO = "{urn:argo:mission}"
-KINDS = {1: "value", 2: "unreadable", 3: "failed"}
+KINDS = {1: "value", 2: "unreadable", 3: "unreachable", 4: "failed"}
 GOING, ENDING = 0, 3
 
 

@@ -112,8 +112,9 @@ def chart_event(event, chart):
             return f"reading.{chart.objects[object_id]}", data
         case ActionSucceeded(_, value, abnormal):
             return "action.succeeded", {"value": value, "abnormal": int(abnormal)}
-        case ActionFailed(_, _, unreadable):
-            return "action.failed", {"unreadable": int(unreadable)}
+        case ActionFailed():
+            kinds = {"unreadable": event.unreadable, "unreachable": event.unreachable}
+            return "action.failed", {kind: int(is_so) for kind, is_so in kinds.items()}
         case ActionStopped():
             return "action.stopped", {}
     return PLAIN[type(event)], {}

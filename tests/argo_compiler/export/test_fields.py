@@ -39,6 +39,9 @@ PAUSE = Reaction(
     event=EventKind.GAS_LEAK, response=Response.PAUSE, until=EventKind.ALL_CLEAR, hold_limit=60
 )
 LOW = Reaction(event=EventKind.LOW_BATTERY, response=Response.RETURN, battery_below=0.3)
+CHARGING = LOW.model_copy(
+    update={"until": EventKind.BATTERY_CHARGED, "afterwards": Afterwards.RESUME}
+)
 RETURN = Reaction(event=EventKind.GAS_LEAK, response=Response.RETURN)
 
 
@@ -94,6 +97,7 @@ def mission_change(**fields):
 
 SPAN = Span(line=1, column=1, length=1)
 EVENT = WaitRule(event=EventKind.ALL_CLEAR, limit=60)
+CHARGED = WaitRule(event=EventKind.BATTERY_CHARGED, limit=60)
 CHANGES = {
     "Task.name": mission_change(last="D"),
     "Task.action": (mission(), mission(b={"action": Action.MEASURE, "object_id": "3"})),
@@ -119,6 +123,8 @@ CHANGES = {
     "WaitRule.event": waiting(EVENT, event=EventKind.BATTERY_CHARGED),
     "WaitRule.conditions": waiting(EVENT, conditions=(HIGH,)),
     "WaitRule.limit": waiting(EVENT, limit=70.0),
+    "WaitRule.charge_to": waiting(CHARGED, charge_to=0.6),
+    "WaitRule.charge_for": waiting(CHARGED, charge_for=30.0),
     "TimeWindow.earliest": windowed(earliest=20.0),
     "TimeWindow.latest": windowed(latest=60.0),
     "TimeWindow.hard": windowed(hard=True),
@@ -158,6 +164,8 @@ CHANGES = {
     "Reaction.on_limit": reacting(on_limit=Afterwards.RESUME),
     "Reaction.priority": reacting(priority=7),
     "Reaction.battery_below": reacting(LOW, battery_below=0.4),
+    "Reaction.charge_to": reacting(CHARGING, charge_to=0.6),
+    "Reaction.charge_for": reacting(CHARGING, charge_for=600.0),
     "Reaction.source": reacting(source=SPAN),
     "Mission.designation": mission_change(designation="named"),
     "Mission.site": mission_change(site="umad"),

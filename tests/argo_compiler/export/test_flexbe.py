@@ -124,7 +124,8 @@ class Robot:
             return None
         self.action = None
         if failed:
-            return "failed" if value is None else "unreadable", None
+            kind = "failed" if value is None else "unreachable" if value % 2 else "unreadable"
+            return kind, None
         return "done", None if value is None else (value, value >= 5)
 
     def cancel(self):

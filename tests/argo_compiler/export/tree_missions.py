@@ -20,7 +20,7 @@ def executed(mission, outcomes, steps):
 
     The outcome is None if the mission starts more than `steps` actions, of which the first `steps`
     are returned. As in the replacements for other tools, a value of 5 or more is abnormal, and a
-    failure with a value is unreadable.
+    failure with an even value is unreadable, one with an odd value unreachable.
     """
     drawn = cycle(outcomes)
 
@@ -30,7 +30,8 @@ def executed(mission, outcomes, steps):
         measured = value if task.action is Action.MEASURE else None
         has_value = measured is not None
         if failed:
-            end = ActionFailed(task.name, "failed", unreadable=has_value, id=id)
+            odd = has_value and measured % 2 == 1
+            end = ActionFailed(task.name, "failed", has_value and not odd, id, unreachable=odd)
         else:
             end = ActionSucceeded(task.name, measured, abnormal=has_value and measured >= 5, id=id)
         return max(now, command.not_before or now) + duration, lambda: end

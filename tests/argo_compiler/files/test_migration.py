@@ -44,7 +44,7 @@ def test_a_velocity_moves_from_the_previous_task_to_the_task_it_leads_to(version
     start = task("S", "A", action="START", velocity=0.2)
     file = read(version, tasks=[start, task("A", "B", velocity=0.3), task("B")])
     assert velocities(file.mission) == {"S": None, "A": 0.2, "B": 0.3}
-    assert file.mission.version == 3
+    assert file.mission.version == 4
     assert not file.changes
 
 
@@ -125,6 +125,58 @@ def test_a_file_may_only_have_the_fields_of_its_version(data, field):
     assert fault.span is not None
     assert "version" in fault.hint
     read(3, **data)
+
+
+UNREACHABLE = {"type": "READING_UNREACHABLE", "object_id": "1"}
+
+
+@pytest.mark.rule("M6")
+@pytest.mark.parametrize(
+    ("data", "field"),
+    [
+        (
+            {"reactions": [{"event": "low_battery", "response": "pause", "charge_to": 0.6}]},
+            "reactions[0].charge_to",
+        ),
+        (
+            {"tasks": [task("W", action="WAIT", wait={"event": "all_clear", "charge_for": 9})]},
+            "tasks[0].wait.charge_for",
+        ),
+        (
+            {"tasks": [task("A", transitions=[{"target": "A", "conditions": [UNREACHABLE]}])]},
+            "tasks[0].transitions[0].conditions[0].type",
+        ),
+        (
+            {"tasks": [task("W", action="WAIT", wait={"conditions": [UNREACHABLE]})]},
+            "tasks[0].wait.conditions[0].type",
+        ),
+        (
+            {
+                "tasks": [task("A")],
+                "groups": [{"name": "G", "start": "A", "end": "A", "until": [UNREACHABLE]}],
+            },
+            "groups[0].until[0].type",
+        ),
+    ],
+)
+def test_version_3_has_no_charges_and_no_unreachable_readings(data, field):
+    with pytest.raises(DiagnosticError) as caught:
+        read(3, **data)
+    (fault,) = caught.value.diagnostics
+    assert (fault.code, fault.subject) == ("file.wrong-field", field)
+    assert fault.span is not None
+    read(4, **data)
+
+
+@pytest.mark.rule("M6")
+def test_a_mission_of_version_3_means_the_same_today():
+    data = {
+        "tasks": [task("A", velocity=0.3, pose=DOCK)],
+        "reactions": [{"event": "gas_leak", "response": "pause"}],
+    }
+    file = read(3, **data)
+    assert not file.changes
+    assert file.mission == read(4, **data).mission
 
 
 def test_missing_priorities_stay_0_and_unused_poses_stay_unused():

@@ -62,6 +62,7 @@ class ActionResult:
     abnormal: bool = False
     failed: bool = False
     unreadable: bool = False
+    unreachable: bool = False
     clean_up: int = 0
     late: bool = False
 
@@ -73,6 +74,7 @@ action_results = st.builds(
     abnormal=st.booleans(),
     failed=st.sampled_from([False, False, True]),
     unreadable=st.booleans(),
+    unreachable=st.booleans(),
     clean_up=st.integers(0, 2),
     late=st.booleans(),
 )

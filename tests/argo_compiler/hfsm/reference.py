@@ -36,7 +36,10 @@ ENDS = (ActionSucceeded, ActionFailed, ActionStopped)
 
 
 class Reading:
-    """Result of the last measurement at a checkpoint: "value", "unreadable" or "failed" (C3)."""
+    """Result of the last measurement at a checkpoint (C3).
+
+    It is "value", "unreadable", "unreachable" or "failed".
+    """
 
     def __init__(self, kind, value=None, abnormal=False, age=0):
         self.kind = kind
@@ -448,7 +451,9 @@ class Reference:
         if c.type is ConditionType.UNREADABLE:
             return reading.kind == "unreadable"
         if c.type is ConditionType.FAILED:
-            return reading.kind in ("unreadable", "failed")
+            return reading.kind in ("unreadable", "unreachable", "failed")
+        if c.type is ConditionType.UNREACHABLE:
+            return reading.kind == "unreachable"
         if reading.kind != "value":
             return False
         old = c.max_age is not None and reading.age > c.max_age
@@ -518,8 +523,8 @@ class Reference:
         elif failed and run.task == DOCK:
             self.over("failed")
         elif failed:
-            measures = self.tasks[run.task].action is Action.MEASURE
-            self.attempt_failed("unreadable" if event.unreadable and measures else "failed")
+            kind = "unreachable" if event.unreachable else "failed"
+            self.attempt_failed("unreadable" if event.unreadable else kind)
 
     def action_succeeded(self, run, event):
         """C3, I3, T9."""

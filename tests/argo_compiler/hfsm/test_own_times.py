@@ -286,13 +286,19 @@ class TestReadings:
         [
             (ActionFailed("A", "dark", unreadable=True), "unreadable", {"UNREADABLE", "FAILED"}),
             (ActionSucceeded("A"), "unreadable", {"UNREADABLE", "FAILED"}),
+            (
+                ActionFailed("A", "no path", unreachable=True),
+                "unreachable",
+                {"UNREACHABLE", "FAILED"},
+            ),
             (ActionFailed("A", "stuck"), "failed", {"FAILED"}),
             (ActionSucceeded("A", 1.0), "value", set()),
             (ActionSucceeded("A", 1.0, abnormal=True), "value", {"ABNORMAL"}),
         ],
     )
     def test_what_came_of_a_measurement(self, event, kind, held):
-        for type in (ConditionType.UNREADABLE, ConditionType.FAILED, ConditionType.ABNORMAL):
+        for name in ("UNREADABLE", "UNREACHABLE", "FAILED", "ABNORMAL"):
+            type = ConditionType[name]
             ways = (when("B", Condition(type=type, object_id="A")), "C")
             play = Play(plan(task("A", *ways), task("B"), task("C")))
             play.at(1, event)

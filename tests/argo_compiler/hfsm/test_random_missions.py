@@ -20,6 +20,7 @@ HAPPENS = {
     "TIME_UP": 10,
     "late success": 10,
     "unreadable": 10,
+    "unreachable": 10,
     "completed with failures": 5,
     "begins paused": 5,
 }

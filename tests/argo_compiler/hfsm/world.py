@@ -127,7 +127,9 @@ def in_reference_terms(command, now):
 def make_end_event(command, result):
     name = command.task.name
     if result.failed:
-        return ActionFailed(name, "failed", result.unreadable, id=command.id)
+        return ActionFailed(
+            name, "failed", result.unreadable, command.id, unreachable=result.unreachable
+        )
     if command.task.action is not Action.MEASURE:
         return ActionSucceeded(name, id=command.id)
     return ActionSucceeded(name, result.value, result.abnormal, id=command.id)

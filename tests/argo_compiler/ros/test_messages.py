@@ -36,18 +36,18 @@ from tests.missions_all import FLOATS, carried_missions
 VERSIONS = pytest.mark.parametrize("types", [ros1_types(), ros2_types()], ids=["ros1", "ros2"])
 
 MD5 = {
-    "MissionCondition": "37bb38f28a9ee4916e2aa13f33536b1a",
-    "MissionGroup": "fa096b920fc904334a3cb2c3e623c801",
+    "MissionCondition": "373e61619283d54dd5196f7cbe897507",
+    "MissionGroup": "56250824f44c2909419a503db4001238",
     "MissionPrecedence": "c0d0db6e21f3fc1eb068f9cc22ba8beb",
-    "MissionReaction": "1d48c369d94cc44ecfcee1207b2a655b",
-    "MissionSpecification": "bb95a2b8147b5ddef1aead69bccb6e92",
-    "MissionTask": "ba474aa67ef363b700dc70312a631fdc",
-    "MissionTransition": "b65ba9fbcf3464c147446c00ea22c9c8",
-    "MissionWait": "512b5531cbafc73bf63f3925a8b25653",
+    "MissionReaction": "4924cc5577bff671afa31b4020d70e93",
+    "MissionSpecification": "fe70f5f052581089a14b84965eb77b8b",
+    "MissionTask": "1f5669cd5ca848bb62e8cabdebf98b59",
+    "MissionTransition": "d905e07bc7439437900346fa76a3221e",
+    "MissionWait": "e75f1aab910f777c0dd31d7cb9aa7589",
     "MissionWindow": "f61671b5696223a94cb58f0e3cf0ab2f",
 }
 """MD5 sums that rosbags computes from the same files."""
-TYPE_HASH = "RIHS01_93351fa09eb7333bfae6019df14af63b2af606db84ec9c584121c2b5024952a6"
+TYPE_HASH = "RIHS01_769cda0ff62008ab21fc86e7bd5cf6d6dd9381b8dfb90d930271a6955ace9ef0"
 
 
 @VERSIONS

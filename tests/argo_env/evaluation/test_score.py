@@ -32,6 +32,8 @@ def test_a_run_without_faults_or_failures_has_all_points():
         ({"detections": (FaultDetection(fault="brick", began=1.0, delay=None),)}, 82),
         ({"detections": (FaultDetection(fault="brick", began=1.0, delay=4.0),)}, 100),
         ({"done": 2}, 100),  # a successful mission with branches does not do all tasks
+        ({"outcome": RunOutcome.FAILURE, "charge": 0.0}, 0),  # stands with an empty battery
+        ({"charge": 0.01}, 100),
         ({"outcome": RunOutcome.ERROR}, 0),
         ({"outcome": RunOutcome.DIED}, 0),
     ],

@@ -8,11 +8,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise, product
 
-from argo_compiler.script.syntax.building.part import Make, RulePart, Signed, duration
+from argo_compiler.script.syntax.building.part import Make, RulePart, Signed, amount, duration
 from argo_compiler.script.syntax.tree.conditions import (
     Amount,
     Asked,
-    BatteryDrops,
+    BatteryLevel,
     Between,
     Compared,
     InState,
@@ -118,9 +118,11 @@ def _test(part: RulePart) -> Test:
     )
 
 
-def _battery(part: RulePart) -> BatteryDrops:
+def _battery(part: RulePart) -> BatteryLevel:
+    if part.has("QUANTITY"):  # `the battery is at 60 %`
+        return BatteryLevel(span=part.span, relation=Relation.AT_LEAST, level=amount(part))
     compared = part.the(Compared)
-    return BatteryDrops(span=part.span, relation=compared.relation, level=compared.bound)
+    return BatteryLevel(span=part.span, relation=compared.relation, level=compared.bound)
 
 
 def _condition(part: RulePart) -> SaidCondition:

@@ -11,6 +11,7 @@ from argo_compiler.script.syntax.building.part import (
     Make,
     RulePart,
     Signed,
+    amount,
     duration,
     seconds,
     speed,
@@ -167,5 +168,7 @@ RULES: dict[str, Make] = {
     "joints": _joints,
     "values": lambda part: tuple(signed.value for signed in part.every(Signed)),
     "reading": lambda part: Manner(reading_limit=duration(part)),
+    "charge": lambda part: Manner(charge=amount(part)),
+    "charge_time": lambda part: Manner(charge_time=duration(part)),
     "on_limit": lambda part: Manner(on_limit=_ON_LIMIT[part.the_word(*_ON_LIMIT).type]),
 }

@@ -189,7 +189,8 @@ def _signed(part: RulePart) -> Signed:
     return Signed(sign * word.value.value, word.value.listed)
 
 
-def _amount(part: RulePart) -> Amount:
+def amount(part: RulePart) -> Amount:
+    """The one amount in a rule, with its unit if it has one."""
     sign = -1 if part.has("MINUS") else 1
     if word := part.word("QUANTITY"):
         figure, unit = word.value
@@ -198,4 +199,4 @@ def _amount(part: RulePart) -> Amount:
     return Amount(span=part.span, value=sign * decimal(part, word.value))
 
 
-RULES: dict[str, Make] = {"signed": _signed, "amount": _amount}
+RULES: dict[str, Make] = {"signed": _signed, "amount": amount}

@@ -22,6 +22,7 @@ class TaskState(StrEnum):
     NORMAL = "normal"
     ABNORMAL = "abnormal"
     UNREADABLE = "unreadable"
+    UNREACHABLE = "unreachable"
     FAILED = "failed"
     STALE = "stale"
 
@@ -62,7 +63,7 @@ class InState(Node):
     @property
     def is_failure(self) -> bool:
         """Whether it says that a task has failed, which is known as soon as it has ended."""
-        return self.state in (TaskState.FAILED, TaskState.UNREADABLE)
+        return self.state in (TaskState.FAILED, TaskState.UNREADABLE, TaskState.UNREACHABLE)
 
 
 Predicate = Compared | Between | InState
@@ -91,8 +92,8 @@ class Occurs(Node):
 
 
 @node
-class BatteryDrops(Node):
-    """`the battery drops below 30 %`."""
+class BatteryLevel(Node):
+    """`the battery drops below 30 %`, `the battery is above 60 %`."""
 
     relation: Relation
     level: Amount
@@ -103,7 +104,7 @@ class TooLate(Node):
     """`it is too late`: the window of the task before is over."""
 
 
-Asked = Test | Occurs | BatteryDrops | TooLate
+Asked = Test | Occurs | BatteryLevel | TooLate
 
 
 @node

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from argo_compiler.il import Afterwards, Order
-from argo_compiler.script.syntax.tree.conditions import SaidCondition
+from argo_compiler.script.syntax.tree.conditions import Amount, SaidCondition
 from argo_compiler.script.syntax.tree.places import Coordinates, FloorName
 
 
@@ -79,3 +79,7 @@ class Manner:
     """`for the operator`"""
     on_limit: Afterwards | None = None
     """of a reaction's hold"""
+    charge: Amount | None = None
+    """charge of the battery: `to 80 %`"""
+    charge_time: float | None = None
+    """s for which the battery is charged at least"""

@@ -87,6 +87,8 @@ class WaitOrder(ScriptOrder):
     """None: where it is"""
     stays: bool = False
     """`stay there`: in its dock it waits for nothing"""
+    recharges: bool = False
+    """`recharge`: it waits for the battery"""
 
 
 class PlainWord(StrEnum):

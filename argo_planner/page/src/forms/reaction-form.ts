@@ -8,6 +8,7 @@ import { extensionsOf, mayPlan } from "../state/session";
 import { world } from "../state/world";
 import { t } from "../texts";
 import { html, nothing } from "../ui/element";
+import { chargeFields, NO_CHARGE, percent, share } from "./charging";
 import { countField, numberField, optionsOf, poseFields, selectField, timeField } from "./parts";
 
 export function reactionForm(reaction: Reaction) {
@@ -47,7 +48,7 @@ export function reactionForm(reaction: Reaction) {
       ? numberField(
           texts.batteryBelow,
           percent(reaction.battery_below),
-          (share) => save({ battery_below: share === null ? null : share / 100 }),
+          (battery_below) => save({ battery_below: share(battery_below) }),
           { note: "%" },
         )
       : nothing}
@@ -73,8 +74,9 @@ export function reactionForm(reaction: Reaction) {
             texts.waitUntil,
             reaction.until ?? "",
             [{ value: "", label: texts.noEvent }, ...optionsOf(t().words.event)],
-            (until) => save({ until: until === "" ? null : (until as EventKind) }),
+            (until) => save({ until: until === "" ? null : (until as EventKind), ...NO_CHARGE }),
           )}
+          ${reaction.until === "battery_charged" ? chargeFields(reaction, save) : nothing}
           ${timeField(texts.holdLimit, reaction.hold_limit, (hold_limit) => save({ hold_limit }))}
           ${reaction.hold_limit
             ? selectField(texts.onLimit, reaction.on_limit, optionsOf(t().words.afterwards), (value) =>
@@ -108,6 +110,8 @@ function responding(reaction: Reaction, response: Reaction["response"]): Partial
     pose: response === "safe_area" ? (reaction.pose ?? place) : null,
     area: null,
     until: holds ? (reaction.until ?? null) : null,
+    charge_to: holds ? (reaction.charge_to ?? null) : null,
+    charge_for: holds ? (reaction.charge_for ?? null) : null,
     hold_limit: holds ? (reaction.hold_limit ?? null) : null,
     on_limit: holds && reaction.hold_limit ? reaction.on_limit : "wait",
     afterwards: response === "return" || response === "safe_area" ? reaction.afterwards : "end",
@@ -117,8 +121,4 @@ function responding(reaction: Reaction, response: Reaction["response"]): Partial
 function areaOf(pose: Reaction["pose"]): number | null {
   const found = world.value?.docks.find((dock) => dock.pose.x === pose?.x && dock.pose.y === pose.y);
   return found?.area ?? null;
-}
-
-function percent(share: number | null | undefined): number | null {
-  return share === null || share === undefined ? null : Math.round(1000 * share) / 10;
 }

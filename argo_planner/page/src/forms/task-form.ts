@@ -11,6 +11,7 @@ import { t } from "../texts";
 import { html, nothing } from "../ui/element";
 import { bound, unitText } from "../ui/figures";
 import { icon } from "../ui/icons";
+import { chargeFields, NO_CHARGE } from "./charging";
 import { aboveNormalCondition, conditionList } from "./conditions";
 import {
   checkField,
@@ -143,8 +144,9 @@ function waiting(wait: WaitRule | null, set: Save) {
             texts.event,
             wait.event ?? "",
             [{ value: "", label: texts.noEvent }, ...optionsOf(t().words.event)],
-            (value) => save(() => ({ event: value === "" ? null : (value as WaitRule["event"]) })),
+            (value) => save(() => ({ event: value === "" ? null : (value as WaitRule["event"]), ...NO_CHARGE })),
           )}
+          ${wait.event === "battery_charged" ? chargeFields(wait, (change) => save(() => change)) : nothing}
           ${conditionList(wait.conditions, (change) => save((was) => ({ conditions: change(was.conditions) })), texts.orCondition)}
           ${timeField(texts.waitLimit, wait.limit, (limit) => save(() => ({ limit })))}`}`;
 }

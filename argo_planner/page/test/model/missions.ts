@@ -34,7 +34,7 @@ export function group(name: string, start: string, end: string): Group {
 /** Create a mission with tasks of these names, and groups. */
 export function mission(names: string, ...groups: Group[]): Mission {
   return {
-    version: 3,
+    version: 4,
     designation: "",
     site: "umad",
     mode: "autonomous",

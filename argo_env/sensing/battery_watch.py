@@ -1,0 +1,98 @@
+"""Watch for the charge of the battery, estimated from voltage and current."""
+
+from collections.abc import Sequence
+
+from argo_compiler.hfsm import AwaitedCharge
+from argo_compiler.il import EventKind
+from argo_env.drives.battery import ESTIMATE_ERROR, Battery, estimated_charge
+from argo_env.robot.pose import BodyPose
+from argo_env.sensing.watch import Detection, ReportedDetection
+
+LOW, FULL = 0.2, 0.99
+"""charge, 0 to 1, below which the battery is low, and from which on it is charged"""
+MARGIN = 2 * ESTIMATE_ERROR
+"""charge above the alarm level from which on the next alarm is at that level again, and charge
+below the end of an earlier charging at which the next alarm is"""
+
+
+class BatteryWatch:
+    """Watch for the charge of the battery, estimated from voltage and current.
+
+    It reports a low battery once, below its level. The next report is possible when the charge has
+    been above that level by MARGIN. If charging ended before that, the next report is at MARGIN
+    below the charge then. So the robot never uses the energy of a short charging without a report.
+
+    It reports a charged battery when the mission waits for it and its charge is reached, and else
+    once after a low battery, at FULL.
+    """
+
+    name = "battery"
+    period = 1.0
+
+    def __init__(self, battery: Battery, low: float = LOW) -> None:
+        """`low`: the charge, 0 to 1, below which the battery is low."""
+        self.awaited: tuple[AwaitedCharge, ...] = ()
+        """charges for which the mission waits now; the run sets them"""
+        self._battery = battery
+        self._level = low
+        self._alarm = low  # charge below which a low battery is reported next; 0: not yet
+        self._low = False  # whether the last report was a low battery
+
+    @property
+    def alarm_level(self) -> float | None:
+        """Charge, 0 to 1, below which a low battery is reported next, if not at its own level."""
+        return None if self._alarm == self._level else self._alarm
+
+    @alarm_level.setter
+    def alarm_level(self, charge: float | None) -> None:
+        self._alarm = self._level if charge is None else charge
+
+    @property
+    def has_awaited_charge(self) -> bool:
+        """True if the battery has the charge for which the mission waits, so that its wait ends."""
+        return bool(self.awaited) and self._estimate() >= max(map(_least_charge, self.awaited))
+
+    def restore(self, reported: Sequence[ReportedDetection], now: float) -> None:  # noqa: ARG002
+        """Set the state after the reports; a low battery is reported again MARGIN below now."""
+        self._low = bool(reported) and reported[-1].kind is EventKind.LOW_BATTERY
+        if self._low:
+            self._alarm = min(self._level, max(0.0, self._estimate() - MARGIN))
+
+    def can_skip_updates(self, lowest_charge: float, highest_charge: float) -> bool:
+        """Return True if no estimate of the charge can reach the level of the next detection."""
+        if self._alarm != self._level or lowest_charge - ESTIMATE_ERROR <= self._level:
+            return False
+        if self.awaited:
+            return highest_charge + ESTIMATE_ERROR < max(map(_least_charge, self.awaited))
+        return not self._low or highest_charge + ESTIMATE_ERROR < FULL
+
+    def update(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
+        charge = self._estimate()
+        if charge >= self._level + MARGIN:
+            self._alarm = self._level
+        elif self._battery.current < 0.0:
+            self._alarm = max(self._alarm, charge - MARGIN)
+        if charge < self._alarm:
+            self._alarm, self._low = 0.0, True
+            return (self._detection(EventKind.LOW_BATTERY, charge),)
+        if self._is_charged(charge, now):
+            self._low = False
+            return (self._detection(EventKind.BATTERY_CHARGED, charge),)
+        return ()
+
+    def _is_charged(self, charge: float, now: float) -> bool:
+        if not self.awaited:
+            return self._low and charge >= FULL
+        has_passed = now >= max(awaited.not_before for awaited in self.awaited) - 1e-6
+        return has_passed and charge >= max(map(_least_charge, self.awaited))
+
+    def _estimate(self) -> float:
+        return estimated_charge(self._battery.voltage, self._battery.current)
+
+    def _detection(self, kind: EventKind, charge: float) -> Detection:
+        return Detection(kind, f"{self._battery.voltage:.1f} V, {charge:.0%} charged")
+
+
+def _least_charge(awaited: AwaitedCharge) -> float:
+    """Return the estimated charge from which on the battery is charged as the mission waits for."""
+    return FULL if awaited.level is None else min(awaited.level, FULL)

@@ -1,0 +1,81 @@
+"""What the analysis says of the charging of a low battery."""
+
+import pytest
+
+from argo_compiler.analysis import analyse
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.model import Pose
+from argo_compiler.il import Afterwards, EventKind, Reaction, Response
+from tests.argo_compiler.analysis.building import ConstantTravel, mission
+
+CATALOG = Catalog(site="s", checkpoints=(), floors=(), areas=())
+CHARGED = EventKind.BATTERY_CHARGED
+RESUME = Afterwards.RESUME
+
+
+class ChargingTravel(ConstantTravel):
+    """Travel of a robot whose battery of 100 Wh is charged by 1 % in 36 s."""
+
+    charging_power = 100.0
+
+
+def findings(limit=None, travel=None, **fields):
+    reaction = Reaction(
+        **{
+            "event": EventKind.LOW_BATTERY,
+            "response": Response.RETURN,
+            "until": CHARGED,
+            "afterwards": RESUME,
+            **fields,
+        }
+    )
+    plan = mission("A", reactions=(reaction,), dock=Pose(x=0, y=0, z=0), max_duration=limit)
+    found = analyse(plan, CATALOG, travel or ChargingTravel())
+    return [d for d in found.diagnostics if d.code.startswith("analysis.charg")]
+
+
+@pytest.mark.parametrize(
+    ("fields", "limit", "exceeds"),
+    [
+        ({}, 2807, True),  # 78 % of the battery: an estimate is wrong by 1 % at most
+        ({}, 2809, False),
+        ({"charge_to": 0.6}, 1403, True),
+        ({"charge_to": 0.6}, 1405, False),
+        ({"battery_below": 0.5}, 1727, True),
+        ({"battery_below": 0.5}, 1729, False),
+        ({"charge_for": 600}, 599, True),
+        ({"charge_for": 600}, 601, False),
+        ({"charge_to": 0.3, "charge_for": 600}, 599, True),
+        ({"until": EventKind.ALL_CLEAR}, 60, False),
+        ({"response": Response.PAUSE}, 60, False),
+        ({}, None, False),
+    ],
+)
+def test_charging_that_takes_longer_than_the_mission_may(fields, limit, exceeds):
+    found = findings(limit, **fields)
+    assert [d.code for d in found] == ["analysis.charging-too-long"] * exceeds
+
+
+@pytest.mark.parametrize(
+    ("fields", "cut_short"),
+    [
+        ({"hold_limit": 2807, "on_limit": RESUME}, True),
+        ({"hold_limit": 2809, "on_limit": RESUME}, False),
+        ({"hold_limit": 60, "on_limit": RESUME, "charge_to": 0.6}, True),
+        ({"hold_limit": 60, "on_limit": Afterwards.WAIT}, False),
+        ({"hold_limit": 60, "on_limit": Afterwards.END}, False),
+    ],
+)
+def test_charging_that_a_limit_cuts_short(fields, cut_short):
+    found = findings(**fields)
+    assert [d.code for d in found] == ["analysis.charge-cut-short"] * cut_short
+
+
+def test_the_charge_after_a_charging_that_is_cut_short_is_an_upper_bound():
+    (finding,) = findings(hold_limit=65, on_limit=RESUME)
+    assert "a charge of at most 22%, not 99%" in finding.message
+    assert "at least 46 min 48 s to charge from 20%" in finding.message
+
+
+def test_nothing_is_said_of_a_robot_whose_charging_is_unknown():
+    assert findings(60, ConstantTravel()) == []

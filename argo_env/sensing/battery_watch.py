@@ -19,8 +19,9 @@ class BatteryWatch:
     """Watch for the charge of the battery, estimated from voltage and current.
 
     It reports a low battery once, below its level. The next report is possible when the charge has
-    been above that level by MARGIN. If charging ended before that, the next report is at MARGIN
-    below the charge then. So the robot never uses the energy of a short charging without a report.
+    been above that level by MARGIN. If charging, or the mission's wait for it, ended before that,
+    the next report is at MARGIN below the charge then. So the robot never uses up the energy of a
+    short charging without a report.
 
     It reports a charged battery when the mission waits for it and its charge is reached, and else
     once after a low battery, at FULL.
@@ -31,12 +32,22 @@ class BatteryWatch:
 
     def __init__(self, battery: Battery, low: float = LOW) -> None:
         """`low`: the charge, 0 to 1, below which the battery is low."""
-        self.awaited: tuple[AwaitedCharge, ...] = ()
-        """charges for which the mission waits now; the run sets them"""
+        self._awaited: tuple[AwaitedCharge, ...] = ()
+        self._was_awaited = False  # since the last update, however shortly
         self._battery = battery
         self._level = low
         self._alarm = low  # charge below which a low battery is reported next; 0: not yet
         self._low = False  # whether the last report was a low battery
+
+    @property
+    def awaited(self) -> tuple[AwaitedCharge, ...]:
+        """Charges for which the mission waits now; the run sets them."""
+        return self._awaited
+
+    @awaited.setter
+    def awaited(self, charges: tuple[AwaitedCharge, ...]) -> None:
+        self._awaited = charges
+        self._was_awaited |= bool(charges)
 
     @property
     def alarm_level(self) -> float | None:
@@ -70,8 +81,9 @@ class BatteryWatch:
         charge = self._estimate()
         if charge >= self._level + MARGIN:
             self._alarm = self._level
-        elif self._battery.current < 0.0:
+        elif self._was_awaited or self._battery.current < 0.0:
             self._alarm = max(self._alarm, charge - MARGIN)
+        self._was_awaited = bool(self._awaited)
         if charge < self._alarm:
             self._alarm, self._low = 0.0, True
             return (self._detection(EventKind.LOW_BATTERY, charge),)

@@ -92,6 +92,16 @@ def test_the_energy_of_a_charging_that_was_cut_short_is_not_used_up_without_a_re
     assert charged - 2 * MARGIN <= at < charged
 
 
+@pytest.mark.rule("R11")
+def test_a_wait_that_a_person_ends_at_once_counts_as_charging_too(yard):
+    watch = BatteryWatch(Battery(yard.robot), 0.3)
+    assert reports(yard, (0.35, 0.25), watch=watch) == [(0.25, LOW)]
+    watch.awaited = (AwaitedCharge(None, 0.0),)
+    watch.awaited = ()
+    assert reports(yard, (0.25, 0.245), watch=watch) == []
+    assert reports(yard, (0.239, 0.22), watch=watch) == [(0.239, LOW)]
+
+
 @pytest.mark.rule("R12")
 @pytest.mark.parametrize(
     ("awaited", "now", "charge", "charged"),

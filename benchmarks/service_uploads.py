@@ -1,4 +1,4 @@
-"""How long edits take while others upload files that are made to take long.
+"""Speed of edits while others upload files that are made to take long.
 
     python -m benchmarks.service_uploads                   # six uploads at once, for a minute
     python -m benchmarks.service_uploads --seconds 5 --uploads 2

@@ -38,7 +38,7 @@ def upload(service: Served, name: str, content: bytes) -> dict:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux limits the memory")
 def test_an_upload_that_takes_too_much_memory_is_refused(service: Served, monkeypatch) -> None:
-    monkeypatch.setattr(imports, "limits_for_size", lambda _: CallLimits(60.0, 20_000_000))
+    monkeypatch.setattr(imports, "limits_for_size", lambda _: CallLimits(9.0, 20_000_000))
     refused = upload(service, "large.json", LARGE)
     assert refused["detail"] == (
         "large.json takes more than 20 MB of memory to read: is it the right file? A mission takes "

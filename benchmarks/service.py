@@ -72,7 +72,7 @@ def make_mission(size: int) -> dict[str, object]:
         {"name": f"g{k}", "start": f"t{k}", "end": f"t{k + 9}", "max_repeat_count": 2}
         for k in range(0, size - 10, 20)
     ]
-    return {"version": 3, "tasks": tasks, "groups": groups}
+    return {"version": 4, "tasks": tasks, "groups": groups}
 
 
 def receive_revisions(

@@ -135,7 +135,7 @@ HUGE = "1" + "0" * 400
 )
 def test_numbers_beyond_reason_are_refused(tmp_path: Path, field: str, said: str) -> None:
     task = '{"name": "A", "action": "WAYPOINT", "pose": {"x": 0, "y": 0, "z": 0}}'
-    content = f'{{"version": 3, "tasks": [{task}], {field}}}'
+    content = f'{{"version": 4, "tasks": [{task}], {field}}}'
     given = answer(tmp_path / "mission.json", content)
     assert given.startswith("refused")
     assert said in given

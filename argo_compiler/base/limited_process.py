@@ -16,7 +16,7 @@ from contextlib import contextmanager, suppress
 from importlib import import_module
 from typing import IO, Any, NamedTuple, ParamSpec, TypeVar
 
-from argo_compiler.base.errors import ArgoError, Invalid
+from argo_compiler.base.errors import ArgoError, Invalid, Unavailable
 from argo_compiler.base.operating_system import limit_processor_time_and_memory, sigint_blocked
 
 P = ParamSpec("P")
@@ -88,6 +88,7 @@ def call_limited(
 
     Raises:
         LimitExceeded: The function takes longer, takes more memory, or crashes its process.
+        Unavailable: The process can't start.
         Exception: The function has raised it.
     """
     if _inside:
@@ -155,7 +156,11 @@ class _Process:
         """Send a request, and return the result; the errors are those of `call_limited`."""
         process = self._process
         if process is None or self._owner != os.getpid() or process.poll() is not None:
-            self._process, self._owner = process, _ = _start(), os.getpid()
+            try:
+                self._process, self._owner = process, _ = _start(), os.getpid()
+            except OSError as error:
+                message = f"the process that reads the file can't start: {error.strerror}"
+                raise Unavailable(f"{message}; try again") from None
         timed_out = threading.Event()
 
         def stop() -> None:

@@ -108,25 +108,25 @@ def limit_processor_time_and_memory(seconds: float, memory: int) -> Iterator[Non
     """
     if sys.platform == "win32":
         yield
-        return
-    used = resource.getrusage(resource.RUSAGE_SELF)
-    limits = {
-        resource.RLIMIT_CPU: math.ceil(used.ru_utime + used.ru_stime + seconds),
-        resource.RLIMIT_CORE: 0,  # a file as large as the memory, for each process that is killed
-    }
-    if sys.platform == "linux":
-        pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
-        limits[resource.RLIMIT_AS] = pages * resource.getpagesize() + memory
-    before = {kind: resource.getrlimit(kind) for kind in limits}
-    for kind, limit in limits.items():
-        soft, hard = before[kind]
-        if soft == resource.RLIM_INFINITY or limit < soft:
-            resource.setrlimit(kind, (limit, hard))
-    try:
-        yield
-    finally:
-        for kind, previous in before.items():
-            resource.setrlimit(kind, previous)
+    else:
+        used = resource.getrusage(resource.RUSAGE_SELF)
+        limits = {
+            resource.RLIMIT_CPU: math.ceil(used.ru_utime + used.ru_stime + seconds),
+            resource.RLIMIT_CORE: 0,  # a file as large as the memory, for each killed process
+        }
+        if sys.platform == "linux":
+            pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
+            limits[resource.RLIMIT_AS] = pages * resource.getpagesize() + memory
+        before = {kind: resource.getrlimit(kind) for kind in limits}
+        for kind, limit in limits.items():
+            soft, hard = before[kind]
+            if soft == resource.RLIM_INFINITY or limit < soft:
+                resource.setrlimit(kind, (limit, hard))
+        try:
+            yield
+        finally:
+            for kind, previous in before.items():
+                resource.setrlimit(kind, previous)
 
 
 def niceness() -> int:

@@ -1,6 +1,7 @@
 """Loading of files: each file that can't be read raises an error with a message and a hint."""
 
 import os
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from enum import StrEnum
@@ -120,6 +121,14 @@ def read_text(path: Path, kind: str, max_bytes: int) -> str:
     can't be read, is too large, or is not text.
     """
     return decode_text(read_bytes(path, kind, max_bytes), path, kind)
+
+
+def is_pipe(path: Path) -> bool:
+    """Return True if the path is a pipe, which can be read only once; False if that is unknown."""
+    try:
+        return stat.S_ISFIFO(os.stat(path).st_mode)
+    except (OSError, ValueError):
+        return False
 
 
 def size_on_disk(path: Path) -> int:

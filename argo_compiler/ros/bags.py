@@ -14,7 +14,7 @@ from typing import Any
 from argo_compiler.base.errors import Invalid
 from argo_compiler.base.limited_process import LimitExceeded, call_limited, limits_for_size
 from argo_compiler.diagnostics import DiagnosticError
-from argo_compiler.files.loading import FileError, size_on_disk
+from argo_compiler.files.loading import FileError, is_pipe, size_on_disk
 from argo_compiler.files.mission_file import MAX_BYTES
 from argo_compiler.il import Mission
 from argo_compiler.ros.compression import (
@@ -135,6 +135,8 @@ def read_bag(path: Path, source_name: str | None = None) -> Received:
         ArgoError: `rosbags` is not installed.
     """
     name = str(path) if source_name is None else source_name
+    if not is_pipe(path):
+        _first_bytes(path, name)  # what is no bag needs no process
     limits = limits_for_size(size_on_disk(path))
     try:
         return call_limited(limits, _MODULES, read_bag_here, path, name)
@@ -149,18 +151,7 @@ def read_bag(path: Path, source_name: str | None = None) -> Received:
 
 def read_bag_here(path: Path, name: str) -> Received:
     """Return the mission of a bag, as `read_bag`, but in this process and without its limits."""
-    is_folder = os.path.isdir(path)
-    if is_folder and not os.path.isfile(path / "metadata.yaml"):
-        hint = "choose the script, mission or bag in it; a rosbag2 folder has a metadata.yaml"
-        raise_error(name, "file.directory", "the path is a directory", hint)
-    try:
-        first = b"" if is_folder else read_first_bytes(path)
-    except FileError as error:
-        raise_error(name, f"file.{error.problem}", f"the file {error.message}", error.hint)
-    if not is_folder and not first.startswith(MAGIC):
-        raise_error(
-            name, "ros.not-a-bag", "the file is not a bag", "choose a ROS 1 bag or a rosbag2 folder"
-        )
+    first = _first_bytes(path, name)
     types = ros1_types() if first.startswith(ROS1) else ros2_types()
     # For broken bytes, rosbags raises errors of many types: its own, those of SQLite, struct, YAML
     # and the decompressors, KeyError, AssertionError.
@@ -181,6 +172,26 @@ def read_bag_here(path: Path, name: str) -> Received:
             "record or copy it again",
         )
     return from_message(message, types, name)
+
+
+def _first_bytes(path: Path, name: str) -> bytes:
+    """Return the first bytes of a bag's file; none of a rosbag2 folder.
+
+    Raises DiagnosticError, which calls the file `name`, for what can't be read or is no bag.
+    """
+    is_folder = os.path.isdir(path)
+    if is_folder and not os.path.isfile(path / "metadata.yaml"):
+        hint = "choose the script, mission or bag in it; a rosbag2 folder has a metadata.yaml"
+        raise_error(name, "file.directory", "the path is a directory", hint)
+    try:
+        first = b"" if is_folder else read_first_bytes(path)
+    except FileError as error:
+        raise_error(name, f"file.{error.problem}", f"the file {error.message}", error.hint)
+    if not is_folder and not first.startswith(MAGIC):
+        raise_error(
+            name, "ros.not-a-bag", "the file is not a bag", "choose a ROS 1 bag or a rosbag2 folder"
+        )
+    return first
 
 
 def decode_bag(content: bytes | Mapping[str, bytes], source_name: str) -> Received:

@@ -8,6 +8,7 @@ import struct
 import zlib
 from collections import Counter
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -18,7 +19,14 @@ from pydantic import ValidationError
 from argo_compiler.base.errors import Invalid, NotFound, Remedy
 from argo_compiler.base.limited_process import LimitExceeded, call_limited, limits_for_size
 from argo_compiler.files.json_places import format_path
-from argo_compiler.files.loading import FileError, FileProblem, read_bytes, size_on_disk
+from argo_compiler.files.loading import (
+    FileError,
+    FileProblem,
+    is_pipe,
+    open_file,
+    read_bytes,
+    size_on_disk,
+)
 from argo_env.files.yaml_messages import error_message
 from argo_env.recording.files import require_libraries
 from argo_env.recording.output import MAGIC, VERSION
@@ -196,6 +204,9 @@ def read_recording(path: Path) -> Recording:
     time and memory. Raises ArgoError if it can't be read, is damaged before its end, is not an
     .mcap file of Argo, or exceeds the limits.
     """
+    if not is_pipe(path):
+        with _naming_file_problems(path), open_file(path, "recording"):
+            pass  # what can't be opened needs no process
     size = size_on_disk(path)
     try:
         limits = limits_for_size(size, held=size)
@@ -302,8 +313,15 @@ def _read_parts(name: str, content: bytes, parts: _Parts) -> str | None:
 
 
 def _load(path: Path) -> bytes:
-    try:
+    with _naming_file_problems(path):
         return read_bytes(path, "recording", MAX_BYTES, MAGIC)
+
+
+@contextmanager
+def _naming_file_problems(path: Path) -> Iterator[None]:
+    """Say what can be done about a file that can't be read."""
+    try:
+        yield
     except FileError as error:
         match error.problem:
             case FileProblem.MISSING:

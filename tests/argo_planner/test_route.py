@@ -182,7 +182,7 @@ def test_a_refusal_states_the_assumed_duration_of_waits(argo, tmp_path):
     waiting = mission(
         Task(name="W", action=Action.WAIT, wait=rule),
         measure(1, window=TimeWindow(latest=80)),
-        waypoint("DOCK", 1.05, 1.05), dock=DOCK, version=3,
+        waypoint("DOCK", 1.05, 1.05), dock=DOCK, version=4,
     )  # fmt: skip
     write_mission(waiting, tmp_path / "waiting.json")
     said = argo("route", tmp_path / "waiting.json", "--verify", status=2)

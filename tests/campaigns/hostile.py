@@ -73,7 +73,7 @@ def fill_list(make: Callable[[int], Json], size: int = SIZE) -> Json:
 
 
 def mission(tasks: Json, groups: Json = (), **more: Json) -> Json:
-    return {"version": 3, "tasks": list(tasks), "groups": list(groups)} | more
+    return {"version": 4, "tasks": list(tasks), "groups": list(groups)} | more
 
 
 def nest_groups(depth: int, **rule: Json) -> Json:

@@ -236,7 +236,7 @@ def test_a_replaced_evaluation_keeps_only_rows_that_still_fit(argo, file, out):
     assert len(list((out / "failing").iterdir())) == 5
     assert len(list((out / "parts").glob("*.parquet"))) == 1
     file.write_text(FILE.format(mission=ROOT / MISSION, last=2).replace("none, ", ""))
-    result = argo("evaluate", file, "--out", out, "--force")
+    result = argo("evaluate", file, "--out", out, "--force", "--trust")
     assert "3 of 3 runs" in result.stdout
     after = {row.key: row for row in read_rows(out)}
     assert len(after) == 3
@@ -324,7 +324,7 @@ def test_failing_runs_name_their_plan(argo, file, tmp_path):
 def test_more_seeds_are_added_to_the_stored_rows(argo, file, out):
     before = {row.key for row in read_rows(out)}
     file.write_text(FILE.format(mission=ROOT / MISSION, last=6))
-    assert argo("evaluate", file, "--out", out).returncode == 0
+    assert argo("evaluate", file, "--out", out, "--trust").returncode == 0
     after = {row.key for row in read_rows(out)}
     assert before < after
     assert len(after) == 14
@@ -454,7 +454,7 @@ def test_ctrl_c_keeps_the_rows(argo, long_file, tmp_path):
     _, errors = process.communicate(timeout=60)
     assert process.returncode == 130
     stored = count_rows(out)
-    assert f"argo: interrupted; {stored} runs are stored in {out}" in errors
+    assert f"argo: interrupted; {stored} runs stored in {out}" in errors
     assert stored >= 3
     assert argo("evaluate", long_file, "--out", out, "--no-report").returncode == 0
     assert count_rows(out) == 120

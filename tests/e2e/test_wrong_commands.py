@@ -64,7 +64,7 @@ FILES: dict[str, str | bytes] = {
     "quotes.json": MISSION.replace('"', "'"),
     "comment.json": "// mine\n" + MISSION,
     "number.json": MISSION.replace('"4"', '"99"'),
-    "future.json": MISSION.replace('"version": 2', '"version": 4'),
+    "future.json": MISSION.replace('"version": 2', '"version": 5'),
     "twins.json": MISSION.replace('"name": "B"', '"name": "A"'),
     "minus.json": MISSION.replace('2,\n "tasks"', '2, "max_duration": -5,\n "tasks"'),
     # faults
@@ -219,11 +219,11 @@ IN_ERRORS = {
 
 IN_OUTPUT = {
     # documents, pictures and other people's files as scripts
-    "run mission.docx": "mission.docx is a binary file",
-    "check mission.pdf": "mission.pdf: error: the file is a document (PDF), not plain text",
-    "run photo.png": "photo.png is a binary file",
-    "import photo.jpg -o n.json": "photo.jpg is a binary file",
-    "run notes.rtf": "notes.rtf: error: the file is a document (RTF), not plain text",
+    "run mission.docx": "mission.docx is no mission, but a damaged ZIP archive",
+    "check mission.pdf": "mission.pdf is no mission, but a document (PDF): save it as plain text",
+    "run photo.png": "photo.png is no mission, but a picture (PNG)",
+    "import photo.jpg -o n.json": "photo.jpg is no mission, but a picture (JPEG)",
+    "run notes.rtf": "notes.rtf is no mission, but a document (RTF): save it as plain text",
     "check latin1.txt": "latin1.txt: error: the file is not UTF-8 (byte 3, line 1)",
     "run letter.txt": "letter.txt:2:16: error: `gauge 1` can be read as",
     "run mission.bag": "mission.bag: error: the file is not a bag",
@@ -232,7 +232,7 @@ IN_OUTPUT = {
     # results as scripts
     "run out": "out: error: the path is a directory",
     "run out/report.json": "out/report.json: error: the file is the report of a run, not a mission",
-    "run out/report.html": "out/report.html is no mission, but XML or HTML",
+    "run out/report.html": "out/report.html is no mission, but a web page (HTML)",
     "check taken.yaml": "taken.yaml is no mission, but YAML, in which sites, faults",
     "check out/run.journal": "hint: argo resume out/run.journal",
     "check machine.json": "the file is not a mission: it has 'composites', but no 'tasks'",
@@ -255,7 +255,7 @@ IN_OUTPUT = {
     "run quotes.json": "quotes.json:2:2: error: the file is not JSON",
     "check comment.json": "comment.json:1:1: error: the file is not JSON",
     "run number.json": "names checkpoint '99'",
-    "check future.json": "future.json:2:2: error: the file has version 4",
+    "check future.json": "future.json:2:2: error: the file has version 5",
     "run twins.json": "more than one task is named 'A'",
     "run minus.json": "max_duration: input should be greater than 0",
     # options for commands
@@ -295,13 +295,13 @@ IN_OUTPUT = {
     "route any.txt --before 1,4 --before 4,1": "no order meets all of these",
     # numbers, times and durations
     "route any.txt --budget NaN": "`NaN` is not a duration: write `20 min`",
-    "route any.txt --budget 20:00": "`20:00` is not a duration: write `20 min`",
+    "route any.txt --budget 20:00": "`20:00` can be read as 20 min 0 s or as 20 h 0 min",
     "route any.txt --budget '20 minuts'": "`20 minuts` is not a duration",
     "route any.txt --budget 20 minutes": "unexpected extra argument(s) (minutes)",
     "route any.txt --budget 1s --pictures new": "nothing fits within the budget 1 s",
     "route any.txt --before 4,4": "nothing comes before itself",
     "route any.txt --before '1;4'": 'such as --before "8, 4"',
-    "route any.txt --time-limit 5s": "'--time-limit': it has to be a number",
+    "route any.txt --time-limit soon": "'--time-limit': `soon` is not a duration",
     "route any.txt --robust": "give it a budget",
     "run s.txt --seed -3": "'--seed': it has to be at least 0",
     "run s.txt --seed 1e3": "'--seed': it has to be a whole number",

@@ -1,4 +1,4 @@
-"""What the analysis says of the charging of a low battery."""
+"""Diagnostics of the analysis on the charging of a low battery."""
 
 import pytest
 

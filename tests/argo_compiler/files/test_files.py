@@ -35,7 +35,7 @@ def test_written_and_read_back(tmp_path, mission):
     write_mission(mission, path)
     assert read_mission(path) == mission
     text = path.read_text(encoding="utf-8")
-    assert text.startswith('{\n  "version": 3,\n  "designation": "Öl #1",\n')
+    assert text.startswith('{\n  "version": 4,\n  "designation": "Öl #1",\n')
     assert text.endswith("}\n")
     assert "velocity" not in text
 

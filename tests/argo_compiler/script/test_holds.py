@@ -124,7 +124,7 @@ def test_a_step_that_charges_in_the_dock(catalog, said, charge, time):
         ("recharge to 0 %", "battery"),
         ("recharge to 60 bar", "battery"),
         ("wait until the battery is below 60 %", "battery"),
-        ("wait until the all-clear to 60 %", "reaction"),
+        ("wait until the all-clear to 60 %", "battery"),
         ("recharge to 60 % and recharge to 80 %", "reaction"),
     ],
 )

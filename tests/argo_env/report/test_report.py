@@ -72,7 +72,7 @@ def test_json_reads_back(tmp_path, site, record):
     text = path.with_name("report.json").read_text(encoding="utf-8")
     assert RunRecord.model_validate_json(text) == record
     assert re.match(r'{"checksum":"[0-9a-f]{8}",\n', text)
-    assert text.split("\n", 1)[1].startswith('  "version": 5,\n  "mission": {\n    "version": 3,')
+    assert text.split("\n", 1)[1].startswith('  "version": 5,\n  "mission": {\n    "version": 4,')
     assert len(re.findall(r'^    {"t": .*"pitch"', text, re.MULTILINE)) == len(record.path)
 
 

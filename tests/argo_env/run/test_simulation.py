@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from argo_compiler.base.errors import ArgoError, Conflict, Invalid, NotFound
+from argo_compiler.base.errors import ArgoError, Conflict, Invalid, NotFound, Unavailable
 from argo_compiler.hfsm import (
     ActionSucceeded,
     ByHand,
@@ -518,7 +518,7 @@ class TestSpec:
             read_spec(json.dumps(data), "spec.json")
 
     def test_no_json(self):
-        with pytest.raises(Invalid, match=r"spec\.json: Invalid JSON"):
+        with pytest.raises(Unavailable, match=r"spec\.json is damaged: line 1, column 2"):
             read_spec(b"{", "spec.json")
 
     def test_a_worker_runs_it(self, site, tmp_path):

@@ -27,7 +27,7 @@ def mission(count: int, site: str) -> dict[str, Any]:
     ]
     for task, after in pairwise(tasks):
         task["transitions"] = [{"target": after["name"]}]
-    return {"version": 3, "site": site, "tasks": tasks}
+    return {"version": 4, "site": site, "tasks": tasks}
 
 
 @contextmanager

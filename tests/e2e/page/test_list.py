@@ -288,7 +288,7 @@ def test_two_thousand_tasks_open_and_scroll(browsers, address, service) -> None:
     many = [{"name": f"T{n}", "action": "MEASURE", "object_id": "1"} for n in range(2000)]
     for task, after in pairwise(many):
         task["transitions"] = [{"target": after["name"]}]
-    id = service.create("Long", {"version": 3, "site": "umad", "tasks": many})
+    id = service.create("Long", {"version": 4, "site": "umad", "tasks": many})
     ann = browsers.person(address)
     ann.open(f"/missions/{id}")
     expect(row(ann, "T0")).to_be_visible()

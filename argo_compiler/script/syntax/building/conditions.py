@@ -8,6 +8,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise, product
 
+from argo_compiler.il import EventKind
 from argo_compiler.script.syntax.building.part import Make, RulePart, Signed, amount, duration
 from argo_compiler.script.syntax.tree.conditions import (
     Amount,
@@ -116,6 +117,16 @@ def _test(part: RulePart) -> Test:
         id=str(detail["id"]),
         second_bound=detail["second"],
     )
+
+
+def _occurs(part: RulePart) -> Occurs | BatteryLevel:
+    event = part.the_word("EVENT").value
+    if not part.has("QUANTITY"):
+        return Occurs(span=part.span, event=event)
+    if event is not EventKind.BATTERY_CHARGED:
+        message = "only a battery is charged to a level"
+        part.error("battery", message, "write, for example, `the battery is charged to 80 %`")
+    return BatteryLevel(span=part.span, relation=Relation.AT_LEAST, level=amount(part))
 
 
 def _battery(part: RulePart) -> BatteryLevel:
@@ -267,7 +278,7 @@ RULES: dict[str, Make] = {
     "too_late": lambda part: TooLate(span=part.span),
     "detail": _detail,
     "test": _test,
-    "occurs": lambda part: Occurs(span=part.span, event=part.the_word("EVENT").value),
+    "occurs": _occurs,
     "battery": _battery,
     "condition": _condition,
 }

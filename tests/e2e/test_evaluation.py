@@ -13,6 +13,7 @@ import pytest
 
 from argo_compiler.base.errors import NotFound
 from argo_env.evaluation.store import LOG, RowStore, read_rows
+from argo_env.files.checked_lines import parse_lines
 from tests.conftest import FIRST_SEED, examples
 from tests.e2e.conftest import ROOT, read_run_record, start_argo
 from tests.e2e.test_errors import require_refusal
@@ -426,10 +427,10 @@ def count_rows(out: Path) -> int:
 def count_logged_rows(out: Path) -> int:
     """Return the number of rows on disk during an evaluation, if possible without reading them."""
     try:
-        lines = (out / LOG).read_bytes().count(b"\n")
+        logged = parse_lines((out / LOG).read_bytes()).objects
     except FileNotFoundError:
         return 0
-    return lines or count_rows(out)  # the rows may have been moved from the log
+    return len(logged) or count_rows(out)  # the rows may have been moved from the log
 
 
 def test_no_worker_is_left_behind(long_file, tmp_path):

@@ -190,10 +190,11 @@ class Configuration:
         frame = self.awaited_round
         return math.inf if frame is None else self._round_due(frame)
 
-    def rounds_from(self, depth: int) -> tuple[TracedRound, ...]:
+    def rounds_from(self, depth: int, now: float) -> tuple[TracedRound, ...]:
         """Return the present rounds of the active groups at this depth and deeper, for the trace.
 
-        Without those of the groups inside an awaited round, which have not begun either.
+        Without those of the groups inside an awaited round, which have not begun either. A round
+        of a group whose clock has stopped is due as if the clock went on from `now`.
         """
         awaited = self.awaited_round
         end = None if awaited is None else awaited.group.depth + 1
@@ -204,7 +205,7 @@ class Configuration:
                     (
                         frame.group.name,
                         frame.round,
-                        self._round_due(frame) if frame.group.every else None,
+                        self._expected_due(frame, now) if frame.group.every else None,
                         frame is awaited,
                     ),
                 )
@@ -291,6 +292,10 @@ class Configuration:
     def _round_due(self, frame: Frame) -> float:
         group = frame.group
         return frame.entered + (frame.round - 1) * group.every - self._clock_offset(group)
+
+    def _expected_due(self, frame: Frame, now: float) -> float:
+        """Return the time (s) at which a round is due if its group's clock goes on from `now`."""
+        return self._round_due(frame) + (now - self._clock_time(now, frame.group))
 
     def _update_group_due(self, now: float) -> None:
         self.group_due = math.inf

@@ -157,7 +157,7 @@ class Executor:
             mission.add_entry(
                 Cause.START if self._fresh else Cause.RESTORE,
                 source=None,
-                rounds=mission.configuration.rounds_from(0),
+                rounds=mission.configuration.rounds_from(0, now),
             )
             if control.outcome is None:
                 limit = control.tables.max_duration

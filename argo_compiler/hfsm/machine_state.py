@@ -281,7 +281,7 @@ class MachineState:
         configuration, now = self.configuration, self.now
         transition = configuration.take_first_possible_transition(leaf.transitions, now)
         kept = transition.kept_rounds
-        rounds = configuration.rounds_from(kept) if len(configuration.frames) > kept else ()
+        rounds = configuration.rounds_from(kept, now) if len(configuration.frames) > kept else ()
         self.trace.append((now, leaf, configuration.visit.leaf, transition, detail, rounds))
 
     def record_success_after_leaving(self, leaf: LeafNode) -> None:
@@ -372,7 +372,7 @@ class MachineState:
                 timed_out,
                 None if repeated is None else repeated.name,
                 () if source is None else groups_left(source, transition),
-                configuration.rounds_from(transition.kept_rounds),
+                configuration.rounds_from(transition.kept_rounds, self.now),
                 failure,
                 None,
                 by_hand is not None,
@@ -406,7 +406,7 @@ class MachineState:
         self.add_entry(
             Cause.ROUND,
             detail=f"{frame.round} of '{frame.group.name}'",
-            rounds=configuration.rounds_from(frame.group.depth),
+            rounds=configuration.rounds_from(frame.group.depth, self.now),
         )
 
     def _time_out_group(self) -> None:

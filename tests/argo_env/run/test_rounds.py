@@ -8,6 +8,7 @@ from argo_compiler.base.model import Pose
 from argo_compiler.files.mission_file import read_mission
 from argo_compiler.hfsm import (
     ActionFailed,
+    ActionSucceeded,
     ByHand,
     Cancel,
     Executor,
@@ -16,6 +17,7 @@ from argo_compiler.hfsm import (
     Pause,
     Resume,
     TakeOver,
+    Tick,
     lower,
 )
 from argo_compiler.il import (
@@ -46,7 +48,7 @@ from tests.argo_compiler.hfsm.world import Pair, Ticks, World
 from tests.argo_env.run.rules_of_rounds import RoundsReference, is_junction, recompute
 from tests.conftest import examples
 from tests.mission_parts import assume_sound
-from tests.mission_writing import reaction, wait
+from tests.mission_writing import drive, reaction, wait
 from tests.yard import cut_after, in_order, resumed
 
 DOCK = Pose(x=1.05, y=1.05, z=0.02)
@@ -108,6 +110,24 @@ def test_group_that_is_left_at_its_time_and_entered_again_at_once(site):
         (2.5 * k, 2.5 * k, 2.5 * (k + 1)) for k in range(24)
     ]
     assert [r[0] for r in rounds(record, "g")] == [*range(1, 25)]
+
+
+def test_round_that_begins_during_a_pause_is_due_then():
+    """The robot ends the drive to the group only after it was paused."""
+    plan = plan_of(
+        drive("way", pose=DOCK),
+        wait("a", duration=1),
+        groups=(Group(name="g", start="a", end="a", max_repeat_count=2, every=20),),
+    )
+    executor = Executor(lower(plan))
+    (start,) = executor.start(0)
+    executor.handle(Pause(), 2)
+    executor.handle(ActionSucceeded(start.task.name), 5)
+    executor.handle(Resume(), 9)
+    executor.handle(Tick(), 60)
+    first, second = rounds_from_trace(executor.trace)
+    assert (first.since, first.due, first.began) == (5, 5, 5)
+    assert (second.due, second.began) == (29, 29)
 
 
 class TestAwaited:

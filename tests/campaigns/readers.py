@@ -8,7 +8,6 @@ limits too: then Argo refuses the file.
 """
 
 import argparse
-import json
 import random
 import sys
 import tempfile
@@ -16,8 +15,9 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from io import BytesIO
+from itertools import chain
 from pathlib import Path
 
 from argo_compiler.base.errors import ArgoError
@@ -35,16 +35,32 @@ ROOT = Path(__file__).parents[2]
 MODULES = ("numpy", "rosbags.rosbag1", "rosbags.rosbag2", "mcap.stream_reader", "zstandard")
 
 
+def draw_binary(rng: random.Random, corpus: Sequence[bytes]) -> bytes:
+    return BinaryMutator(corpus, rng).make()
+
+
+def draw_text(rng: random.Random, corpus: Sequence[bytes]) -> bytes:
+    mutator = Mutator(corpus)
+    mutator.rng = rng
+    return mutator.make()
+
+
 @dataclass(frozen=True)
 class Reader:
     """Reader of one kind of file."""
 
     read: Callable[[Path], object]
-    make: Callable[[random.Random], bytes]
-    """function that draws the content of a file"""
     suffix: str
+    samples: Callable[[], Sequence[bytes]]
+    """function that returns contents of files which it reads"""
+    draw: Callable[[random.Random, Sequence[bytes]], bytes] = draw_text
+    """function that draws the content of a file, from the samples"""
     limited: bool = False
     """whether Argo runs it in a process with limits"""
+
+    def make(self, rng: random.Random) -> bytes:
+        """Draw the content of a file."""
+        return self.draw(rng, self.samples())
 
 
 # ---- what is read, in the process with limits
@@ -135,10 +151,21 @@ def mission() -> Mission:
 
 
 @cache
+def scripts() -> tuple[bytes, ...]:
+    """Return shipped scripts, with one starting area where they leave it open."""
+    shipped = texts("scenarios/umad/missions/*.txt")
+    return tuple(script.replace(b"1 or 2", b"1") for script in shipped)
+
+
+@cache
 def bag_folder() -> dict[str, bytes]:
     from argo_compiler.ros import to_ros2_bag
 
     return to_ros2_bag(mission())
+
+
+def metadata_of_bags() -> tuple[bytes, ...]:
+    return (bag_folder()["metadata.yaml"],)
 
 
 @cache
@@ -167,23 +194,14 @@ def run_files() -> tuple[bytes, bytes]:
         return recording.read_bytes(), journal.read_bytes()
 
 
-def draw_binary(rng: random.Random, corpus: Sequence[bytes]) -> bytes:
-    return BinaryMutator(corpus, rng).make()
+def draw_ros1_bag(rng: random.Random, samples: Sequence[bytes]) -> bytes:
+    """Return a mutated bag, or one with a mutated message."""
+    return bag_with_message(rng) if rng.random() < 0.5 else draw_binary(rng, samples)
 
 
-def draw_text(rng: random.Random, corpus: Sequence[bytes]) -> bytes:
-    mutator = Mutator(corpus)
-    mutator.rng = rng
-    return mutator.make()
-
-
-def draw_bag(rng: random.Random, suffix: str) -> bytes:
-    """Return a mutated bag, or one with a mutated message, or a database with calculated parts."""
-    if suffix == ".db3" and rng.random() < 0.3:
-        return draw_database(rng)
-    if suffix == ".bag" and rng.random() < 0.5:
-        return bag_with_message(rng)
-    return draw_binary(rng, bags(suffix))
+def draw_sqlite_bag(rng: random.Random, samples: Sequence[bytes]) -> bytes:
+    """Return a mutated bag, or a database with calculated parts."""
+    return draw_database(rng) if rng.random() < 0.3 else draw_binary(rng, samples)
 
 
 def draw_database(rng: random.Random) -> bytes:
@@ -257,15 +275,14 @@ def bag_with_message(rng: random.Random) -> bytes:
         return path.read_bytes()
 
 
-def draw_recording(rng: random.Random) -> bytes:
+def draw_recording(rng: random.Random, samples: Sequence[bytes]) -> bytes:
     """Return a mutated recording, or one with right checksums around mutated parts."""
-    recording = run_files()[0]
     if rng.random() < 0.5:
-        return draw_binary(rng, (recording,))
+        return draw_binary(rng, samples)
     from mcap.reader import make_reader
     from mcap.writer import CompressionType, Writer
 
-    reader, stream = make_reader(BytesIO(recording)), BytesIO()
+    reader, stream = make_reader(BytesIO(samples[0])), BytesIO()
     writer = Writer(
         stream,
         chunk_size=rng.choice((1, 1_000, 10**7)),
@@ -295,64 +312,61 @@ def draw_recording(rng: random.Random) -> bytes:
 
 @cache
 def isar_missions() -> tuple[bytes, ...]:
-    task = {
-        "type": "inspection",
-        "id": "1",
-        "robot_pose": {
-            "position": {"x": 1.0, "y": 2.0, "z": 0.0, "frame_name": "asset"},
-            "orientation": {"x": 0, "y": 0, "z": 0, "w": 1, "frame_name": "asset"},
-            "frame_name": "asset",
-        },
-        "inspection": {
-            "type": "Image",
-            "inspection_target": {"x": 1, "y": 1, "z": 1, "frame_name": "asset"},
-        },
-        "tag": "4",
-    }
-    definition = {"name": "Round", "tasks": [task, task | {"id": "2", "tag": "8"}]}
-    return (json.dumps({"mission_definition": definition}).encode(),)
+    from argo_env.planning.opening import open_site
+    from argo_planner.use_cases.exporting import export_mission
+    from argo_planner.use_cases.importing import Upload, import_mission
+
+    site = open_site("umad")
+    [script] = texts("scenarios/umad/missions/mission_1.txt")
+    imported = import_mission(Upload("mission_1.txt", script), site, 1, 1)
+    content = export_mission(imported, site, "isar").content
+    assert isinstance(content, str)
+    return (content.encode(),)
 
 
-PROBLEMS = (
-    b"NAME: a\nTYPE: TSP\nDIMENSION: 3\nEDGE_WEIGHT_TYPE: EUC_2D\nNODE_COORD_SECTION\n"
-    b"1 0 0\n2 1 0\n3 0 1\nEOF\n",
-    b"NAME: b\nTYPE: ATSP\nDIMENSION: 3\nEDGE_WEIGHT_TYPE: EXPLICIT\n"
-    b"EDGE_WEIGHT_FORMAT: FULL_MATRIX\nEDGE_WEIGHT_SECTION\n0 1 2\n3 0 4\n5 6 0\nEOF\n",
-)
+@cache
+def route_problems() -> tuple[bytes, ...]:
+    import numpy as np
+
+    from argo_compiler.files.route_problem_file import route_problem_text
+    from argo_compiler.route.problem import EnergyBudget, Precedence, Round, RouteProblem, Visit
+
+    visits = (Visit("valve 1", 5), Visit("gauge 2", mandatory=False, prize=3), Visit("level 3"))
+    travel = np.arange(16).reshape(4, 4)
+    plain = RouteProblem(visits, travel, max_duration=100, unit=0.5)
+    rich = RouteProblem(
+        (*visits, Visit("valve 4", earliest=10, latest=60)),
+        np.arange(36).reshape(6, 6),
+        precedences=(Precedence((0, 3), "valve 1 before valve 4", needed=True),),
+        rounds=(Round("Round", (1, 2), repeat=3, duration=50, soft=True),),
+        battery=EnergyBudget(np.ones((6, 6), np.int64), capacity=90, used=10, overhead=4),
+        chargers=("dock",),
+        words={"max_duration": "in 2 min"},
+    )
+    return tuple(route_problem_text(one).encode() for one in (plain, rich))
+
 
 READERS = {
-    "ros1": Reader(read_bag_file, lambda rng: draw_bag(rng, ".bag"), ".bag", limited=True),
-    "sqlite": Reader(read_bag_file, lambda rng: draw_bag(rng, ".db3"), ".db3", limited=True),
-    "mcap": Reader(read_bag_file, lambda rng: draw_bag(rng, ".mcap"), ".mcap", limited=True),
-    "metadata": Reader(
-        read_bag_folder,
-        lambda rng: draw_text(rng, (bag_folder()["metadata.yaml"],)),
-        ".yaml",
-        limited=True,
+    "ros1": Reader(read_bag_file, ".bag", partial(bags, ".bag"), draw_ros1_bag, limited=True),
+    "sqlite": Reader(read_bag_file, ".db3", partial(bags, ".db3"), draw_sqlite_bag, limited=True),
+    "mcap": Reader(read_bag_file, ".mcap", partial(bags, ".mcap"), draw_binary, limited=True),
+    "metadata": Reader(read_bag_folder, ".yaml", metadata_of_bags, limited=True),
+    "recording": Reader(
+        read_recording_file, ".mcap", lambda: run_files()[:1], draw_recording, limited=True
     ),
-    "recording": Reader(read_recording_file, draw_recording, ".mcap", limited=True),
-    "journal": Reader(read_journal_file, lambda rng: draw_binary(rng, run_files()[1:]), ".journal"),
-    "script": Reader(
-        read_mission_source, lambda rng: draw_text(rng, texts("scenarios/*/missions/*.txt")), ".txt"
-    ),
+    "journal": Reader(read_journal_file, ".journal", lambda: run_files()[1:], draw_binary),
+    "script": Reader(read_mission_source, ".txt", scripts),
     "mission": Reader(
-        read_mission_source, lambda rng: draw_text(rng, (mission().model_dump_json().encode(),)),
-        ".json",
+        read_mission_source, ".json", lambda: (mission().model_dump_json().encode(),)
     ),
-    "isar": Reader(read_mission_source, lambda rng: draw_text(rng, isar_missions()), ".json"),
-    "site": Reader(
-        read_site_file, lambda rng: draw_text(rng, texts("scenarios/*/site.yaml")), ".yaml"
-    ),
-    "faults": Reader(
-        read_faults_file, lambda rng: draw_text(rng, texts("scenarios/umad/faults/*.yaml")), ".yaml"
-    ),
+    "isar": Reader(read_mission_source, ".json", isar_missions),
+    "site": Reader(read_site_file, ".yaml", partial(texts, "scenarios/*/site.yaml")),
+    "faults": Reader(read_faults_file, ".yaml", partial(texts, "scenarios/umad/faults/*.yaml")),
     "evaluation": Reader(
-        read_evaluation_file,
-        lambda rng: draw_text(rng, texts("scenarios/umad/evaluation.yaml")),
-        ".yaml",
+        read_evaluation_file, ".yaml", partial(texts, "scenarios/umad/evaluation.yaml")
     ),
-    "route problem": Reader(read_route_file, lambda rng: draw_text(rng, PROBLEMS), ".txt"),
-}  # fmt: skip
+    "route problem": Reader(read_route_file, ".json", route_problems),
+}
 
 
 def read_or_refuse(name: str, path: Path) -> str:
@@ -364,15 +378,18 @@ def read_or_refuse(name: str, path: Path) -> str:
     return "read"
 
 
-def try_inputs(name: str, first: int, count: int) -> Iterator[tuple[int, str, float]]:
-    """Yield number, outcome and time (s) of each input of a reader."""
+def try_inputs(name: str, first: int, count: int) -> Iterator[tuple[str, str, float]]:
+    """Yield name, outcome and time (s) of each sample of a reader, and of its inputs."""
     from tests.campaigns.readers import read_or_refuse  # not of `__main__`, for the other process
 
     reader = READERS[name]
+    samples = ((f"sample {i}", content) for i, content in enumerate(reader.samples()))
+    numbers = range(first, first + count)
+    inputs = ((str(n), reader.make(random.Random(f"{name} {n}"))) for n in numbers)
     with tempfile.TemporaryDirectory() as folder, process_kept():
         path = Path(folder) / f"fuzz{reader.suffix}"
-        for number in range(first, first + count):
-            path.write_bytes(reader.make(random.Random(f"{name} {number}")))
+        for input, content in chain(samples, inputs):
+            path.write_bytes(content)
             limits = limits_for_size(path.stat().st_size, held=path.stat().st_size)
             begun = time.monotonic()
             try:
@@ -381,7 +398,9 @@ def try_inputs(name: str, first: int, count: int) -> Iterator[tuple[int, str, fl
                 outcome = f"{'beyond limits' if reader.limited else 'ERROR'}: {error}"
             except Exception as error:
                 outcome = f"ERROR: {type(error).__name__}: {error}"
-            yield number, outcome, time.monotonic() - begun
+            if input.startswith("sample") and outcome != "read":
+                outcome = f"ERROR: it is not read, but {outcome}"
+            yield input, outcome, time.monotonic() - begun
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -395,11 +414,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for name in options.only:
         outcomes: Counter[str] = Counter()
         slowest = 0.0
-        for number, outcome, seconds in try_inputs(name, options.first, options.count):
+        for input, outcome, seconds in try_inputs(name, options.first, options.count):
             kind = outcome.partition(":")[0]
             outcomes[kind] += 1
             if kind in ("ERROR", "beyond limits"):
-                print(f"{name} {number}: {outcome[:300]}", flush=True)
+                print(f"{name} {input}: {outcome[:300]}", flush=True)
             slowest = max(slowest, seconds)
         failed = failed or bool(outcomes["ERROR"])
         counts = ", ".join(f"{kind} {count}" for kind, count in sorted(outcomes.items()))

@@ -20,6 +20,7 @@ from argo_compiler.il import (
 )
 from argo_env.drives.drive import DriveStatus
 from argo_env.faults.kinds import FaultFile
+from argo_env.files.checked_lines import parse_lines
 from argo_env.navigation import Navigator
 from argo_env.planning.opening import OpenedSite
 from argo_env.robot.pose import BodyPose
@@ -303,8 +304,8 @@ def cut(journal, share=0.5, to=None):
 
 def cut_after(journal, entries):
     """Truncate a journal after a number of entries."""
-    lines = journal.read_bytes().splitlines(keepends=True)
-    journal.write_bytes(b"".join(lines[: 1 + entries]))
+    content = journal.read_bytes()
+    journal.write_bytes(content[: parse_lines(content).objects[entries].end])
 
 
 def resumed(path, navigator, **options):

@@ -1,5 +1,7 @@
 """Rounds, waits and windows of the record, compared with the rules and with other ways to run."""
 
+from itertools import accumulate, chain
+
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -33,6 +35,7 @@ from argo_compiler.il import (
 from argo_env.planning.opening import open_site
 from argo_env.report.rounds import all_waits
 from argo_env.report.timeline import draw_timeline
+from argo_env.run.journal import open_journal
 from argo_env.run.observer import Observer
 from argo_env.run.record import WindowOutcome
 from argo_env.run.session import simulate
@@ -224,8 +227,7 @@ class TestRandomMissions:
     @given(st.data())
     def test_all_ways_to_run_record_what_the_rules_say(self, site, tmp_path_factory, data):
         plan = data.draw(driven_missions())
-        events = data.draw(st.lists(st.tuples(st.integers(0, 30), events_of(plan))))
-        timed = (*sorted(events, key=lambda one: one[0]), (40.0, Cancel()))
+        timed = data.draw(timed_events(plan))
         spec = RunSpec(mission=plan, site="yard", drive="route", events=logged_events(*timed))
         journal = tmp_path_factory.mktemp("runs") / "journal"
         watched = [Traces() for _ in range(3)]
@@ -235,7 +237,8 @@ class TestRandomMissions:
             assert slow == fast
             return
         # A measurement that the cut interrupts is repeated, which takes time.
-        until_end = len(journal.read_bytes().splitlines()) - 2
+        with open_journal(journal) as written:
+            until_end = len(written.entries) - 1
         cut_after(journal, data.draw(st.integers(0, until_end)))
         after_crash = resumed(journal, site.navigator, observers=watched[2:])
         for record, watch in zip((fast, slow, after_crash), watched, strict=True):
@@ -273,16 +276,25 @@ def outcome(spec, site, **options):
         return str(error)
 
 
-def events_of(plan):
-    """Draw an event of a run, or a person's command."""
+def timed_events(plan):
+    """Draw the events of a run, with a person's commands; the last one cancels it."""
     names = [task.name for task in plan.tasks if task.action is not Action.START]
     by_hand = st.builds(ByHand, task=st.sampled_from(names), duration=st.integers(0, 2))
     kinds = st.sampled_from([EventKind.GAS_LEAK, EventKind.LOW_BATTERY, EventKind.ALL_CLEAR])
-    return st.one_of(
-        st.sampled_from([Pause(), Resume(), TakeOver(), GiveBack()]),
-        kinds.map(Occurred),
-        by_hand.map(lambda done: GiveBack((done,))),
-    )
+    occurred = kinds.map(Occurred)
+    given_back = st.lists(by_hand, max_size=1).map(lambda done: GiveBack(tuple(done)))
+    # A command that is not possible yet, such as to resume, waits, and with it all later events.
+    interruption = st.one_of(
+        st.tuples(st.just(Pause()), st.lists(occurred, max_size=2), st.just(Resume())),
+        st.tuples(st.just(TakeOver()), st.lists(occurred, max_size=2), given_back),
+    ).map(lambda parts: [parts[0], *parts[1], parts[2]])
+    groups = st.lists(st.one_of(occurred.map(lambda one: [one]), interruption), max_size=5)
+
+    def at_times(events):
+        gaps = st.lists(st.integers(0, 9), min_size=len(events), max_size=len(events))
+        return gaps.map(lambda given: [*zip(map(float, accumulate(given)), events, strict=True)])
+
+    return groups.map(lambda parts: [*chain(*parts), Cancel()]).flatmap(at_times)
 
 
 @st.composite

@@ -10,10 +10,12 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from argo_compiler.base.errors import Conflict, NotFound
+from argo_compiler.base.errors import Conflict, NotFound, Unavailable
 from argo_compiler.files.atomic_write import write_atomically
 from argo_compiler.il import Mission
 from argo_compiler.reorder.requirements import Requirements
+from argo_env.files.checked_files import checked_json, read_checked
+from argo_env.files.folders import make_private_folder
 from argo_planner.service.jobs.job import Job, OrderJob
 from argo_planner.service.jobs.jobs import Jobs
 from argo_planner.service.jobs.order_search import search_order
@@ -35,8 +37,9 @@ class OrderFolder:
     def store(self, job: OrderJob) -> None:
         """Store a search; a failure is only logged, as the order can be searched again."""
         try:
-            self._path.mkdir(exist_ok=True)
-            write_atomically(self._path / f"{job.id}.json", job.model_dump_json())
+            make_private_folder(self._path)
+            content = checked_json(job.model_dump_json())
+            write_atomically(self._path / f"{job.id}.json", content, private=True)
             for path in self._paths()[:-MOST_STORED]:
                 path.unlink(missing_ok=True)
         except OSError as error:
@@ -47,8 +50,8 @@ class OrderFolder:
         jobs = []
         for path in self._paths():
             try:
-                jobs.append(OrderJob.model_validate_json(path.read_bytes()))
-            except (OSError, ValidationError) as error:
+                jobs.append(read_checked(OrderJob, path.read_bytes(), path, "search again"))
+            except (OSError, ValidationError, Unavailable) as error:
                 _log.warning("%s can't be read: %s", path, error)
         return sorted(jobs, key=lambda job: job.begun)
 

@@ -160,3 +160,9 @@ async def waiting_messages(mailbox: Mailbox, kind: str) -> list[dict[str, Any]]:
             return messages
         if message["kind"] == kind:
             messages.append(message)
+
+
+def require_private(folder: Path) -> None:
+    """Require that only the owner can read a folder and all that is in it."""
+    modes = {path: path.stat().st_mode & 0o777 for path in (folder, *folder.rglob("*"))}
+    assert {path: m for path, m in modes.items() if m != (0o700 if path.is_dir() else 0o600)} == {}

@@ -29,7 +29,7 @@ from argo_planner.service.jobs.job import EvaluationJob
 from argo_planner.service.jobs.jobs import Jobs
 from argo_planner.service.web.access import AccessRole
 from argo_planner.use_cases.importing import Upload, import_mission
-from tests.argo_planner.service.served import SECRETS, Served, served
+from tests.argo_planner.service.served import SECRETS, Served, require_private, served
 from tests.argo_planner.service.test_http import new_resource, problem
 from tests.argo_planner.service.test_jobs import SCRIPT, import_script, wait_for_end, wait_until
 from tests.disks import fill, small_disk
@@ -295,12 +295,6 @@ def test_damaged_files_of_evaluations_are_named_and_all_are_private(
     with served(tmp_path, site) as service:
         assert service.client.get("/api/jobs").json()["jobs"] == []
     assert re.search(r"job\.json is damaged: line 1, column \d+: .*is left out", caplog.text)
-
-
-def require_private(folder: Path) -> None:
-    """Require that only the owner can read a folder and all that is in it."""
-    modes = {path: path.stat().st_mode & 0o777 for path in (folder, *folder.rglob("*"))}
-    assert {path: m for path, m in modes.items() if m != (0o700 if path.is_dir() else 0o600)} == {}
 
 
 @pytest.mark.long

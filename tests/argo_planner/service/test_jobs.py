@@ -5,11 +5,13 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+import pytest
+
 from argo_compiler.il import Mission
 from argo_env.planning.opening import OpenedSite
 from argo_planner.use_cases.importing import ImportedMission
 from argo_planner.use_cases.routing import suggest_order
-from tests.argo_planner.service.served import Served, served
+from tests.argo_planner.service.served import Served, require_private, served
 from tests.argo_planner.service.test_http import new_resource, problem
 
 SCRIPT = (
@@ -79,6 +81,7 @@ def test_a_found_order_is_accepted_after_a_restart(tmp_path: Path, site: OpenedS
         job = start_search(first, id)
         found = wait_for_end(first, job)
         assert found["found"]["mission"]
+        require_private(tmp_path / "orders")
         for file in (tmp_path / "orders").iterdir():
             (tmp_path / "orders" / "0123456789ab.json").write_bytes(file.read_bytes()[:100])
     with served(tmp_path, site) as second:
@@ -88,6 +91,18 @@ def test_a_found_order_is_accepted_after_a_restart(tmp_path: Path, site: OpenedS
         second.client.delete(f"/api/missions/{id}")
         second.client.delete(f"/api/bin/{id}")
         assert [f.name for f in (tmp_path / "orders").iterdir()] == ["0123456789ab.json"]
+
+
+def test_a_damaged_order_is_left_out(
+    tmp_path: Path, site: OpenedSite, caplog: pytest.LogCaptureFixture
+) -> None:
+    with served(tmp_path, site) as service:
+        wait_for_end(service, start_search(service, import_script(service)))
+    (file,) = (tmp_path / "orders").iterdir()
+    file.write_bytes(file.read_bytes().replace(b"ann", b"bob", 1))
+    with served(tmp_path, site) as service:
+        assert service.client.get("/api/jobs").json()["jobs"] == []
+    assert f"{file} is damaged: its content does not fit its checksum" in caplog.text
 
 
 def test_an_order_of_an_earlier_revision_is_not_accepted(service: Served) -> None:

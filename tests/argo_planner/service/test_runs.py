@@ -7,8 +7,7 @@ import httpx
 import pytest
 from websockets.exceptions import InvalidStatus
 
-from tests.argo_planner.service.served import ALL, SECRETS, Served
-from tests.argo_planner.service.test_evaluations import require_private
+from tests.argo_planner.service.served import ALL, SECRETS, Served, require_private
 from tests.argo_planner.service.test_http import new_resource, problem
 from tests.argo_planner.service.test_run_host import SCRIPT
 

@@ -14,6 +14,7 @@ from argo_compiler.base.operating_system import niceness, set_niceness
 from argo_compiler.il import Mission
 from argo_compiler.ros.bags import suffix_by_first_bytes
 from argo_compiler.ros.recognition import first_bytes_if_readable, is_bag_content
+from argo_env.files.checked_lines import write_all
 from argo_env.planning.opening import open_site
 from argo_planner.service.core.change import mission_change
 from argo_planner.service.core.plan_limits import require_within_limits
@@ -95,7 +96,7 @@ async def _store(path: Path, content: AsyncIterable[bytes]) -> int:
     with open(path, "wb", buffering=0) as file:
         async for part in content:
             try:
-                file.write(part)
+                write_all(file.fileno(), part)
             except OSError as error:
                 raise _unwritable(error) from None
         return file.tell()

@@ -12,6 +12,7 @@ from typing import ClassVar
 
 import pytest
 
+from argo_compiler.base.errors import Unavailable
 from argo_compiler.base.limited_process import CallLimits
 from argo_planner.service.jobs import imports
 from argo_planner.service.jobs.imports import MOST_IMPORTS, Imports
@@ -106,6 +107,22 @@ class WaitingProcess:
 
 async def nothing() -> AsyncIterator[bytes]:
     yield b""
+
+
+async def megabytes(count: int) -> AsyncIterator[bytes]:
+    yield bytes(count * 1_000_000)
+
+
+@pytest.mark.anyio
+async def test_an_upload_of_which_only_a_part_can_be_stored_is_refused() -> None:
+    resource = pytest.importorskip("resource")
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1_000_000, before[1]))
+    try:
+        with pytest.raises(Unavailable, match="the upload can't be stored: File too large"):
+            await Imports("umad").import_upload("script.txt", megabytes(2), "a")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
 @pytest.mark.anyio

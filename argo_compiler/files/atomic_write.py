@@ -10,7 +10,7 @@ from pathlib import Path
 
 from argo_compiler.base.errors import Conflict, NotFound, Unavailable
 
-_OPEN_FILES = (Path("/dev/fd"), Path("/proc/self/fd"))
+OPEN_FILES = (Path("/dev/fd"), Path("/proc/self/fd"))
 """Folders with the files that this process has open."""
 _STREAMS = (Path("/dev/stdout"), Path("/dev/stderr"))
 _MAX_LINKS = 40
@@ -24,7 +24,7 @@ def is_stream(path: Path) -> bool:
     `/dev/fd/3`.
     """
     absolute = path.absolute()
-    if absolute in _STREAMS or absolute.parent in _OPEN_FILES:
+    if absolute in _STREAMS or absolute.parent in OPEN_FILES:
         return True
     return os.path.exists(absolute) and not os.path.isfile(absolute) and not os.path.isdir(absolute)
 

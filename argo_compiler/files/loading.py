@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from argo_compiler.base.errors import ArgoError, Invalid, NotFound
+from argo_compiler.files.atomic_write import OPEN_FILES
 from argo_compiler.files.encodings import detect_encoding
 
 _CHUNK = 1 << 20
@@ -129,6 +130,15 @@ def is_pipe(path: Path) -> bool:
         return stat.S_ISFIFO(os.stat(path).st_mode)
     except (OSError, ValueError):
         return False
+
+
+def is_own_open_file(path: Path) -> bool:
+    """Return True if the path names a file that this process has open, as `/dev/stdin` does.
+
+    For another process, it is another file.
+    """
+    absolute = path.absolute()
+    return absolute == Path("/dev/stdin") or absolute.parent in OPEN_FILES
 
 
 def size_on_disk(path: Path) -> int:

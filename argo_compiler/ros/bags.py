@@ -14,7 +14,13 @@ from typing import Any
 from argo_compiler.base.errors import Invalid
 from argo_compiler.base.limited_process import LimitExceeded, call_limited, limits_for_size
 from argo_compiler.diagnostics import DiagnosticError
-from argo_compiler.files.loading import FileError, is_pipe, size_on_disk
+from argo_compiler.files.loading import (
+    FileError,
+    is_own_open_file,
+    is_pipe,
+    read_bytes,
+    size_on_disk,
+)
 from argo_compiler.files.mission_file import MAX_BYTES
 from argo_compiler.il import Mission
 from argo_compiler.ros.compression import (
@@ -45,6 +51,8 @@ The time is fixed so that equal missions give equal bags; it is not 0, which mea
 _UNPACK = "unpack it first: rosbag decompress, or ros2 bag convert"
 _MAX_MESSAGES = 1000
 """Largest number of messages that may repeat the same mission."""
+_MAX_COPIED_BYTES = 1_000_000_000
+"""Largest size of a bag that has to be copied before it is read, such as `/dev/stdin`."""
 _MAX_LISTED_TOPICS = 8
 """Number of topics that an error lists."""
 _MODULES = ("rosbags.rosbag1", "rosbags.rosbag2")
@@ -137,6 +145,8 @@ def read_bag(path: Path, source_name: str | None = None) -> Received:
     name = str(path) if source_name is None else source_name
     if not is_pipe(path):
         _first_bytes(path, name)  # what is no bag needs no process
+    if is_own_open_file(path):
+        return decode_bag(read_bytes(path, "bag", _MAX_COPIED_BYTES), name)
     limits = limits_for_size(size_on_disk(path))
     try:
         return call_limited(limits, _MODULES, read_bag_here, path, name)

@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, NoReturn
 
 from pydantic import ValidationError
@@ -22,11 +23,13 @@ from argo_compiler.files.json_places import format_path
 from argo_compiler.files.loading import (
     FileError,
     FileProblem,
+    is_own_open_file,
     is_pipe,
     open_file,
     read_bytes,
     size_on_disk,
 )
+from argo_env.files.folders import reporting_write_errors
 from argo_env.files.yaml_messages import error_message
 from argo_env.recording.files import require_libraries
 from argo_env.recording.output import MAGIC, VERSION
@@ -207,17 +210,35 @@ def read_recording(path: Path) -> Recording:
     if not is_pipe(path):
         with _naming_file_problems(path), open_file(path, "recording"):
             pass  # what can't be opened needs no process
-    size = size_on_disk(path)
-    try:
-        limits = limits_for_size(size, held=size)
-        return call_limited(limits, _MODULES, read_recording_here, path)
-    except LimitExceeded as error:
-        _raise_invalid(str(path), f"{error}: {_HINT}", Remedy.RECORD)
+    with _named_alike_in_all_processes(path) as file:
+        size = size_on_disk(file)
+        try:
+            limits = limits_for_size(size, held=size)
+            return call_limited(limits, _MODULES, read_recording_here, file, str(path))
+        except LimitExceeded as error:
+            _raise_invalid(str(path), f"{error}: {_HINT}", Remedy.RECORD)
 
 
-def read_recording_here(path: Path) -> Recording:
-    """Return the contents of a recording, as `read_recording`, but here and without its limits."""
-    content, name = _load(path), str(path)
+@contextmanager
+def _named_alike_in_all_processes(path: Path) -> Iterator[Path]:
+    """Yield a path by which each process finds a recording: that of a copy for `/dev/stdin`."""
+    if not is_own_open_file(path):
+        yield path
+        return
+    with TemporaryDirectory() as folder:
+        copy = Path(folder) / "recording.mcap"
+        content = _load(path)
+        with reporting_write_errors(copy, "a copy of the recording"):
+            copy.write_bytes(content)
+        yield copy
+
+
+def read_recording_here(path: Path, name: str) -> Recording:
+    """Return the contents of a recording, as `read_recording`, but here and without its limits.
+
+    Messages call it `name`.
+    """
+    content = _load(path)
     require_libraries()
     parts = _Parts()
     flaw = _read_parts(name, content, parts)

@@ -86,7 +86,7 @@ def read_bag_folder(path: Path) -> None:
 def read_recording_file(path: Path) -> None:
     from argo_env.recording.reader import read_recording_here
 
-    read_recording_here(path)
+    read_recording_here(path, "fuzz")
 
 
 def read_journal_file(path: Path) -> None:

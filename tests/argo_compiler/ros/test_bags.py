@@ -5,6 +5,7 @@ import sqlite3
 import sys
 from contextlib import closing, suppress
 from functools import cache
+from pathlib import Path
 from runpy import run_path
 
 import pytest
@@ -309,6 +310,12 @@ def test_a_bag_that_takes_too_much_memory_is_refused_with_the_way_out(tmp_path, 
     assert diagnostic.code == "file.beyond-limits"
     assert diagnostic.message == "the file takes more than 9 MB of memory to read"
     assert diagnostic.hint == "is it the right file, and whole? If it is, record /mission alone"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such files")
+def test_a_bag_that_is_open_already_is_read(tmp_path):
+    with write(tmp_path, "ros1").open("rb") as file:
+        assert read_bag(Path(f"/dev/fd/{file.fileno()}")).mission == PLAN
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such files")

@@ -249,7 +249,13 @@ def test_a_chunk_larger_than_any_is_damage(tmp_path: Path, monkeypatch) -> None:
         writer.finish()
     monkeypatch.setattr(reader, "MAX_CHUNK_BYTES", 1_000)
     with pytest.raises(ArgoError, match=r"is damaged after 0 s \(a chunk has 20\d\d bytes\)"):
-        reader.read_recording_here(path)
+        reader.read_recording_here(path, str(path))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such files")
+def test_a_recording_that_is_open_already_is_read(recorded) -> None:
+    with recorded.file.open("rb") as file:
+        assert read_recording(Path(f"/dev/fd/{file.fileno()}")).record == recorded.record
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such files")

@@ -16,7 +16,8 @@ from argo_compiler.files.encodings import detect_encoding
 
 _HEAD = 4096
 """number of bytes in which the formats that are texts are recognised"""
-_MAX_YAML = 1_000_000
+_MAX_YAML = 100_000
+"""number of characters of the longest YAML whose fields are looked at, which takes seconds"""
 CHOOSE = "choose the mission's file"
 _STEPS = "write its steps as a script, as Argo can't import it"
 _STOPS = "write its stops as a script, as Argo can't import it"

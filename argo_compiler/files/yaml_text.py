@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import yaml
+from yaml.constructor import ConstructorError
 
 from argo_compiler.base.errors import Invalid
 
@@ -31,6 +32,8 @@ _PLAIN_SCALARS = (
 )
 """tags of the plain scalars that are not text, with their patterns and possible first characters"""
 _BASES = {"0o": 8, "0x": 16}
+_MOST_MERGED = 100_000
+"""fields that all merges of a text repeat at most; a short text can repeat any number"""
 
 
 class NotYamlError(Exception):
@@ -71,7 +74,25 @@ class YamlText(NamedTuple):
 
 
 class _Loader(yaml.SafeLoader):
-    """Reader without the plain scalars of YAML 1.1."""
+    """Reader without the plain scalars of YAML 1.1, and with a limit of merged fields."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        self._merged = 0
+
+    def flatten_mapping(self, node: yaml.MappingNode) -> None:
+        """Replace the merges (`<<`) of a mapping by the fields of what they name."""
+        for key, value in node.value:
+            if key.tag == f"{_TAG}merge":
+                # First what is named, whose number of fields is known then.
+                for other in value.value if isinstance(value, SequenceNode) else [value]:
+                    if isinstance(other, MappingNode):
+                        self.flatten_mapping(other)
+                        self._merged += len(other.value)
+                    if self._merged > _MOST_MERGED:
+                        message = f"its merges (`<<`) repeat more than {_MOST_MERGED} fields"
+                        raise ConstructorError(None, None, message, key.start_mark)
+        super().flatten_mapping(node)
 
 
 _Loader.yaml_implicit_resolvers = {}

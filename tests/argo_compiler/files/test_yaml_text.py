@@ -69,3 +69,15 @@ def test_what_is_written_is_read_back_by_yaml_1_2_and_by_yaml_1_1(data, flow):
     text = dump_yaml({"data": data}, flow=flow)
     assert load_yaml(text, "file.yaml") == {"data": data}
     assert yaml.safe_load(text) == {"data": data}
+
+
+def test_merges_that_repeat_without_limit_are_refused() -> None:
+    lines = ["a0: &a0 {x: 1}"]
+    lines += [f"a{k}: &a{k}\n  <<: [*a{k - 1}, *a{k - 1}]" for k in range(1, 60)]
+    with pytest.raises(Invalid, match=r"x:\d+:3: .*repeat more than 100000 fields"):
+        load_yaml("\n".join(lines), "x")
+
+
+def test_merged_fields_are_those_of_the_mappings_that_they_name() -> None:
+    text = "a: &a {x: 1, y: 1}\nb: &b\n  <<: *a\n  x: 2\nc: {<<: [*b, {y: 3, z: 3}]}\n"
+    assert load_yaml(text, "x")["c"] == {"x": 2, "y": 1, "z": 3}

@@ -30,8 +30,8 @@ def diagnose_charging(study: Study, travel: Travel) -> Iterator[Diagnostic]:
             continue
         level = LOW_SHARE if reaction.battery_below is None else reaction.battery_below
         goal = _goal(reaction, level)
-        needed = max((goal - level - _ESTIMATE_ERRORS) / share_per_second, 0.0)
-        needed = max(needed, reaction.charge_for or 0.0)
+        to_level = max((goal - level - _ESTIMATE_ERRORS) / share_per_second, 0.0)
+        needed = max(to_level, reaction.charge_for or 0.0)
         limit = reaction.hold_limit
         subject = subject_of("reactions", reaction.event)
         if limit is not None and limit < needed:
@@ -48,13 +48,18 @@ def diagnose_charging(study: Study, travel: Travel) -> Iterator[Diagnostic]:
                 subject=f"{subject}.hold_limit",
             )
         elif study.mission.max_duration is not None and needed > study.mission.max_duration:
+            least = duration_text(needed, rounded_down)
+            if to_level < needed:
+                charging = f"for at least {least}"
+                less = "recharge for a shorter time"
+            else:
+                charging = f"from {level:.0%} to {goal:.0%}, which takes at least {least}"
+                less = "recharge to a lower level, such as `recharge to 60 %`"
             yield study.diagnostic(
                 "charging-too-long",
-                f"the reaction to {reaction.event} charges the battery from {level:.0%} to "
-                f"{goal:.0%}, which takes at least {duration_text(needed, rounded_down)}, longer "
-                f"than the mission's maximum duration of "
-                f"{duration_text(study.mission.max_duration)}",
-                "recharge to a lower level, such as `recharge to 60 %`, or allow more time",
+                f"the reaction to {reaction.event} charges the battery {charging}, longer than the "
+                f"mission's maximum duration of {duration_text(study.mission.max_duration)}",
+                f"{less}, or allow more time",
                 subject=subject,
             )
 

@@ -56,6 +56,14 @@ def test_charging_that_takes_longer_than_the_mission_may(fields, limit, exceeds)
     assert [d.code for d in found] == ["analysis.charging-too-long"] * exceeds
 
 
+def test_the_level_or_the_time_that_takes_too_long_is_named():
+    (level,) = findings(60, charge_to=0.6, charge_for=600)
+    assert "charges the battery from 20% to 60%, which takes at least 23 min 24 s" in level.message
+    (time,) = findings(60, charge_to=0.3, charge_for=600)
+    assert "charges the battery for at least 10 min, longer than" in time.message
+    assert time.hint == "recharge for a shorter time, or allow more time"
+
+
 @pytest.mark.parametrize(
     ("fields", "cut_short"),
     [

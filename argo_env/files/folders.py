@@ -35,7 +35,7 @@ def leaves_folder(name: str) -> bool:
     That is so for an absolute path, one with a drive of Windows, and one with `..`.
     """
     parts = name.replace("\\", "/").split("/")
-    return ".." in parts or (len(parts) > 1 and not parts[0]) or parts[0][1:] == ":"
+    return ".." in parts or (len(parts) > 1 and not parts[0]) or parts[0][1:2] == ":"
 
 
 def make_folder(path: Path) -> None:

@@ -12,6 +12,7 @@ OUTSIDE = (
     "a\\\\..\\\\m.txt",
     "c:/m.txt",
     "\\\\host/m.txt",
+    "C:m.txt",
 )
 
 

@@ -27,13 +27,15 @@ def not_seen_from_pose_warnings(mission: Mission, site: "OpenedSite") -> Iterato
     get no warning, as the analysis reports them; nor do those without a pose.
     """
     for task, reason, seeing in _hidden_checkpoints(mission, site):
-        nearest = "another pose" if seeing is None else f"the nearest that sees, {_text(seeing)},"
+        nearest = "another pose"
+        if seeing is not None:
+            nearest = f"the nearest pose that sees it ({_text(seeing)})"
         yield Diagnostic(
             code="site.not-seen-from-pose",
             severity=Severity.WARNING,
             message=f"task '{task.name}' measures from a pose from which its checkpoint is "
             f"not visible: {reason}",
-            hint=f"give {nearest} or none, so that the robot chooses one",
+            hint=f"give {nearest}, or none, so that the robot chooses one",
             subject=subject_of("tasks", task.name, ".pose"),
             span=task.source,
         )

@@ -120,10 +120,11 @@ def is_report_of(book: Journal, folder: Path) -> bool:
 
 
 def find_own_report(book: Journal, journal: Path) -> Path | None:
-    """Return the folder of the report to which a journal belongs; None: there is nothing to write.
+    """Return the folder of a journal if the run's report is to be written there, else None.
 
     `argo run --report` keeps the journal in the report's folder, which has nothing else then but
-    the report, films and recordings. A complete report is not written again.
+    the report, films and recordings. A report that is complete, damaged, or of another run is not
+    replaced.
     """
     folder = journal.parent
     others = {name for name in os.listdir(folder) if os.path.splitext(name)[1] not in _RECORDED}

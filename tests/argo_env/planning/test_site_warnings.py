@@ -31,7 +31,7 @@ def test_one_that_does_not(site):
 
 def test_the_hint_has_the_nearest_pose_that_sees_it(site):
     (finding,) = found(site, x=5.55, y=1.55)
-    offered = re.search(r"x (\S+), y (\S+), z (\S+), yaw (\S+), or none", finding.hint)
+    offered = re.search(r"x (\S+), y (\S+), z (\S+), yaw (\S+)\), or none", finding.hint)
     x, y, z, yaw = map(float, offered.groups())
     assert found(site, x=x, y=y, yaw=yaw) == []
     assert z == pytest.approx(0.02, abs=0.01)

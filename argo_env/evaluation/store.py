@@ -98,8 +98,14 @@ class RowStore(Closing):
             self.sync()
 
     def sync(self) -> None:
-        """Write all rows through to the disk, so that they survive a loss of power."""
-        self._lines.sync()
+        """Write all rows through to the disk, so that they survive a loss of power.
+
+        Raises Unavailable if that fails.
+        """
+        try:
+            self._lines.sync()
+        except OSError as error:
+            raise Unavailable(f"{self.folder / LOG}: {error.strerror}") from error
         self._synced = self._clock()
 
     @property
@@ -154,9 +160,11 @@ class RowStore(Closing):
 
     def close(self) -> None:
         """Write all rows through to the disk and release the folder's lock."""
-        self.sync()
-        os.close(self._file)
-        os.close(self._lock)
+        try:
+            self.sync()
+        finally:
+            os.close(self._file)
+            os.close(self._lock)
 
 
 def read_rows(folder: Path) -> tuple[RunRow, ...]:

@@ -16,6 +16,7 @@ from argo_env.evaluation.detection import FaultDetection
 from argo_env.evaluation.parquet_files import write_part
 from argo_env.evaluation.row import RunOutcome, RunRow
 from argo_env.evaluation.store import LOG, RowStore, read_log, read_rows
+from argo_env.files import checked_lines
 from argo_env.files.checked_lines import checked_line
 
 
@@ -175,6 +176,22 @@ def test_a_row_follows_one_that_found_no_room(tmp_path, monkeypatch):
         monkeypatch.undo()
         rows.add_if_new(row(2))
     assert read_rows(tmp_path) == (row(0), row(2))
+
+
+def test_rows_that_can_not_be_synced_are_an_error_and_leave_the_folder_unlocked(
+    tmp_path, monkeypatch
+):
+    def fail(_: int) -> None:
+        raise OSError(errno.EIO, "Input/output error")
+
+    rows = RowStore(tmp_path)
+    rows.add_if_new(row(0))
+    monkeypatch.setattr(checked_lines, "sync_content", fail)
+    with pytest.raises(Unavailable, match="Input/output error"):
+        rows.close()
+    monkeypatch.undo()
+    with RowStore(tmp_path) as again:
+        assert [*again.rows.values()] == [row(0)]
 
 
 def test_a_kill_between_the_part_and_the_log_duplicates_no_row(tmp_path):

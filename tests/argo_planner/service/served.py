@@ -4,6 +4,7 @@ import asyncio
 import json
 import socket
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from itertools import count
@@ -121,7 +122,7 @@ def served(folder: Path, site: OpenedSite) -> Iterator[Served]:
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]}, daemon=True)
     thread.start()
     try:
-        _wait(lambda: server.started or not thread.is_alive())
+        wait_or_fail(lambda: server.started or not thread.is_alive())
         assert thread.is_alive(), "the service has not started"
         with (running := Served(folder, f"127.0.0.1:{listening.getsockname()[1]}")).closing:
             yield running
@@ -132,9 +133,12 @@ def served(folder: Path, site: OpenedSite) -> Iterator[Served]:
         assert not thread.is_alive()
 
 
-def _wait(done: Callable[[], bool]) -> None:
+def wait_or_fail(done: Callable[[], bool]) -> None:
+    """Wait until `done` returns True; fail if that takes minutes, as it never happens then."""
+    end = time.monotonic() + 180
     while not done():
-        threading.Event().wait(0.01)
+        assert time.monotonic() < end, "what the test waits for has not happened"
+        time.sleep(0.01)
 
 
 def send_raw(address: str, content: bytes, most: int = 1_000_000) -> bytes:

@@ -29,7 +29,7 @@ from argo_planner.service.jobs.job import EvaluationJob
 from argo_planner.service.jobs.jobs import Jobs
 from argo_planner.service.web.access import AccessRole
 from argo_planner.use_cases.importing import Upload, import_mission
-from tests.argo_planner.service.served import SECRETS, Served, require_private, served
+from tests.argo_planner.service.served import SECRETS, Served, require_private, served, wait_or_fail
 from tests.argo_planner.service.test_http import new_resource, problem
 from tests.argo_planner.service.test_jobs import SCRIPT, import_script, wait_for_end, wait_until
 from tests.disks import fill, small_disk
@@ -261,8 +261,7 @@ def test_an_evaluation_on_a_full_disk(site: OpenedSite, monkeypatch: pytest.Monk
         path = stored / job / "job.json"
         assert json.loads(path.read_bytes())["job"]["state"] == "running"
         filler.unlink()
-        while json.loads(path.read_bytes())["job"]["state"] == "running":
-            time.sleep(0.05)
+        wait_or_fail(lambda: json.loads(path.read_bytes())["job"]["state"] != "running")
         assert "No space left on device" in json.loads(path.read_bytes())["job"]["problem"]
         assert service.client.post(f"/api/jobs/{job}/go_on").status_code == 202
         service.client.delete(f"/api/jobs/{job}")
@@ -277,8 +276,8 @@ def test_damaged_files_of_evaluations_are_named_and_all_are_private(
         job = start_evaluation(service, id, worlds=2)
         assert wait_for_end(service, job)["state"] == "done"
         folder = tmp_path / "evaluations" / job
-        while "report.html" not in os.listdir(folder):
-            time.sleep(0.05)
+        wait_or_fail(lambda: "report.html" in os.listdir(folder))
+        wait_or_fail(lambda: not any(folder.glob(".argo-*.tmp")))  # its draft
         require_private(tmp_path / "evaluations")
         for name, path in (
             ("report.html", f"/api/jobs/{job}/report"),

@@ -3,6 +3,7 @@
 import asyncio
 import json
 import socket
+import stat
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -167,6 +168,13 @@ async def waiting_messages(mailbox: Mailbox, kind: str) -> list[dict[str, Any]]:
 
 
 def require_private(folder: Path) -> None:
-    """Require that only the owner can read a folder and all that is in it."""
-    modes = {path: path.stat().st_mode & 0o777 for path in (folder, *folder.rglob("*"))}
-    assert {path: m for path, m in modes.items() if m != (0o700 if path.is_dir() else 0o600)} == {}
+    """Require that only the owner can read a folder and all that is in it.
+
+    A file that is removed meanwhile, such as a draft, does not count.
+    """
+    modes = {}
+    for path in (folder, *folder.rglob("*")):
+        with suppress(FileNotFoundError):
+            modes[path] = path.stat().st_mode
+    allowed = {path: 0o700 if stat.S_ISDIR(mode) else 0o600 for path, mode in modes.items()}
+    assert {path: stat.S_IMODE(mode) for path, mode in modes.items()} == allowed

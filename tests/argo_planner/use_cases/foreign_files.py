@@ -11,6 +11,7 @@ import struct
 import zipfile
 import zlib
 from collections.abc import Mapping
+from contextlib import closing
 from typing import NamedTuple
 
 import pyarrow as pa
@@ -44,9 +45,9 @@ def _parquet() -> bytes:
 
 
 def _sqlite() -> bytes:
-    database = sqlite3.connect(":memory:")
-    database.execute("CREATE TABLE checkpoints (id INTEGER, name TEXT)")
-    return database.serialize()
+    with closing(sqlite3.connect(":memory:")) as database:
+        database.execute("CREATE TABLE checkpoints (id INTEGER, name TEXT)")
+        return database.serialize()
 
 
 def _png() -> bytes:

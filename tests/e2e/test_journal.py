@@ -202,6 +202,7 @@ def test_wrong_events_and_journals_are_refused(argo, folder: Path, arguments, me
     assert message in require_refusal(argo(*arguments, cwd=folder))
 
 
+@pytest.mark.physics
 def test_what_a_loss_of_power_left_is_told_when_the_run_is_resumed(argo, folder, tmp_path):
     journal = tmp_path / "run.journal"
     argo(*run_arguments(folder), "--journal", journal, status=0)

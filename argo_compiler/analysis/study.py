@@ -173,7 +173,7 @@ class Study:
 
     @cached_property
     def late_successors(self) -> tuple[tuple[int, ...], ...]:
-        """The `planned_successors` when all hard windows have closed."""
+        """Successors of each node as in `planned_successors`, when all hard windows have closed."""
         late = list(self.planned_successors)
         for i, leaf in enumerate(self.flow.leaves):
             if leaf.deadline is not None and self.with_failures.is_reached(i):

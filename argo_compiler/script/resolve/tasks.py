@@ -146,7 +146,7 @@ class TaskMaker:
         )
 
     def _recharge_rule(self, order: orders.WaitOrder, manner: Manner) -> WaitRule:
-        """How long it recharges. Raises RefusedError if that is not clear."""
+        """Return the rule of a WAIT that recharges; raises RefusedError if it has two limits."""
         diagnostics = self.context.diagnostics
         limits = [t for t in (manner.duration, manner.time_limit) if t is not None]
         if manner.until is not None or len(limits) > 1:
@@ -167,7 +167,7 @@ class TaskMaker:
         event: EventKind | None,
         charge: float | None,
     ) -> tuple[float | None, float | None]:
-        """The charge (0 to 1) and the least time (s) of a wait; `charge` is that of its condition.
+        """Return the charge (0 to 1) and the least time (s) of a wait; its condition has `charge`.
 
         Raises RefusedError if it waits for something else than the battery, or names two charges.
         """

@@ -145,9 +145,9 @@ def _occurs(reaction: Reaction) -> str:
 
 
 def awaited(event: EventKind, rule: Reaction | WaitRule, other: str = "") -> str:
-    """What ends a hold or a wait: `until the battery is charged to 80 %`.
+    """Return the words for the end of a wait: `until the battery is charged to 80 %`.
 
-    `other` is what ends it besides the event: ` or checkpoint #1 is above 3`.
+    `other` are the words for a further end: ` or checkpoint #1 is above 3`. Raises UnwritableError.
     """
     charged = event is EventKind.BATTERY_CHARGED
     if (rule.charge_to, rule.charge_for) != (None, None) and not charged:
@@ -163,13 +163,16 @@ def awaited(event: EventKind, rule: Reaction | WaitRule, other: str = "") -> str
 
 
 def recharges_for_time(event: EventKind | None, rule: Reaction | WaitRule) -> bool:
-    """Whether it recharges for a least time only, whatever the charge is then."""
+    """Return True if the rule waits for a least time of charging, to no named charge."""
     charged = event is EventKind.BATTERY_CHARGED
     return charged and rule.charge_to is None and rule.charge_for is not None
 
 
 def percentage(share: float, field: str) -> str:
-    """A share of the battery's charge in %. Raises UnwritableError; `field` is for the message."""
+    """Return a share of the charge (0 to 1) as a number of percent, such as `80`.
+
+    Raises UnwritableError, which names `field`, if no number of percent is exactly this share.
+    """
     percent = next((p for p in (share * 100, round(share * 100, 9)) if p / 100 == share), None)
     if percent is None:
         raise UnwritableError(f"this level of the battery is not a percentage: `{field}`")

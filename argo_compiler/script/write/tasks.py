@@ -61,7 +61,7 @@ def _wait(rule: WaitRule) -> str:
 
 
 def _until(rule: WaitRule) -> str:
-    """What ends a wait: `until all clear is given or checkpoint #1 is above 3`."""
+    """Return the words for the end of a wait: `until all clear is given or #1 is above 3`."""
     if rule.event is None:
         if not rule.conditions:
             raise UnwritableError("it has no condition to wait for: `wait`")

@@ -190,7 +190,7 @@ def _signed(part: RulePart) -> Signed:
 
 
 def amount(part: RulePart) -> Amount:
-    """The one amount in a rule, with its unit if it has one."""
+    """Return the one amount in a rule, with its unit if it has one."""
     sign = -1 if part.has("MINUS") else 1
     if word := part.word("QUANTITY"):
         figure, unit = word.value

@@ -56,9 +56,22 @@ def try_lock(file: int) -> bool:
     return True
 
 
-def open_private(path: str, flags: int) -> int:
+def _open_private(path: str, flags: int) -> int:
     """Open a file like `os.open`, as the `opener` of `open`; a new one is its owner's alone."""
     return os.open(path, flags | OPEN_FLAGS, 0o600)
+
+
+def write_draft_and_replace(draft: Path, path: Path, content: bytes) -> None:
+    """Write a draft, which only its owner can read and which then replaces `path`, and sync both.
+
+    The draft is in the folder of `path`. Raises OSError; the old file then stays.
+    """
+    with open(draft, "wb", opener=_open_private) as file:
+        file.write(content)
+        file.flush()
+        os.fsync(file.fileno())
+    os.replace(draft, path)
+    sync_folder(path.parent)
 
 
 def sync_content(file: int) -> None:

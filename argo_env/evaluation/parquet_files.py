@@ -17,7 +17,7 @@ from pydantic import ValidationError
 
 from argo_compiler.base.errors import Unavailable, reason_text
 from argo_compiler.base.extras import install_line
-from argo_compiler.base.operating_system import open_private, sync_folder
+from argo_compiler.base.operating_system import write_draft_and_replace
 from argo_compiler.files.json_places import format_path
 from argo_env.evaluation.row import RunRow
 from argo_env.files.checked_files import damaged
@@ -59,12 +59,7 @@ def write_part(folder: Path, rows: Sequence[RunRow]) -> Path:
     draft = parts / f".part-{number:05d}.parquet"
     try:
         parts.mkdir(exist_ok=True)
-        with open(draft, "wb", opener=open_private) as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(draft, path)
-        sync_folder(parts)
+        write_draft_and_replace(draft, path, content)
     except OSError as error:
         raise Unavailable(f"{path} can't be written: {reason_text(error)}") from error
     return path

@@ -17,7 +17,12 @@ from typing import Any
 from pydantic import ValidationError
 
 from argo_compiler.base.errors import Conflict, NotFound, Unavailable
-from argo_compiler.base.operating_system import OPEN_FLAGS, open_private, sync_folder, try_lock
+from argo_compiler.base.operating_system import (
+    OPEN_FLAGS,
+    sync_folder,
+    try_lock,
+    write_draft_and_replace,
+)
 from argo_env.closing import Closing
 from argo_env.evaluation.parquet_files import (
     PARTS,
@@ -150,13 +155,8 @@ class RowStore(Closing):
 
     def _replace_log(self, rows: Sequence[RunRow]) -> None:
         """Replace the log by one with these rows; raises OSError if that fails."""
-        draft = self.folder / f".{LOG}"
-        with open(draft, "wb", opener=open_private) as file:
-            file.writelines(complete_lines([*map(_fields, rows)]))
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(draft, self.folder / LOG)
-        sync_folder(self.folder)
+        content = b"".join(complete_lines([*map(_fields, rows)]))
+        write_draft_and_replace(self.folder / f".{LOG}", self.folder / LOG, content)
 
     def close(self) -> None:
         """Write all rows through to the disk and release the folder's lock."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from argo_compiler.base.errors import Unreachable
 from argo_compiler.base.model import Pose
-from argo_compiler.diagnostics import Diagnostic, Severity
+from argo_compiler.diagnostics import Diagnostic, diagnostic_of
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.il import Action, Mission, Task
 
@@ -30,10 +30,9 @@ def not_seen_from_pose_warnings(mission: Mission, site: "OpenedSite") -> Iterato
         nearest = "another pose"
         if seeing is not None:
             nearest = f"the nearest pose that sees it ({_text(seeing)})"
-        yield Diagnostic(
-            code="site.not-seen-from-pose",
-            severity=Severity.WARNING,
-            message=f"task '{task.name}' measures from a pose from which its checkpoint is "
+        yield diagnostic_of(
+            "site.not-seen-from-pose",
+            f"task '{task.name}' measures from a pose from which its checkpoint is "
             f"not visible: {reason}",
             hint=f"give {nearest}, or none, so that the robot chooses one",
             subject=subject_of("tasks", task.name, ".pose"),
@@ -52,10 +51,9 @@ def with_seeing_poses(
     """
     moved = {task: (why, pose) for task, why, pose in _hidden_checkpoints(mission, site) if pose}
     warnings = tuple(
-        Diagnostic(
-            code="isar.pose-moved",
-            severity=Severity.WARNING,
-            message=f"task '{task.name}' measures from {_text(pose)}, the nearest pose that sees "
+        diagnostic_of(
+            "isar.pose-moved",
+            f"task '{task.name}' measures from {_text(pose)}, the nearest pose that sees "
             f"its checkpoint, as it is not visible from the given one: {why}",
             hint="check that the robot may stand there",
             subject=subject_of("tasks", task.name, ".pose"),
@@ -125,10 +123,9 @@ def above_own_speed_warnings(mission: Mission, robot: "RobotSpec") -> Iterator[D
     for task in mission.tasks:
         if task.velocity is None or task.velocity <= robot.speed:
             continue
-        yield Diagnostic(
-            code="site.faster-than-robot",
-            severity=Severity.WARNING,
-            message=f"the path to task '{task.name}' is to be driven at {task.velocity:g} m/s, but "
+        yield diagnostic_of(
+            "site.faster-than-robot",
+            f"the path to task '{task.name}' is to be driven at {task.velocity:g} m/s, but "
             f"the robot {robot.name} is not known to drive faster than {robot.speed:g} m/s",
             hint=f"give at most {robot.speed:g} m/s",
             subject=subject_of("tasks", task.name, ".velocity"),

@@ -21,9 +21,10 @@ from tests.argo_planner.service.test_http import data, problem
 
 
 @pytest.fixture(autouse=True)
-def service_still_works(service: Served):
-    """Check after each test that the service works."""
+def service_still_works(service: Served, monkeypatch: pytest.MonkeyPatch):
+    """Check after each test that the service works with its own limits."""
     yield
+    monkeypatch.undo()
     id = service.create(mission=data("a", "b"))
     assert service.command(id, 1, {"kind": "remove_task", "name": "b"}).status_code == 200
 

@@ -9,6 +9,7 @@ from argo_compiler.analysis.bound_verification import (
     least_steps_if_computable,
 )
 from argo_compiler.analysis.bound_witness_search import find_least_witness
+from argo_compiler.analysis.charging import diagnose_charge_and_place
 from argo_compiler.analysis.duration_with_failures import worst_case_duration_if_computable
 from argo_compiler.analysis.endings import diagnose_endings
 from argo_compiler.analysis.flow import Flow
@@ -101,6 +102,7 @@ def _analyse(mission: Mission, catalog: Catalog | None, travel: Travel | None) -
         *diagnose_unreachable_tasks(study),
         *diagnose_transitions(study),
         *diagnose_endings(study, loops),
+        *diagnose_charge_and_place(study),
     ]
     longest = (
         None if study.bounds_if_computable is None else worst_case_duration_if_computable(study)

@@ -1,16 +1,18 @@
-"""Diagnostics on the charging of a low battery: too long for the mission, or cut short."""
+"""Diagnostics on the charging of the battery: where, how far, how long, or cut short."""
 
 from collections.abc import Iterator
 
+from argo_compiler.analysis.docking import is_docked_after
 from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.travel import Travel
+from argo_compiler.base.model import Pose
 from argo_compiler.base.quantity_text import duration_text, rounded_down, rounded_up
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.diagnostics.subject import subject_of
+from argo_compiler.hfsm.charging import FULL, LOW
 from argo_compiler.il import Afterwards, EventKind, Reaction, Response
+from argo_compiler.il.docked import is_at_dock
 
-LOW_SHARE, CHARGED_SHARE = 0.2, 0.99
-"""shares of the battery's charge at which the robot calls it low and charged by itself"""
 _ESTIMATE_ERRORS = 0.01
 """share of the battery by which the estimates of the charge at both ends may be wrong together"""
 
@@ -28,7 +30,7 @@ def diagnose_charging(study: Study, travel: Travel) -> Iterator[Diagnostic]:
     for reaction in study.mission.reactions:
         if not _charges(reaction):
             continue
-        level = LOW_SHARE if reaction.battery_below is None else reaction.battery_below
+        level = LOW if reaction.battery_below is None else reaction.battery_below
         goal = _goal(reaction, level)
         to_level = max((goal - level - _ESTIMATE_ERRORS) / share_per_second, 0.0)
         needed = max(to_level, reaction.charge_for or 0.0)
@@ -54,7 +56,8 @@ def diagnose_charging(study: Study, travel: Travel) -> Iterator[Diagnostic]:
                 less = "recharge for a shorter time"
             else:
                 charging = f"from {level:.0%} to {goal:.0%}, which takes at least {least}"
-                less = "recharge to a lower level, such as `recharge to 60 %`"
+                rate = 60.0 * 100.0 * share_per_second
+                less = f"recharge to a lower level (it charges {rate:.1f} % in a minute)"
             yield study.diagnostic(
                 "charging-too-long",
                 f"the reaction to {reaction.event} charges the battery {charging}, longer than the "
@@ -62,6 +65,73 @@ def diagnose_charging(study: Study, travel: Travel) -> Iterator[Diagnostic]:
                 f"{less}, or allow more time",
                 subject=subject,
             )
+
+
+def diagnose_charge_and_place(study: Study) -> Iterator[Diagnostic]:
+    """Yield diagnostics on waits for a charge where nothing charges, and on a battery left low."""
+    mission = study.mission
+    areas = () if study.catalog is None else study.catalog.areas
+    docks = (*((mission.dock,) if mission.dock else ()), *(area.dock for area in areas))
+    for reaction in mission.reactions:
+        if _waits_for_charge_elsewhere(reaction, docks):
+            yield study.diagnostic(
+                "charge-elsewhere",
+                f"the reaction to {reaction.event} waits until the battery is charged, but not in "
+                "a docking station: nothing charges it there",
+                "return to the docking station, such as by `return, recharge and resume`",
+                subject=subject_of("reactions", reaction.event, ".until"),
+            )
+        if reaction.event is EventKind.LOW_BATTERY:
+            yield from _left_low(study, reaction)
+    for number, leaf in enumerate(study.flow.leaves):
+        waits = leaf.wait is not None and leaf.wait.event is EventKind.BATTERY_CHARGED
+        if not waits or not docks or not study.nominal.is_reached(number):
+            continue
+        if not any(is_docked_after(study, number, dock) for dock in docks):
+            yield study.diagnostic(
+                "charge-elsewhere",
+                f"task '{study.name(number)}' waits until the battery is charged, but the robot "
+                "may be elsewhere than in a docking station, where nothing charges it "
+                f"(path: {study.shortest_path_text(number)})",
+                "let it return to the docking station before",
+                number,
+            )
+
+
+def _waits_for_charge_elsewhere(reaction: Reaction, docks: tuple[Pose, ...]) -> bool:
+    """Return True if a reaction waits for a charge at a place that is none of the docks."""
+    if reaction.until is not EventKind.BATTERY_CHARGED:
+        return False
+    if reaction.response is Response.PAUSE:
+        return True
+    pose = reaction.pose
+    if not reaction.response.drives or pose is None or not docks:
+        return False
+    return not any(is_at_dock(pose, dock) for dock in docks)
+
+
+def _left_low(study: Study, reaction: Reaction) -> Iterator[Diagnostic]:
+    """Yield a diagnostic if the mission goes on after a low battery that is not charged enough."""
+    subject = subject_of("reactions", reaction.event)
+    goes_on = reaction.response.drives and reaction.afterwards is Afterwards.RESUME
+    if goes_on and reaction.until is None:
+        yield study.diagnostic(
+            "not-charged",
+            f"the reaction to {reaction.event} resumes the mission without charging the battery: "
+            "the robot reports a low battery again when 1 % less is left, and so on",
+            "wait until the battery is charged, such as by `return, recharge and resume`",
+            subject=subject,
+        )
+    level = reaction.charge_to
+    if level is not None and reaction.battery_below is None and level <= LOW:
+        yield study.diagnostic(
+            "charge-too-low",
+            f"the reaction to {reaction.event} charges the battery to {level:.0%}, and the robot "
+            f"calls a battery low below {LOW:.0%}: it leaves the dock with a battery that is "
+            "still low",
+            "charge to a higher level, or give a lower level for the reaction (`battery_below`)",
+            subject=f"{subject}.charge_to",
+        )
 
 
 def _charges(reaction: Reaction) -> bool:
@@ -76,5 +146,5 @@ def _charges(reaction: Reaction) -> bool:
 def _goal(reaction: Reaction, level: float) -> float:
     """Return the charge, 0 to 1, to which a reaction charges the battery from `level`."""
     if reaction.charge_to is not None:
-        return min(reaction.charge_to, CHARGED_SHARE)
-    return level if reaction.charge_for is not None else CHARGED_SHARE
+        return min(reaction.charge_to, FULL)
+    return level if reaction.charge_for is not None else FULL

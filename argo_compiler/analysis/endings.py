@@ -2,14 +2,12 @@
 
 from collections.abc import Collection, Iterable, Iterator
 
+from argo_compiler.analysis.docking import is_docked_after
 from argo_compiler.analysis.non_terminating_loops import NonTerminatingLoop
 from argo_compiler.analysis.study import Study
 from argo_compiler.base.listing import brief_quoted_list
-from argo_compiler.base.model import Pose
 from argo_compiler.base.quantity_text import limit_text
 from argo_compiler.diagnostics import Diagnostic, Severity
-from argo_compiler.il import Action, Task
-from argo_compiler.il.docked import is_at_dock
 
 _MOST_PATHS = 200  # diagnostics that show a path
 _REMEDY = (
@@ -204,7 +202,7 @@ def _ends_elsewhere(study: Study) -> Iterator[Diagnostic]:
         ):
             where = f"wherever the robot is when the window of task '{study.name(leaf)}' has closed"
             last_elsewhere[leaf] = where
-        elif not _is_docked_after(study, leaf, dock) and any(
+        elif not is_docked_after(study, leaf, dock) and any(
             _leads_to_end(study, target) for target in study.nominal.targets(flow, leaf)
         ):
             last_elsewhere[leaf] = f"after task '{study.name(leaf)}'"
@@ -237,27 +235,3 @@ def _leads_to_end(study: Study, node: int) -> bool:
         node = flow.groups[group].successor
         group = flow.group_of_round_end(node)
     return node == flow.end_node
-
-
-def _is_docked_after(study: Study, leaf: int, dock: Pose) -> bool:
-    """Return True if the robot is certainly at the dock after a leaf; a WAIT does not move it."""
-    seen = {leaf}
-    pending = [leaf]
-    while pending:
-        node = pending.pop()
-        if study.flow.is_leaf(node) and study.flow.leaves[node].wait is None:
-            missed = node != leaf and study.flow.leaves[node].deadline is not None
-            if missed or not _drives_to(study.leaf_task(node), dock):
-                return False
-            continue
-        before = study.predecessors[node]
-        cut = not study.flow.is_leaf(node) and study.flow.group_of_round_end(node) is None
-        if cut or node == study.flow.initial or not before:
-            return False
-        pending += [other for other in before if other not in seen]
-        seen.update(before)
-    return True
-
-
-def _drives_to(task: Task, dock: Pose) -> bool:
-    return task.action is Action.WAYPOINT and task.pose is not None and is_at_dock(task.pose, dock)

@@ -24,6 +24,7 @@ from argo_compiler.base.quantity_text import (
 )
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.diagnostics.subject import subject_of
+from argo_compiler.hfsm.charging import LOW
 from argo_compiler.hfsm.conditions import condition_text
 from argo_compiler.il import (
     Action,
@@ -38,8 +39,6 @@ from argo_compiler.il import (
 
 AGE_WORK = 3_000_000
 """greatest effort of the search for ages: number of objects times number of steps"""
-RESERVE_SHARE = 0.2
-"""share of the battery that must remain at the dock: the charge that the robot reports as low"""
 _SHOWN = 8  # parts of a path that a message lists
 
 
@@ -248,7 +247,7 @@ def _may_need_less_energy(study: Study) -> bool:
 def _no_way_back(study: Study, energy: Bounds, travel: Travel) -> Iterator[Diagnostic]:
     """Yield a diagnostic on the first task after which the battery may not suffice to return.
 
-    The drive leads to the mission's dock, where RESERVE_SHARE of the battery must remain. Only the
+    The drive leads to the mission's dock, where LOW of the battery must remain. Only the
     execution path that needs the most energy is considered.
     """
     dock, battery, most = study.mission.dock, travel.battery, energy.most.value
@@ -264,11 +263,11 @@ def _no_way_back(study: Study, energy: Bounds, travel: Travel) -> Iterator[Diagn
             cost = study.costs.task_cost_after_leaf(leaf, home)
             if not isinstance(cost, NoPath):
                 back = max(back, cost.energy.most)
-        if stretch.until + back + RESERVE_SHARE * battery > battery:
+        if stretch.until + back + LOW * battery > battery:
             yield study.diagnostic(
                 "no-way-back",
                 f"after {stretch.task_or_rounds_text} the battery may not suffice for the way back "
-                f"to the dock with a reserve of {RESERVE_SHARE:.0%}: up to "
+                f"to the dock with a reserve of {LOW:.0%}: up to "
                 f"{most_energy_text(stretch.until)} are used until then, the way back needs up to "
                 f"{most_energy_text(back)}, and the battery gives {energy_text(battery)}",
                 "leave out tasks or rounds, charge in between, or react to low_battery",

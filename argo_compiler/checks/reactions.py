@@ -196,6 +196,15 @@ def _check_until(
             ".until",
         )
         return
+    restored = reaction.until is EventKind.CONNECTION_RESTORED
+    if restored and reaction.event is not EventKind.CONNECTION_LOST and not reaction.hold_limit:
+        yield item.diagnostic(
+            "il.not-lost-before",
+            f"the reaction to {reaction.event} waits for connection_restored without a limit, "
+            "which the robot reports only after the connection was lost",
+            "wait for another event, or limit the wait (`hold_limit`)",
+            ".until",
+        )
     other = first.get(reaction.until) if reaction.until else None
     if (
         other

@@ -2,6 +2,10 @@
 
 from typing import NamedTuple
 
+LOW, FULL = 0.2, 0.99
+"""charge, 0 to 1, below which a robot calls its battery low, and from which on it calls it charged,
+if the mission names no other"""
+
 
 class AwaitedCharge(NamedTuple):
     """Charge for which a hold or a WAIT waits: with it, the robot raises BATTERY_CHARGED."""
@@ -10,6 +14,8 @@ class AwaitedCharge(NamedTuple):
     """least charge, 0 to 1; None: the robot's own level of a charged battery"""
     not_before: float
     """time (s) before which the robot does not raise the event"""
+    while_charging: bool = False
+    """whether the robot raises the event only if the battery charges then, or is full"""
 
 
 def awaited_charge(
@@ -21,4 +27,4 @@ def awaited_charge(
     """
     if charge_for is None:
         return AwaitedCharge(charge_to, since)
-    return AwaitedCharge(0.0 if charge_to is None else charge_to, since + charge_for)
+    return AwaitedCharge(0.0 if charge_to is None else charge_to, since + charge_for, True)

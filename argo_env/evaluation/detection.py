@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from argo_compiler.base.model import Model
+from argo_compiler.hfsm.charging import LOW
 from argo_compiler.il import EventKind
 from argo_env.drives.battery import ESTIMATE_ERROR
 from argo_env.faults.kinds import AnyFault
@@ -11,7 +12,6 @@ from argo_env.run.causes import false_all_clears, may_be_caused_by
 from argo_env.run.record import Finding, RunRecord
 from argo_env.run.run_setup import displayed_value, true_values
 from argo_env.run.spec import RunSpec, ValueProfile
-from argo_env.sensing.battery_watch import LOW
 from argo_env.site import Site
 
 

@@ -319,7 +319,11 @@ class RemoteRobot:
     def restore_anomalies(self, reported: Sequence[tuple[Anomaly, BodyPose]], now: float) -> None:
         """No-op: the robot remembers by itself what it has reported."""
 
-    def set_awaited_charges(self, awaited: tuple[AwaitedCharge, ...]) -> None:
+    def set_mission_state(
+        self,
+        awaited: tuple[AwaitedCharge, ...],
+        reaction: EventKind | None,  # noqa: ARG002
+    ) -> None:
         self._awaited_charges = awaited
 
     @property
@@ -336,7 +340,10 @@ class RemoteRobot:
             charge is not None
             and bool(self._awaited_charges)
             and all(
-                awaited.level is not None and charge >= awaited.level and now >= awaited.not_before
+                awaited.level is not None
+                and charge >= awaited.level
+                and now >= awaited.not_before
+                and (self.supply.charging or not awaited.while_charging)
                 for awaited in self._awaited_charges
             )
         )

@@ -145,6 +145,8 @@ class Entry(Model):
     battery_alarm: float | None = None
     """charge, 0 to 1, below which the robot reports a low battery next; None: the mission's level,
     or no battery"""
+    alarm_power: float | None = None
+    """power of the loudest tone of the alarm since it began, as recorded; None: there was none"""
     given: int = 0
     """number of scheduled events that had occurred"""
     added: tuple[tuple[float, LoggedEvent], ...] = ()

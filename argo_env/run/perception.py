@@ -4,12 +4,12 @@ Each anomaly is reported once, even if the run was resumed in between.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from argo_compiler.il import EventKind
 from argo_env.navigation import Blockage
 from argo_env.robot.pose import BodyPose
-from argo_env.run.record import DIGITS, Anomaly, Reading, anomaly_from_reading
+from argo_env.run.record import DIGITS, Anomaly, Reading, anomaly_from_reading, ends
 from argo_env.sensing.signals.terrain_watch import SAME_OBSTACLE, ObstacleDetection
 from argo_env.sensing.watch import (
     Detection,
@@ -21,6 +21,8 @@ from argo_env.sensing.watch import (
 from argo_env.site import Site
 from argo_env.site.shapes import Vector
 
+_LASTING = frozenset({EventKind.GAS_LEAK, EventKind.PLATFORM_ALARM})
+"""dangers whose end a robot senses"""
 OBSTACLES = frozenset({EventKind.POSITIVE_OBSTACLE, EventKind.NEGATIVE_OBSTACLE})
 _AROUND = 0.25  # m around the position of an obstacle whose extent was not seen
 _SAME_PLACE = 1.0  # m within which a detection is a known anomaly, after a run was resumed
@@ -40,6 +42,12 @@ class Perception:
         ]
         self._skippable = [w if isinstance(w, SkippableWatch) else None for w in watches]
         self._known: list[Anomaly] = []
+        self.reaction: EventKind | None = None
+        """event to which the mission reacts now; the run sets it"""
+        self._dangers: dict[str, EventKind] = {}
+        """lasting danger that each watch has found, without those that are over"""
+        self._all_clears: dict[str, Detection] = {}
+        """all-clear of each watch that is withheld"""
 
     def restore_anomalies(self, reported: Sequence[tuple[Anomaly, BodyPose]], now: float) -> None:
         """Restore the anomalies reported so far, for a run that continues with new watches.
@@ -49,6 +57,11 @@ class Perception:
             now: time at which the run continues in s.
         """
         self._known = [anomaly for anomaly, _ in reported]
+        for anomaly in self._known:
+            if anomaly.kind in _LASTING:
+                self._dangers[anomaly.source] = anomaly.kind
+            elif anomaly.kind is EventKind.ALL_CLEAR:
+                self._dangers.pop(anomaly.source, None)
         for watch, _, _ in self._turns:
             if isinstance(watch, RestorableWatch):
                 own = [
@@ -69,7 +82,7 @@ class Perception:
         found = []
         for watch, every, turn in self._turns:
             if step % every == turn:
-                for detection in watch.update(now, pose):
+                for detection in self._given(watch, watch.update(now, pose)):
                     if not self._was_reported(watch, detection):
                         found.append(self._anomaly(watch, detection, now))
         return tuple(found)
@@ -83,10 +96,37 @@ class Perception:
             charges: lowest and highest charge of the battery in the batch, 0 to 1.
         """
         steps: set[int] = set()
-        for (_, every, turn), skippable in zip(self._turns, self._skippable, strict=True):
-            if skippable is None or not skippable.can_skip_updates(*charges):
+        for (watch, every, turn), skippable in zip(self._turns, self._skippable, strict=True):
+            if (
+                skippable is None
+                or watch.name in self._all_clears
+                or not skippable.can_skip_updates(*charges)
+            ):
                 steps.update(range(first + (turn - first) % every, last + 1, every))
         return steps
+
+    def _given(self, watch: Watch, detections: Sequence[Detection]) -> Iterator[Detection]:
+        """Yield the new detections of a watch, but an all-clear only when it may be given."""
+        for detection in detections:
+            if detection.kind is EventKind.ALL_CLEAR:
+                self._all_clears[watch.name] = detection
+                continue
+            if detection.kind in _LASTING:
+                self._dangers[watch.name] = detection.kind
+                self._all_clears.pop(watch.name, None)
+            yield detection
+        if watch.name in self._all_clears and self._may_give_all_clear(watch.name):
+            self._dangers.pop(watch.name, None)
+            yield self._all_clears.pop(watch.name)
+
+    def _may_give_all_clear(self, source: str) -> bool:
+        """Return True if no other danger goes on, or the mission reacts to that which is over.
+
+        An all-clear ends the mission's wait, so that of another danger would be a false one.
+        """
+        if self.reaction is not None and ends(EventKind.ALL_CLEAR, self.reaction):
+            return self._dangers.get(source, self.reaction) is self.reaction
+        return all(other == source or other in self._all_clears for other in self._dangers)
 
     def _was_reported(self, watch: Watch, detection: Detection) -> bool:
         """Return True if the detection is an anomaly that was reported before the run was resumed.

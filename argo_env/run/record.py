@@ -48,6 +48,11 @@ _ENDS = {
 """Events that report the end of others, with the events that each of them can end."""
 
 
+def ends(end: EventKind, event: EventKind) -> bool:
+    """Return True if the event `end` reports the end of others, and `event` may be one of them."""
+    return event in _ENDS.get(end, ())
+
+
 class PathSample(Model):
     """Point of the recorded path: the robot's pose at a time."""
 
@@ -230,7 +235,7 @@ class Anomaly(Model):
 
         A watch can end an anomaly that it noticed itself, a person can end any.
         """
-        return other.kind in _ENDS.get(self.kind, ()) and self.source in (REPORTED, other.source)
+        return ends(self.kind, other.kind) and self.source in (REPORTED, other.source)
 
 
 class Finding(Anomaly):

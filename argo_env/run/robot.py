@@ -14,7 +14,7 @@ from argo_compiler.hfsm import (
     AwaitedCharge,
     StartAction,
 )
-from argo_compiler.il import Task
+from argo_compiler.il import EventKind, Task
 from argo_env.navigation import Blockage, Path
 from argo_env.robot.pose import BodyPose
 from argo_env.run.initial_state import InitialState
@@ -120,8 +120,10 @@ class AnyRobot(Protocol):
         Each comes with the robot's pose then.
         """
 
-    def set_awaited_charges(self, awaited: tuple[AwaitedCharge, ...]) -> None:
-        """Set the charges of the battery for which the mission waits now."""
+    def set_mission_state(
+        self, awaited: tuple[AwaitedCharge, ...], reaction: EventKind | None
+    ) -> None:
+        """Set the charges for which the mission waits now, and the event to which it reacts."""
 
     @property
     def expects_awaited_charge(self) -> bool:

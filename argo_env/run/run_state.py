@@ -160,7 +160,7 @@ class SimulationState:
                 self.execute(self.machine.handle(event.to_event(), self.now))
                 self._interruptions.update(self.machine, self.now)
                 self.supervision.update(event.kind, self.machine)
-        self._vehicle.set_awaited_charges(self.machine.awaited_charges)
+        self._vehicle.set_mission_state(self.machine.awaited_charges, self.machine.reaction)
         if entry.by_hand:
             self.supervision.acting = True
             self._start_action(StartAction(entry.by_hand))
@@ -173,7 +173,7 @@ class SimulationState:
         """Start the machine and execute its first commands."""
         self.execute(self.machine.start(self.now))
         self._interruptions.update(self.machine, self.now)
-        self._vehicle.set_awaited_charges(self.machine.awaited_charges)
+        self._vehicle.set_mission_state(self.machine.awaited_charges, self.machine.reaction)
 
     def execute(self, commands: Sequence[Command]) -> None:
         """Execute the machine's commands: start actions and cancel them."""

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import AwaitedCharge, StartAction
+from argo_compiler.il import EventKind
 from argo_env.drives.battery import power_draw_per_step
 from argo_env.drives.powertrain import Powertrain, StepsAhead
 from argo_env.navigation import Blockage, Path
@@ -30,6 +31,7 @@ from argo_env.run.record import Anomaly
 from argo_env.run.robot import RobotAction, Sensed
 from argo_env.run.run_setup import RunSetup
 from argo_env.sensing.battery_watch import BatteryWatch
+from argo_env.sensing.signals.alarm_watch import AlarmWatch
 
 
 class StepBatch:
@@ -142,6 +144,7 @@ class Vehicle:
         """the action that was started last"""
         self._perception = Perception(setup.watches, site, setup.drive.time_step)
         self._battery_watch = next((w for w in setup.watches if isinstance(w, BatteryWatch)), None)
+        self._alarm_watch = next((w for w in setup.watches if isinstance(w, AlarmWatch)), None)
 
     def begin_at(self, pose: BodyPose, now: float) -> None:
         """Begin or continue a run at time `now` (s): set the robot's pose and update the faults."""
@@ -170,11 +173,17 @@ class Vehicle:
         self.supply.restore(last)
         if self._battery_watch is not None:
             self._battery_watch.alarm_level = last.battery_alarm
+        if self._alarm_watch is not None:
+            self._alarm_watch.loudest = last.alarm_power
 
-    def set_awaited_charges(self, awaited: tuple[AwaitedCharge, ...]) -> None:
-        """Set the charges of the battery for which the mission waits now."""
+    def set_mission_state(
+        self, awaited: tuple[AwaitedCharge, ...], reaction: EventKind | None
+    ) -> None:
+        """Set the charges for which the mission waits now, and the event to which it reacts."""
+        self._perception.reaction = reaction
         if self._battery_watch is not None:
             self._battery_watch.awaited = awaited
+            self._battery_watch.is_answered = reaction is EventKind.LOW_BATTERY
 
     @property
     def expects_awaited_charge(self) -> bool:
@@ -256,8 +265,8 @@ class Vehicle:
     def state_for_entry(self) -> dict[str, Any]:
         """Return the robot's present state as fields of an `Entry` of the log, by name.
 
-        These are pose, distance, climb, charge, the level of the next report of a low battery and
-        open contacts, and the mishaps and ended contacts that no entry has yet.
+        These are pose, distance, climb, charge, the level of the next report of a low battery, the
+        loudest alarm and open contacts, and the mishaps and ended contacts that no entry has yet.
         """
         pose, odometry = self.setup.drive.pose, self.odometry
         return {
@@ -266,6 +275,7 @@ class Vehicle:
             "climbed": odometry.climbed,
             "charge": self.supply.charge,
             "battery_alarm": self._battery_watch.alarm_level if self._battery_watch else None,
+            "alarm_power": self._alarm_watch.loudest if self._alarm_watch else None,
             "mishaps": tuple(odometry.mishaps),
             "contacts": tuple(odometry.ended_contacts),
             "touching": odometry.touching,

@@ -15,6 +15,7 @@ from itertools import accumulate, repeat
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_compiler.hfsm.charging import LOW
 from argo_compiler.il import EventKind
 from argo_env.drives.battery import Battery
 from argo_env.drives.powertrain import Powertrain
@@ -22,7 +23,7 @@ from argo_env.navigation.path import Path, wrap
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec
 from argo_env.seeding import generator
-from argo_env.sensing.battery_watch import LOW, BatteryWatch
+from argo_env.sensing.battery_watch import BatteryWatch
 from argo_env.sensing.sensor import Measurement, MeasurementError, Sensor
 from argo_env.sensing.watch import Detection, ReportedDetection, Watch
 from argo_env.site import Site

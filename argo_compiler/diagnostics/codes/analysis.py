@@ -20,6 +20,14 @@ ANALYSIS = {
         "as it has to be.",
         "Allow more time in `hold_limit`, or charge to a lower level (`charge_to`).",
     ),
+    "analysis.charge-elsewhere": warning(
+        "A reaction or a WAIT waits until the battery is charged where nothing charges it.",
+        "Let the robot return to the docking station before.",
+    ),
+    "analysis.charge-too-low": warning(
+        "The reaction to a low battery charges it to a level that the robot calls low.",
+        "Charge to a higher level (`charge_to`), or react to a lower one (`battery_below`).",
+    ),
     "analysis.charging-too-long": warning(
         "Charging a low battery alone takes longer than the mission's maximum duration.",
         "Charge to a lower level (`charge_to`), or allow more time.",
@@ -67,6 +75,10 @@ ANALYSIS = {
         "On some execution path the battery may not suffice for the drive back to the dock with a "
         "reserve.",
         "Leave out tasks or rounds, charge in between, or react to `low_battery`.",
+    ),
+    "analysis.not-charged": warning(
+        "The reaction to a low battery returns to the docking station, and goes on uncharged.",
+        "Wait until the battery is charged (`until`).",
     ),
     "analysis.time-limit": warning(
         "A task without retries takes longer than its time limit, even as planned.",

@@ -148,6 +148,11 @@ IL = {
         "The mission ends after a task if none of its conditions is true.",
         "Add an unconditional transition if the mission is to continue.",
     ),
+    "il.not-lost-before": warning(
+        "A reaction waits without a limit until the connection is restored, but its event is not "
+        "that the connection was lost.",
+        "Wait for another event, or limit the wait.",
+    ),
     "il.order-broken": warning(
         "A task that must come before another one can come after it. An error if the order is "
         "precise and it always comes after it.",

@@ -79,7 +79,8 @@ class AlarmWatch:
         self._microphone = microphone
         self._recordings: deque[tuple[float, bool]] = deque(maxlen=BEAT_RECORDINGS)
         self._last_tone: float | None = None  # s, of the last tone, or of noise that may hide it
-        self._loudest: float | None = None  # power of the loudest tone; None: not heard yet
+        self.loudest: float | None = None
+        """power of the loudest tone since the alarm began; None: there was none"""
         self._reported = False
         self._idle_updates = 0
 
@@ -96,8 +97,8 @@ class AlarmWatch:
         tone = power > needed
         self._recordings.append((now, tone))
         if tone:
-            self._loudest = max(power, self._loudest or 0.0)
-        if tone or (self._loudest is not None and self._loudest < 10 ** (HIDING / 10) * needed):
+            self.loudest = max(power, self.loudest or 0.0)
+        if tone or (self.loudest is not None and self.loudest < 10 ** (HIDING / 10) * needed):
             self._last_tone = now
         if not self._reported and tone and matches_alarm_beat(self._recordings):
             self._reported = True
@@ -105,6 +106,6 @@ class AlarmWatch:
         if self._reported and self._last_tone is not None and now - self._last_tone >= CLEAR_TIME:
             self._reported = False
             self._recordings.clear()
-            self._loudest = None
+            self.loudest = None
             return (Detection(EventKind.ALL_CLEAR, "the general platform alarm is over"),)
         return ()

@@ -40,8 +40,8 @@ def holding(**fields):
     [
         ({}, AwaitedCharge(None, 3.0)),
         ({"charge_to": 0.6}, AwaitedCharge(0.6, 3.0)),
-        ({"charge_for": 60}, AwaitedCharge(0.0, 63.0)),
-        ({"charge_to": 0.6, "charge_for": 60}, AwaitedCharge(0.6, 63.0)),
+        ({"charge_for": 60}, AwaitedCharge(0.0, 63.0, while_charging=True)),
+        ({"charge_to": 0.6, "charge_for": 60}, AwaitedCharge(0.6, 63.0, while_charging=True)),
     ],
 )
 def test_a_hold_waits_for_a_charge_until_it_is_over(fields, awaited):

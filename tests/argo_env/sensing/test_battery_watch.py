@@ -102,6 +102,25 @@ def test_a_wait_that_a_person_ends_at_once_counts_as_charging_too(yard):
     assert reports(yard, (0.239, 0.22), watch=watch) == [(0.239, LOW)]
 
 
+@pytest.mark.rule("R11")
+def test_a_reaction_that_ends_without_charging_rearms_the_watch(yard):
+    watch = BatteryWatch(Battery(yard.robot), 0.3)
+    assert reports(yard, (0.35, 0.25), watch=watch) == [(0.25, LOW)]
+    watch.is_answered = True
+    assert reports(yard, (0.249, 0.2), watch=watch) == []
+    watch.is_answered = False
+    assert reports(yard, (0.199, 0.185), watch=watch) == [(0.185, LOW)]
+
+
+@pytest.mark.rule("R12")
+def test_a_time_of_charging_counts_only_while_the_battery_charges(yard):
+    watch = BatteryWatch(Battery(yard.robot), 0.2)
+    watch.awaited = (AwaitedCharge(0.0, 0.0, while_charging=True),)
+    assert reports(yard, (0.5, 0.4), watch=watch) == []
+    assert not watch.has_awaited_charge
+    assert reports(yard, (0.4,), CHARGING_W, watch=watch) == [(0.4, CHARGED)]
+
+
 @pytest.mark.rule("R12")
 @pytest.mark.parametrize(
     ("awaited", "now", "charge", "charged"),
@@ -111,6 +130,8 @@ def test_a_wait_that_a_person_ends_at_once_counts_as_charging_too(yard):
         ([AwaitedCharge(0.6, 5.0)], 4.0, 0.61, False),
         ([AwaitedCharge(0.6, 5.0)], 5.0, 0.61, True),
         ([AwaitedCharge(0.0, 5.0)], 5.0, 0.31, True),
+        ([AwaitedCharge(0.0, 5.0, while_charging=True)], 5.0, 0.31, False),
+        ([AwaitedCharge(0.0, 5.0, while_charging=True)], 5.0, 1.0, True),
         ([AwaitedCharge(None, 0.0)], 1.0, 0.98, False),
         ([AwaitedCharge(None, 0.0)], 1.0, 1.0, True),
         ([AwaitedCharge(1.0, 0.0)], 1.0, 1.0, True),
@@ -136,7 +157,12 @@ SHARES = st.floats(0.0, 1.0)
     level=SHARES,
     was_low=st.booleans(),
     awaited=st.lists(
-        st.builds(AwaitedCharge, st.one_of(st.none(), SHARES), st.sampled_from([0.0, 5.0])),
+        st.builds(
+            AwaitedCharge,
+            st.one_of(st.none(), SHARES),
+            st.sampled_from([0.0, 5.0]),
+            st.booleans(),
+        ),
         max_size=2,
     ),
     charges=st.lists(SHARES, min_size=1, max_size=6),

@@ -151,6 +151,17 @@ def test_a_weak_alarm_that_noise_hides_is_not_over(site, level):
     assert [f.kind for _, f in found] == [EventKind.PLATFORM_ALARM]
 
 
+def test_a_weak_alarm_that_noise_hides_is_not_over_when_the_run_is_resumed(site):
+    watch, surroundings = alarm_watch(site)
+    surroundings.add(Alarm(60.0), 0.0)
+    assert len(detections_at(watch, 120.0, 0.0, BodyPose(-30.0, 2.0, Z, 0.0))) == 1
+    again, surroundings = alarm_watch(site)
+    surroundings.add(Alarm(60.0), 0.0)
+    again.restore([ReportedDetection(EventKind.PLATFORM_ALARM, BESIDE)], 120.0)
+    again.loudest = watch.loudest
+    assert detections_at(again, 120.0, 120.0, BodyPose(3.0, 4.6, Z, 0.0)) == []
+
+
 def test_an_alarm_that_is_over_before_the_run_is_resumed(site):
     watch, _ = alarm_watch(site)
     watch.restore([ReportedDetection(EventKind.PLATFORM_ALARM, BESIDE)], 100.0)

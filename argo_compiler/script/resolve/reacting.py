@@ -66,6 +66,11 @@ class _Answer:
         """The answer with a pause if nothing else is done."""
         return replace(self, response=self.response or Response.PAUSE)
 
+    @property
+    def recharging(self) -> "_Answer":
+        """The answer with a return to the dock, unless the robot drives somewhere already."""
+        return self if self.drives else replace(self, response=Response.RETURN)
+
 
 class _Trigger(NamedTuple):
     event: EventKind
@@ -156,7 +161,7 @@ class Reactions:
             case orders.Plain(word=PlainWord.PAUSE):
                 return answer.pausing
             case orders.Plain(word=PlainWord.RECHARGE):
-                return self._until(_CHARGED, answer, order.span).pausing
+                return self._until(_CHARGED, answer, order.span).recharging
             case orders.Plain(word=PlainWord.GO_ON):
                 return self._afterwards(order, answer, Afterwards.RESUME)
             case orders.Plain(word=PlainWord.ABORT | PlainWord.END) if not answer.drives:

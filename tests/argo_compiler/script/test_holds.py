@@ -56,6 +56,21 @@ def test_what_can_not_be_or_is_open_is_an_error(catalog, said):
 CHARGED = EventKind.BATTERY_CHARGED
 
 
+@pytest.mark.parametrize(
+    ("said", "response"),
+    [
+        ("recharge to 60 % and resume", Response.RETURN),
+        ("pause, recharge to 60 % and resume", Response.RETURN),
+        ("pause until the battery is charged", Response.PAUSE),
+        ("go to starting area 2, recharge to 60 % and resume", Response.SAFE_AREA),
+    ],
+)
+def test_recharging_is_done_in_the_dock_unless_the_script_names_a_place(catalog, said, response):
+    text = f"1. Start in starting area 1.\n2. Check #4.\nIf the battery is low, {said}."
+    (found,) = import_script(text, catalog).mission.reactions
+    assert (found.response, found.until) == (response, CHARGED)
+
+
 @pytest.mark.rule("R12")
 @pytest.mark.parametrize(
     ("said", "charge", "time", "limit"),

@@ -1,7 +1,7 @@
 """The navigator, which finds paths from pose to pose and to where a checkpoint can be read."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from itertools import pairwise
@@ -235,6 +235,20 @@ class Navigator:
             NotFound: There is no such checkpoint.
         """
         return self._path_to_view(start, checkpoint_id, checkpoint_turn)
+
+    def views_by_distance(self, pose: Pose, checkpoint_id: int) -> Iterator[Pose]:
+        """Yield the poses from which a checkpoint can be read, the nearest to `pose` first.
+
+        They are those of the lattice, in cells of some centimetres, with a few headings each. Of
+        several headings in a cell, that nearest to the heading of `pose` comes first. Raises
+        NotFound if there is no such checkpoint.
+        """
+        states, _ = self._views(checkpoint_id)
+        rows = self.lattice.state_poses(states)
+        distance = np.linalg.norm(rows[:, :3] - (pose.x, pose.y, pose.z), axis=1)
+        turn = np.abs((rows[:, 3] - pose.yaw + np.pi) % (2 * np.pi) - np.pi)
+        for index in np.lexsort((turn, distance.round(6))).tolist():
+            yield _poses(self.lattice, [int(states[index])])[0]
 
     def _find_path_to_view(self, start: Pose, checkpoint_id: int, checkpoint_turn: float) -> Path:
         return self._smoothed(self._states_to_view(start, checkpoint_id, checkpoint_turn), start)

@@ -27,6 +27,8 @@ def not_seen_from_pose_warnings(mission: Mission, site: "OpenedSite") -> Iterato
     get no warning, as the analysis reports them; nor do those without a pose.
     """
     for task, reason, seeing in _hidden_checkpoints(mission, site):
+        if reason is None:
+            continue
         nearest = "another pose"
         if seeing is not None:
             nearest = f"the nearest pose that sees it ({_text(seeing)})"
@@ -49,12 +51,16 @@ def with_seeing_poses(
         The mission, and a warning for each replaced pose of this mission of isar. A task whose
         checkpoint is not seen from anywhere keeps its pose.
     """
-    moved = {task: (why, pose) for task, why, pose in _hidden_checkpoints(mission, site) if pose}
+    moved = {
+        task: (why or "the robot can't stand there", pose)
+        for task, why, pose in _hidden_checkpoints(mission, site)
+        if pose
+    }
     warnings = tuple(
         diagnostic_of(
             "isar.pose-moved",
             f"task '{task.name}' measures from {_text(pose)}, the nearest pose that sees "
-            f"its checkpoint, as it is not visible from the given one: {why}",
+            f"its checkpoint, and not from the given one: {why}",
             hint="check that the robot may stand there",
             subject=subject_of("tasks", task.name, ".pose"),
         )
@@ -69,24 +75,28 @@ def with_seeing_poses(
 
 def _hidden_checkpoints(
     mission: Mission, site: "OpenedSite"
-) -> Iterator[tuple[Task, str, Pose | None]]:
-    """Yield each task that can't measure from its pose, why, and the nearest pose where it can."""
+) -> Iterator[tuple[Task, str | None, Pose | None]]:
+    """Yield each task that can't measure from its pose, why, and the nearest pose where it can.
+
+    The reason is None if the robot can't stand at the pose.
+    """
     known = {str(checkpoint.id) for checkpoint in site.site.checkpoints}
     for task in mission.tasks:
         if task.action is not Action.MEASURE or task.pose is None or task.object_id not in known:
             continue
-        reason = _find_obstruction(task, task.pose, site.navigator)
+        try:
+            reason = _find_obstruction(task, task.pose, site.navigator)
+        except Unreachable:
+            yield task, None, _nearest_seeing_pose(task, task.pose, site.navigator)
+            continue
         if reason is not None:
             yield task, reason, _nearest_seeing_pose(task, task.pose, site.navigator)
 
 
 def _nearest_seeing_pose(task: Task, pose: Pose, navigator: "Navigator") -> Pose | None:
     checkpoint = navigator.site.checkpoint_for(task.object_id)
-    try:
-        nearest = navigator.plan_to_view(pose, checkpoint.id).end
-    except Unreachable:
-        return None
-    return None if _find_obstruction(task, nearest, navigator) else nearest
+    views = navigator.views_by_distance(pose, checkpoint.id)
+    return next((one for one in views if not _find_obstruction(task, one, navigator)), None)
 
 
 def _text(pose: Pose) -> str:
@@ -94,7 +104,10 @@ def _text(pose: Pose) -> str:
 
 
 def _find_obstruction(task: Task, pose: Pose, navigator: "Navigator") -> str | None:
-    """Return why a task can't measure from a pose; None: it can, or the pose can't be reached."""
+    """Return why a task can't measure from a pose; None: it can.
+
+    Raises Unreachable if the robot can't stand there.
+    """
     # Imported here, as a mission without such poses is checked without these modules.
     from argo_env.robot.pose import BodyPose
     from argo_env.sensing.ideal import IdealSensor
@@ -109,8 +122,6 @@ def _find_obstruction(task: Task, pose: Pose, navigator: "Navigator") -> str | N
         sensor.measure(checkpoint.id, BodyPose(snapped.x, snapped.y, snapped.z, snapped.yaw))
     except MeasurementError as error:
         return str(error)
-    except Unreachable:
-        return None
     return None
 
 

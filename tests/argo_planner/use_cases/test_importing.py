@@ -1,8 +1,11 @@
 """Import of missions from bytes: kinds of uploads, and errors."""
 
+import math
+
+import numpy as np
 import pytest
 
-from argo_compiler.base.errors import ArgoError, Invalid, Remedy
+from argo_compiler.base.errors import ArgoError, Invalid, Remedy, Unreachable
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.files.mission_file import mission_text
@@ -10,7 +13,7 @@ from argo_compiler.hfsm import lower
 from argo_compiler.isar import to_isar
 from argo_compiler.ros import Storage, to_ros1_bag, to_ros2_bag
 from argo_env.planning.inspection_views import inspection_views_by_object_id
-from argo_env.planning.site_warnings import not_seen_from_pose_warnings
+from argo_env.planning.site_warnings import not_seen_from_pose_warnings, with_seeing_poses
 from argo_planner.use_cases.checking import check_source
 from argo_planner.use_cases.importing import (
     SourceKind,
@@ -134,7 +137,7 @@ def test_a_checkpoint_of_isar_is_read_from_the_nearest_pose_that_sees_it(site):
     upload = Upload("plan.json", to_isar(planned, lower(planned), views).encode())
     imported = import_mission(upload, site)
     (warning,) = [d for d in imported.warnings if d.code == "isar.pose-moved"]
-    assert "not visible from the given one: " in warning.message
+    assert "not from the given one: " in warning.message
     first, second = (t for t in imported.mission.tasks if t.object_id)
     assert f"x {first.pose.x:.2f}, y {first.pose.y:.2f}" in warning.message
     assert (first.pose.x, first.pose.y) != (hidden.x, hidden.y)
@@ -143,6 +146,27 @@ def test_a_checkpoint_of_isar_is_read_from_the_nearest_pose_that_sees_it(site):
     codes = [diagnostic.code for diagnostic in check_source(upload, site.catalog, site=site)]
     assert codes.count("isar.pose-moved") == 1
     assert "site.not-seen-from-pose" not in codes
+
+
+@pytest.mark.parametrize(
+    ("x", "y"), [(5.55, 1.55), (5.0, 3.0), (2.05, 0.55), (100.0, 100.0), (-3.0, 0.0)]
+)
+def test_no_pose_that_sees_a_checkpoint_of_isar_is_nearer_than_the_offered_one(site, x, y):
+    given = Pose(x=x, y=y, z=0.02)
+    plan, warnings = with_seeing_poses(mission(measure(1, pose=given)), site)
+    assert [warning.code for warning in warnings] == ["isar.pose-moved"]
+    (offered,) = [task.pose for task in plan.tasks if task.object_id]
+    nearer = math.hypot(offered.x - x, offered.y - y) - 0.1
+    rng = np.random.default_rng(1)
+    for _ in range(200):
+        beside = Pose(x=offered.x + rng.uniform(-1, 1), y=offered.y + rng.uniform(-1, 1), z=0.02)
+        try:
+            stands = site.navigator.snap_keeping_heading(beside)
+        except Unreachable:
+            continue
+        if math.hypot(stands.x - x, stands.y - y) < nearer:
+            pose = stands.model_copy(update={"yaw": rng.uniform(-math.pi, math.pi)})
+            assert list(not_seen_from_pose_warnings(mission(measure(1, pose=pose)), site))
 
 
 def test_a_pose_of_isar_that_sees_its_checkpoint_stays(site):

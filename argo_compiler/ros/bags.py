@@ -56,8 +56,8 @@ _MAX_COPIED_BYTES = 1_000_000_000
 _MAX_LISTED_TOPICS = 8
 """Number of topics that an error lists."""
 _MODULES = ("rosbags.rosbag1", "rosbags.rosbag2")
-_CALCULATED = re.compile(r"\bvirtual\b|\bgenerated\b|\bas\s*\(", re.IGNORECASE)
-"""parts of the definition of a table whose content is calculated"""
+_CALCULATED = re.compile(r"\b(virtual|as)\b", re.IGNORECASE)
+"""words in the definition of a table whose content is calculated; recorders write neither"""
 
 
 class Storage(StrEnum):

@@ -273,6 +273,10 @@ CALCULATED = {
         "CREATE TABLE more(id INTEGER, data BLOB AS (zeroblob(900000000 + id)))",
         "table more",
     ),
+    "a generated column behind a comment": (
+        "CREATE TABLE more(id INTEGER, data BLOB AS/**/(zeroblob(900000000 + id)))",
+        "table more",
+    ),
     "a trigger": (
         "CREATE TRIGGER t AFTER INSERT ON topics BEGIN DELETE FROM messages; END",
         "trigger t",

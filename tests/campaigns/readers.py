@@ -227,6 +227,8 @@ def draw_database(rng: random.Random) -> bytes:
         [content] = bags(".db3")
         path.write_bytes(content)
         database = sqlite3.connect(path)
+        database.execute("PRAGMA synchronous=OFF")
+        database.execute("PRAGMA journal_mode=MEMORY")
         for name, columns in rng.sample(sorted(tables.items()), rng.choice((1, 1, 2))):
             values = [rng.choice(expressions) for _ in columns]
             database.execute(f"DROP TABLE IF EXISTS {name}")

@@ -253,9 +253,6 @@ _PALETTE_SAMPLES = 6
 VERDICT_TIME = 2.0
 """s for which the film stops at its end and shows the verdict"""
 
-Progress = Callable[[float], None]
-"""function that is called with the completed share, from 0 to 1"""
-
 
 def check_film(file: Path) -> None:
     """Raise an error if no film can be written to the file.
@@ -281,7 +278,7 @@ def write_film(
     speed: float = 10.0,
     fps: int | None = None,
     size: tuple[int, int] | None = None,
-    progress: Progress | None = None,
+    raise_if_interrupted: Callable[[], None] = lambda: None,
 ) -> None:
     """Write a film of the run as .mp4 or .gif, with the verdict at the end.
 
@@ -297,7 +294,8 @@ def write_film(
         fps: Frames per second; by default 12 for an .mp4, and 6 for a .gif.
         size: Width and height in px, both even; by default 640 by 400 for an .mp4, and 480 by 300
             for a .gif.
-        progress: Function that is called with the completed share, 0 to 1.
+        raise_if_interrupted: Function that is called for each frame, and raises an error to end
+            the film.
 
     Raises:
         ArgoError: The film can't be written (see `check_film`), the record is of another site or
@@ -327,13 +325,12 @@ def write_film(
                 for shot in plan_shots(motion, scene, times, (width, height), frame_time):
                     shots.append(shot)
                     report(shot.t / motion.end_time if motion.end_time else None)
-                    if progress:
-                        progress(0.0)
+                    raise_if_interrupted()
             spread = _spread_times(times) if is_gif else []
             sampled = plan_shots(motion, scene, spread, (width, height), math.inf)
             samples = [draw_frame(record, scene, shot, motion.end_time) for shot in sampled]
         frames = _repeat_frames(
-            draw_frames(record, site, robot, shots, motion.end_time), shots, progress
+            draw_frames(record, site, robot, shots, motion.end_time), shots, raise_if_interrupted
         )
         if is_gif:
             write_gif(frames, draft, make_palette(samples), frame_time)
@@ -351,7 +348,7 @@ def _spread_times(times: list[float]) -> list[float]:
 
 
 def _repeat_frames(
-    drawn: Iterable[Image.Image], shots: list[FilmShot], progress: Progress | None
+    drawn: Iterable[Image.Image], shots: list[FilmShot], raise_if_interrupted: Callable[[], None]
 ) -> Iterator[Image.Image]:
     """Yield each frame as often as the film shows it."""
     count, done = sum(shot.repeats for shot in shots), 0
@@ -361,5 +358,4 @@ def _repeat_frames(
                 yield frame
                 done += 1
                 report(done / count)
-                if progress:
-                    progress(done / count)
+                raise_if_interrupted()

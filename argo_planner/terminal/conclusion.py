@@ -109,7 +109,7 @@ class Conclusion:
                 site_with_faults(site, record.faults),
                 robot,
                 file,
-                progress=lambda _: self.interruption.raise_if_received(),
+                raise_if_interrupted=self.interruption.raise_if_received,
             )
         except ArgoError:
             # Ctrl-C reaches the encoder too, which then fails.

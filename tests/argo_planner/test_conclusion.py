@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 import typer
 
+from argo_compiler.base.stages import listen_to_stages
 from argo_env.pictures import write_film
 from argo_planner.terminal.conclusion import Conclusion
 from argo_planner.terminal.run_storage import RunStorage
@@ -101,14 +102,15 @@ def test_a_second_signal_ends_the_report(conclude, monkeypatch):
 
 
 @pytest.mark.physics
-def test_a_film_is_interrupted_between_two_pictures(conclude, monkeypatch):
-    def filming(*arguments, progress, **options):
-        def told(share):
-            if share > 0.1:
-                raise Interrupted(2)
-            progress(share)
+@pytest.mark.parametrize("stage_name", ["placing the film's camera", "drawing the film"])
+def test_a_film_is_interrupted_between_two_pictures(conclude, monkeypatch, stage_name):
+    def filming(*arguments, **options):
+        def interrupt(name, share, _):
+            if name == stage_name and share is not None and share > 0.1:
+                options["raise_if_interrupted"].__self__.received = Interrupted(2)
 
-        write_film(*arguments, progress=told, **options)
+        with listen_to_stages(interrupt):
+            write_film(*arguments, **options)
 
     monkeypatch.setattr("argo_env.pictures.write_film", filming)
     status, shown, said = conclude(render="run.gif", kept=RunStorage(recording=Path("run.journal")))

@@ -166,12 +166,8 @@ def test_the_overview_shows_the_path_in_its_colours(record, umad, robot, tmp_pat
 
 @pytest.mark.physics
 def test_a_gif_has_a_frame_for_each_time(record, umad, robot, tmp_path):
-    done = {"a.gif": [], "b.gif": []}
-    for name, progress in done.items():
-        write_film(
-            record, umad, robot, tmp_path / name, speed=10, fps=4, size=(120, 80),
-            progress=progress.append,
-        )  # fmt: skip
+    for name in ("a.gif", "b.gif"):
+        write_film(record, umad, robot, tmp_path / name, speed=10, fps=4, size=(120, 80))
     with Image.open(tmp_path / "a.gif") as image:
         assert (image.format, image.size) == ("GIF", (120, 80))
         # 20 s, 10 times as fast, with 4 frames per second, and the last frame for 2 s.
@@ -179,8 +175,6 @@ def test_a_gif_has_a_frame_for_each_time(record, umad, robot, tmp_path):
         assert image.info["duration"] == 250
         image.seek(8)
         image.load()
-    assert done["a.gif"] == sorted(done["a.gif"])
-    assert done["a.gif"][-1] == 1.0
     assert (tmp_path / "a.gif").read_bytes() == (tmp_path / "b.gif").read_bytes()
     assert sorted(p.name for p in tmp_path.iterdir()) == ["a.gif", "b.gif"]
 

@@ -9,7 +9,8 @@ are lost: their runs are repeated.
 
 import os
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,7 @@ from argo_compiler.base.operating_system import (
     try_lock,
     write_draft_and_replace,
 )
+from argo_compiler.base.quantity_text import counted_text
 from argo_env.closing import Closing
 from argo_env.evaluation.parquet_files import (
     PARTS,
@@ -71,7 +73,6 @@ class RowStore(Closing):
             if logged.loss:
                 self._replace_log(logged.rows)
             self._open_log()
-            sync_folder(folder)
         except OSError as error:
             os.close(self._lock)
             raise _not_writable(folder, error) from error
@@ -94,10 +95,8 @@ class RowStore(Closing):
         """
         if row.key in self._rows:
             return
-        try:
+        with self._reporting_log_errors():
             self._lines.append(_fields(row))
-        except OSError as error:
-            raise Unavailable(f"{self.folder / LOG}: {error.strerror}") from error
         self._rows[row.key] = row
         if self._clock() - self._synced >= _SYNC:
             self.sync()
@@ -107,10 +106,8 @@ class RowStore(Closing):
 
         Raises Unavailable if that fails.
         """
-        try:
+        with self._reporting_log_errors():
             self._lines.sync()
-        except OSError as error:
-            raise Unavailable(f"{self.folder / LOG}: {error.strerror}") from error
         self._synced = self._clock()
 
     @property
@@ -119,12 +116,16 @@ class RowStore(Closing):
         return len(self._rows) - self._moved
 
     def compact(self) -> None:
-        """Move the rows of the log to a Parquet file; without pyarrow they stay in the log."""
+        """Move the rows of the log to a Parquet file; without pyarrow they stay in the log.
+
+        Raises Unavailable if a file can't be written.
+        """
         if not self.uncompacted or not can_write_parts():
             return
         self.sync()
         write_part(self.folder, list(self._rows.values())[self._moved :])
-        self._lines.clear()
+        with self._reporting_log_errors():
+            self._lines.clear()
         self._moved = len(self._rows)
         self.sync()
 
@@ -139,8 +140,9 @@ class RowStore(Closing):
             return
         try:
             self._replace_log(fitting)
-            os.close(self._file)
+            replaced = self._file
             self._open_log()
+            os.close(replaced)
         except OSError as error:
             raise _not_writable(self.folder, error) from error
         remove_parts(self.folder)
@@ -149,9 +151,22 @@ class RowStore(Closing):
 
     def _open_log(self) -> None:
         """Open the log, whose lines are all intact but for an incomplete last one."""
-        self._file = os.open(self.folder / LOG, os.O_RDWR | os.O_CREAT | OPEN_FLAGS, 0o600)
-        with open(self._file, "rb", closefd=False) as file:
-            self._lines = LineWriter(self._file, parse_lines(file.read()))
+        file = os.open(self.folder / LOG, os.O_RDWR | os.O_CREAT | OPEN_FLAGS, 0o600)
+        try:
+            with open(file, "rb", closefd=False) as stream:
+                lines = LineWriter(file, parse_lines(stream.read()))
+            sync_folder(self.folder)
+        except BaseException:
+            os.close(file)
+            raise
+        self._file, self._lines = file, lines
+
+    @contextmanager
+    def _reporting_log_errors(self) -> Iterator[None]:
+        try:
+            yield
+        except OSError as error:
+            raise Unavailable(f"{self.folder / LOG}: {error.strerror}") from error
 
     def _replace_log(self, rows: Sequence[RunRow]) -> None:
         """Replace the log by one with these rows; raises OSError if that fails."""
@@ -221,7 +236,8 @@ def read_log(folder: Path) -> LoggedRows:
 def _loss(path: Path, stored: StoredLines, wrong: int) -> str:
     """Return which lines of a log are damaged; `wrong` intact lines have no valid row."""
     if not stored.damaged:
-        return f"{path}: {wrong} lines have no row of this version" if wrong else ""
+        lines = counted_text(wrong, "line")
+        return f"{path}: {lines} without a row of this version" if wrong else ""
     why = "" if stored.was_synced else ", as by a loss of power"
     return f"{path}: damaged in line {len(stored.lines) + 1}{why}"
 

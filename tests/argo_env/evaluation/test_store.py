@@ -181,9 +181,6 @@ def test_a_row_follows_one_that_found_no_room(tmp_path, monkeypatch):
 def test_rows_that_can_not_be_synced_are_an_error_and_leave_the_folder_unlocked(
     tmp_path, monkeypatch
 ):
-    def fail(_: int) -> None:
-        raise OSError(errno.EIO, "Input/output error")
-
     rows = RowStore(tmp_path)
     rows.add_if_new(row(0))
     monkeypatch.setattr(checked_lines, "sync_content", fail)
@@ -192,6 +189,54 @@ def test_rows_that_can_not_be_synced_are_an_error_and_leave_the_folder_unlocked(
     monkeypatch.undo()
     with RowStore(tmp_path) as again:
         assert [*again.rows.values()] == [row(0)]
+
+
+def fail(*_: object) -> None:
+    raise OSError(errno.EIO, "Input/output error")
+
+
+def free_descriptors() -> list[int]:
+    """Return the lowest free descriptors of files."""
+    files = [os.open(os.devnull, os.O_RDONLY) for _ in range(3)]
+    for file in files:
+        os.close(file)
+    return files
+
+
+def test_a_log_that_can_not_be_opened_leaves_no_file_open(tmp_path, monkeypatch):
+    store_rows(tmp_path, row(0))
+    free = free_descriptors()
+    monkeypatch.setattr(store, "LineWriter", fail)
+    with pytest.raises(Unavailable, match="Input/output error"):
+        RowStore(tmp_path)
+    assert free_descriptors() == free
+
+
+def test_a_log_that_can_not_be_opened_again_leaves_the_folder_unlocked(tmp_path, monkeypatch):
+    with RowStore(tmp_path) as rows:
+        rows.add_if_new(row(0))
+        rows.add_if_new(row(1))
+        open_file = os.open
+        monkeypatch.setattr(
+            os,
+            "open",
+            lambda path, *others: (fail if path == tmp_path / LOG else open_file)(path, *others),
+        )
+        with pytest.raises(Unavailable, match="Input/output error"):
+            rows.keep_only(lambda row: row.seed == 1)
+        monkeypatch.undo()
+    with RowStore(tmp_path) as again:
+        assert [*again.rows.values()] == [row(1)]
+
+
+def test_a_log_that_can_not_be_emptied_is_an_error_and_duplicates_no_row(tmp_path, monkeypatch):
+    with RowStore(tmp_path) as rows:
+        rows.add_if_new(row(0))
+        monkeypatch.setattr(os, "ftruncate", fail)
+        with pytest.raises(Unavailable, match=r"rows\.log: Input/output error"):
+            rows.compact()
+        monkeypatch.undo()
+    assert read_rows(tmp_path) == (row(0),)
 
 
 def test_a_kill_between_the_part_and_the_log_duplicates_no_row(tmp_path):

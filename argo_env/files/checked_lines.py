@@ -123,6 +123,8 @@ class LineWriter:
         self.count = len(stored.lines)
         """number of lines, with marks"""
         self._synced = min(stored.synced, self.count)
+        self._must_cut = False
+        """whether a line that could not be written may follow the others"""
         os.lseek(file, self.size, os.SEEK_SET)
         if os.fstat(file).st_size != self.size:
             os.ftruncate(file, self.size)
@@ -134,12 +136,17 @@ class LineWriter:
         return checked_line(_numbered(data, self.count, self._synced))
 
     def append(self, data: Mapping[str, Any]) -> None:
-        """Write the next line; raises OSError, and cuts off what was written, if that fails."""
+        """Write the next line; raises OSError, and cuts off what was written, if that fails.
+
+        Raises OSError too if what an earlier error has left can't be cut off.
+        """
+        if self._must_cut:
+            self._cut()
         line = self.line(data)
         try:
             write_all(self._file, line)
         except OSError:
-            self._cut(self.size)
+            self._cut_if_possible()
             raise
         self.size += len(line)
         self.count += 1
@@ -154,8 +161,8 @@ class LineWriter:
         try:
             self.sync()
         except OSError:
-            self._cut(size)
             self.size, self.count = size, count
+            self._cut_if_possible()
             raise
 
     def sync(self) -> None:
@@ -172,11 +179,17 @@ class LineWriter:
         self.size = os.lseek(self._file, 0, os.SEEK_SET)
         self.count = self._synced = 0
 
-    def _cut(self, size: int) -> None:
-        """Cut the file to `size` bytes; if that fails, a damaged line stays."""
+    def _cut(self) -> None:
+        """Cut off what follows the lines."""
+        os.ftruncate(self._file, self.size)
+        os.lseek(self._file, self.size, os.SEEK_SET)
+        self._must_cut = False
+
+    def _cut_if_possible(self) -> None:
+        """Cut off what follows the lines; if that fails, the next line is to do it."""
+        self._must_cut = True
         with suppress(OSError):
-            os.ftruncate(self._file, size)
-            os.lseek(self._file, size, os.SEEK_SET)
+            self._cut()
 
 
 def complete_lines(objects: Sequence[Mapping[str, Any]]) -> list[bytes]:

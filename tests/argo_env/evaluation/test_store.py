@@ -178,6 +178,31 @@ def test_a_row_follows_one_that_found_no_room(tmp_path, monkeypatch):
     assert read_rows(tmp_path) == (row(0), row(2))
 
 
+def fail(*_: object) -> None:
+    raise OSError(errno.EIO, "Input/output error")
+
+
+def test_a_row_follows_one_that_could_not_be_removed(tmp_path, monkeypatch):
+    with RowStore(tmp_path, clock=lambda: 0.0) as rows:
+        rows.add_if_new(row(0))
+        write = os.write
+        with monkeypatch.context() as broken:
+            broken.setattr(os, "ftruncate", fail)
+            broken.setattr(
+                os,
+                "write",
+                lambda file, data: write(file, data[:100]) if len(data) > 100 else fail(),
+            )
+            with pytest.raises(Unavailable, match="Input/output error"):
+                rows.add_if_new(row(1))
+        with monkeypatch.context() as broken:
+            broken.setattr(os, "ftruncate", fail)
+            with pytest.raises(Unavailable, match="Input/output error"):
+                rows.add_if_new(row(1))
+        rows.add_if_new(row(2))
+    assert read_rows(tmp_path) == (row(0), row(2))
+
+
 def test_rows_that_can_not_be_synced_are_an_error_and_leave_the_folder_unlocked(
     tmp_path, monkeypatch
 ):
@@ -189,10 +214,6 @@ def test_rows_that_can_not_be_synced_are_an_error_and_leave_the_folder_unlocked(
     monkeypatch.undo()
     with RowStore(tmp_path) as again:
         assert [*again.rows.values()] == [row(0)]
-
-
-def fail(*_: object) -> None:
-    raise OSError(errno.EIO, "Input/output error")
 
 
 def free_descriptors() -> list[int]:

@@ -120,9 +120,11 @@ class Guard:
         body = _LimitedBody(scope, receive)
         refused: Problem | None = None
         try:
-            async with asyncio.timeout(REQUEST_TIMEOUT):
+            async with asyncio.timeout(REQUEST_TIMEOUT) as limit:
                 await self._app(scope, body.receive, _add_headers(scope, body.wrap_send(send)))
         except TimeoutError:
+            if not limit.expired():  # an error of the application
+                raise
             late = f"the request was not answered within {REQUEST_TIMEOUT:.0f} s: try again later"
             refused = None if body.answered else problem_from_error(Unavailable(late))
         if body.refusal is not None:

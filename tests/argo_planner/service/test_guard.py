@@ -5,12 +5,13 @@ import socket
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 
+import httpx
 import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection
 
 from argo_planner.service.web import guard
-from argo_planner.service.web.access import AccessRole
+from argo_planner.service.web.access import AccessRole, AccessToken, TokenBook
 from argo_planner.service.web.connections import (
     MAX_CONNECTIONS,
     LimitedProtocol,
@@ -362,6 +363,19 @@ def test_a_body_that_arrives_too_slowly_is_refused(service: Served, monkeypatch)
             with suppress(TimeoutError):
                 answer = connection.recv(65_536)
     assert answer.startswith(b"HTTP/1.1 503 ")
+
+
+@pytest.mark.anyio
+async def test_an_error_of_the_service_is_no_late_answer() -> None:
+    async def fail(*_: object) -> None:
+        raise TimeoutError("of the service's own")
+
+    settings = guard.GuardSettings(frozenset(["localhost"]))
+    guarded = guard.Guard(fail, TokenBook([AccessToken(ALL)]), settings)
+    transport = httpx.ASGITransport(guarded)
+    async with httpx.AsyncClient(transport=transport, base_url="http://localhost") as client:
+        with pytest.raises(TimeoutError, match="of the service's own"):
+            await client.get("/", headers={"authorization": f"Bearer {ALL}"})
 
 
 def test_connections_that_are_idle_make_room_for_others(service: Served, monkeypatch) -> None:

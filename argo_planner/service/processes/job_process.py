@@ -46,7 +46,7 @@ class JobProcess(Generic[Result]):
         self._process = CONTEXT.Process(target=_run_work, args=(self._sender, work, arguments))
         self._process.daemon = not parent
         self._turn = Lock()
-        """held while the process is started or ended"""
+        """held while the process is started or ended, or its end is awaited"""
         self._ended = False
 
     async def start_and_wait(self, on_progress: ReportProgress) -> Result:
@@ -74,10 +74,11 @@ class JobProcess(Generic[Result]):
                 try:
                     kind, content = await loop.run_in_executor(thread, self._receiver.recv)
                 except (EOFError, OSError):
-                    if self._limits is not None and self._process.pid is not None:
-                        await loop.run_in_executor(thread, self._process.join)
-                        code = self._process.exitcode
-                        raise exceeded_limit(self._limits, code, timed_out) from None
+                    if self._limits is not None:
+                        await loop.run_in_executor(thread, self._wait_for_exit)
+                        if not self._ended:
+                            code = self._process.exitcode
+                            raise exceeded_limit(self._limits, code, timed_out) from None
                     raise Unavailable("the process of this job has died: try again") from None
                 match kind:
                     case "told":
@@ -103,6 +104,11 @@ class JobProcess(Generic[Result]):
                 raise Unavailable(f"{why}; try again") from error
             finally:
                 self._sender.close()
+
+    def _wait_for_exit(self) -> None:
+        with self._turn:  # of two threads that wait, one does not learn the exit code
+            if self._process.pid is not None:
+                self._process.join()
 
     async def end(self) -> None:
         """Kill the process, or prevent its start; `start_and_wait` then raises Unavailable."""

@@ -9,6 +9,7 @@ from importlib.util import find_spec
 import pytest
 
 from argo_compiler.base.errors import Unavailable
+from argo_compiler.base.limited_process import CallLimits
 from argo_compiler.il import Mission
 from argo_env.planning.opening import OpenedSite
 from argo_env.worker_processes import NEEDED_TO_DRIVE
@@ -107,6 +108,24 @@ def test_work_is_ended_while_it_starts_and_while_it_runs(slow_start: threading.E
     for at_once in (True, False):
         slow_start.clear()
         asyncio.run(end(at_once))
+
+
+def report_and_wait(report: ReportProgress) -> None:
+    report("started")
+    threading.Event().wait()
+
+
+def test_work_with_limits_that_is_ended_has_not_exceeded_them() -> None:
+    async def end() -> None:
+        endless = JobProcess[None](report_and_wait, limits=CallLimits(60.0, 400_000_000))
+        started = asyncio.Event()
+        task = asyncio.ensure_future(endless.start_and_wait(lambda _: started.set()))
+        await started.wait()
+        await endless.end()
+        with pytest.raises(Unavailable, match="the process of this job has died"):
+            await task
+
+    asyncio.run(end())
 
 
 def test_work_that_nobody_awaits_is_ended_before_it_has_started() -> None:

@@ -2,7 +2,7 @@
 
 import asyncio
 import os
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import AsyncIterable
 from contextlib import AsyncExitStack
 from pathlib import Path
@@ -23,6 +23,8 @@ from argo_planner.use_cases.importing import ImportedMission, Upload, import_mis
 
 MOST_IMPORTS = 2
 """imports that are read at the same time; each visitor has at most one of them"""
+MOST_OF_VISITOR = 8
+"""imports of one visitor that are read or wait, as each is stored meanwhile"""
 _LOWER_PRIORITY = 10
 """niceness that is added, so that edits come first"""
 
@@ -36,6 +38,8 @@ class Imports:
         self._turns = asyncio.Semaphore(MOST_IMPORTS)
         self._visitors: defaultdict[str, asyncio.Lock] = defaultdict(asyncio.Lock)
         """held while an import of the visitor is read, so that others have their turn"""
+        self._under_way: Counter[str] = Counter()
+        """imports that are read or wait, by visitor"""
 
     async def import_upload(
         self,
@@ -55,9 +59,29 @@ class Imports:
             end_area: Area to end in, likewise.
 
         Raises:
-            ArgoError: As `import_mission` does, if the mission is too large for a plan, or if
-                reading it exceeds the limits of time and memory.
+            ArgoError: As `import_mission` does, if the mission is too large for a plan, if reading
+                it exceeds the limits of time and memory, or if too many imports of the visitor
+                are under way.
         """
+        if self._under_way[visitor] >= MOST_OF_VISITOR:
+            raise Unavailable(
+                f"{MOST_OF_VISITOR} imports with this token are under way: try again when some of "
+                "them have ended"
+            )
+        self._under_way[visitor] += 1
+        try:
+            return await self._store_and_read(name, content, visitor, start_area, end_area)
+        finally:
+            self._under_way[visitor] -= 1
+
+    async def _store_and_read(
+        self,
+        name: str,
+        content: AsyncIterable[bytes],
+        visitor: str,
+        start_area: int | None,
+        end_area: int | None,
+    ) -> ImportedMission:
         try:
             folder = TemporaryDirectory(prefix="argo-import-", ignore_cleanup_errors=True)
         except OSError as error:

@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import os
 import sqlite3
 import sys
 from collections.abc import AsyncIterator
@@ -15,7 +16,7 @@ import pytest
 from argo_compiler.base.errors import Unavailable
 from argo_compiler.base.limited_process import CallLimits
 from argo_planner.service.jobs import imports
-from argo_planner.service.jobs.imports import MOST_IMPORTS, Imports
+from argo_planner.service.jobs.imports import MOST_IMPORTS, MOST_OF_VISITOR, Imports
 from tests.argo_planner.service.served import Served
 from tests.argo_planner.service.test_http import data, problem
 
@@ -123,6 +124,30 @@ async def test_an_upload_of_which_only_a_part_can_be_stored_is_refused() -> None
             await Imports("umad").import_upload("script.txt", megabytes(2), "a")
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+@pytest.mark.anyio
+async def test_only_some_imports_of_a_visitor_wait(monkeypatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(imports, "JobProcess", WaitingProcess)
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    reader = Imports("umad")
+    tasks = [
+        asyncio.ensure_future(reader.import_upload("first", nothing(), "a"))
+        for _ in range(MOST_OF_VISITOR)
+    ]
+    await asyncio.sleep(0)
+    with pytest.raises(Unavailable, match=f"{MOST_OF_VISITOR} imports with this token are under"):
+        await reader.import_upload("one more", nothing(), "a")
+    assert len(os.listdir(tmp_path)) == MOST_OF_VISITOR
+    tasks.append(asyncio.ensure_future(reader.import_upload("other", nothing(), "b")))
+    tasks.pop(0).cancel()
+    await asyncio.sleep(0.05)
+    tasks.append(asyncio.ensure_future(reader.import_upload("first", nothing(), "a")))
+    await asyncio.sleep(0.05)
+    assert len(os.listdir(tmp_path)) == MOST_OF_VISITOR + 1
+    for task in tasks:
+        task.cancel()
+    await asyncio.gather(*tasks, return_exceptions=True)
 
 
 @pytest.mark.anyio

@@ -41,7 +41,7 @@ from argo_compiler.il import Mission, Task
 from argo_compiler.il.subjects import Subjects
 
 MAX_BYTES = 16_000_000
-"""Limit far above any mission (10,000 tasks take 4 MB); such a file takes some 500 MB to read."""
+"""Limit far above any mission (10,000 tasks take 4 MB); such a file takes up to 400 MB to read."""
 
 _RECORD_FIELDS = {"mission", "result", "trace"}
 """Fields of a run's record, which has its own versions."""

@@ -10,7 +10,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from argo_compiler.base.errors import Invalid
+from argo_compiler.base.errors import Invalid, Unavailable
 from argo_env.files.folders import make_folder
 from argo_env.planning.opening import open_site
 from argo_env.recording.files import check_recording_path
@@ -78,7 +78,11 @@ def resume_command(
     with open_journal(journal) as book:
         if book.loss:
             print(f"argo: {book.loss}", file=sys.stderr)
-        report = report or find_own_report(book, journal)
+        if report is None:
+            try:
+                report = find_own_report(book, journal)
+            except Unavailable as error:
+                print(f"argo: no report is written: {error}", file=sys.stderr)
         if report and not force:
             if os.path.realpath(report / JOURNAL) != os.path.realpath(journal):
                 require_no_unfinished_run(report)

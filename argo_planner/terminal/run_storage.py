@@ -7,7 +7,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from argo_compiler.base.errors import Conflict, Invalid, Unavailable
+from argo_compiler.base.errors import Conflict, Invalid
 from argo_env.files.checked_files import read_checked
 from argo_env.report.files import PAGE, RECORD
 from argo_env.run.journal import Journal, open_journal
@@ -123,8 +123,8 @@ def find_own_report(book: Journal, journal: Path) -> Path | None:
     """Return the folder of a journal if the run's report is to be written there, else None.
 
     `argo run --report` keeps the journal in the report's folder, which has nothing else then but
-    the report, films and recordings. A report that is complete, damaged, or of another run is not
-    replaced.
+    the report, films and recordings. A report that is complete or of another run is not replaced.
+    Raises Unavailable if the report is damaged.
     """
     folder = journal.parent
     others = {name for name in os.listdir(folder) if os.path.splitext(name)[1] not in _RECORDED}
@@ -133,8 +133,4 @@ def find_own_report(book: Journal, journal: Path) -> Path | None:
     if not others & set(REPORT_FILES):
         return folder
     is_complete = book.had_ended_when_opened and PAGE in others
-    try:
-        is_own = is_report_of(book, folder)
-    except Unavailable:  # it is damaged
-        is_own = False
-    return folder if is_own and not is_complete else None
+    return folder if is_report_of(book, folder) and not is_complete else None

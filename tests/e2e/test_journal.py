@@ -221,3 +221,14 @@ def test_what_a_loss_of_power_left_is_told_when_the_run_is_resumed(argo, folder,
     lines[1] = lines[1].replace(b"n", b"m")
     journal.write_bytes(b"".join(lines))
     assert "damaged from line 2 on" in require_refusal(argo("resume", journal))
+
+
+def test_a_damaged_report_next_to_the_journal_is_told_and_stays(argo, folder, tmp_path):
+    report = tmp_path / "report"
+    argo(*run_arguments(folder), "--report", report, status=0)
+    record = report / "report.json"
+    damaged = record.read_bytes().replace(b"MEASURE", b"MEASSRE", 1)
+    record.write_bytes(damaged)
+    resumed = argo("resume", report / "run.journal", status=0)
+    assert f"argo: no report is written: {record} is damaged: " in resumed.stderr
+    assert record.read_bytes() == damaged

@@ -9,8 +9,10 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib import import_module, invalidate_caches
+from importlib.machinery import PathFinder
 from operator import attrgetter
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from argo_compiler.base.errors import NotFound
@@ -31,32 +33,44 @@ which returns the mission in the new order; `site` is the opened site.
 """
 
 
-def import_policy(name: str, folder: Path | None = None) -> Any:
+def import_policy(name: str) -> Any:
     """Import the class or function of a policy that is named as `module:name`.
 
-    A module in `folder` comes before an installed one. Raises NotFound if there is none.
+    Raises NotFound if there is none.
     """
     module, _, attribute = name.partition(":")
     try:
-        with _modules_of(folder, module):
-            return attrgetter(attribute)(import_module(module))
+        return attrgetter(attribute)(import_module(module))
     except (ImportError, AttributeError, ValueError) as error:
         raise NotFound(f"policy `{name}` can't be loaded: {error}") from None
 
 
 @contextmanager
-def _modules_of(folder: Path | None, module: str) -> Iterator[None]:
-    """Find modules in a folder first; `module` is imported anew if the folder has it."""
-    if folder is None:
-        yield
-        return
+def modules_of_policy_in(folder: Path, name: str) -> Iterator[None]:
+    """Find modules in a folder before installed ones while a policy is imported and called.
+
+    The module or package that `name` begins with, which is as for `import_policy`, is imported anew
+    unless it is a package of this folder already. Further modules in the folder are not: those of
+    two folders need different names.
+    """
     path = os.path.abspath(folder)
-    first = module.partition(".")[0]
-    if os.path.isfile(os.path.join(path, f"{first}.py")):
-        sys.modules.pop(first, None)  # one of the same name in another folder
+    first = name.partition(":")[0].partition(".")[0]
     invalidate_caches()
+    found = PathFinder.find_spec(first, [path])
+    if found is not None and not _is_package_from(sys.modules.get(first), found.origin):
+        for loaded in [*sys.modules]:
+            if loaded.partition(".")[0] == first:
+                del sys.modules[loaded]
     sys.path.insert(0, path)
     try:
         yield
     finally:
         sys.path.remove(path)
+
+
+def _is_package_from(module: ModuleType | None, origin: str | None) -> bool:
+    """Return True if a module is a package with this `__init__.py`; None: with any."""
+    loaded = getattr(module, "__spec__", None)
+    if loaded is None or loaded.origin is None or loaded.submodule_search_locations is None:
+        return False
+    return origin in (None, loaded.origin)

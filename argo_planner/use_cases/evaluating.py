@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Callable, Iterator
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import cast
@@ -27,7 +28,7 @@ from argo_env.faults.loading import (
     decode_faults,
 )
 from argo_env.planning.opening import OpenedSite, open_site
-from argo_env.policies import OPTIMISED, POLICIES, import_policy
+from argo_env.policies import OPTIMISED, POLICIES, import_policy, modules_of_policy_in
 from argo_env.robot.spec import load_robot
 from argo_env.run.run_setup import check_spec
 from argo_env.run.spec import RunSpec
@@ -215,25 +216,24 @@ def reorder_by_policy(
         found = suggest_order(imported, site)
         require_order(found, imported.source_name)
         return found.mission
-    function = _find_order_function(policy, folder)
-    try:
-        mission = function(imported.mission, site)
-    except Exception as error:  # a user's function may raise anything
-        raise Invalid(f"policy `{policy}`: {type(error).__name__}: {error}") from error
+    with modules_of_policy_in(folder, policy) if folder and ":" in policy else nullcontext():
+        function = _find_order_function(policy)
+        try:
+            mission = function(imported.mission, site)
+        except Exception as error:  # a user's function may raise anything
+            raise Invalid(f"policy `{policy}`: {type(error).__name__}: {error}") from error
     if not isinstance(mission, Mission):
         raise Invalid(f"policy `{policy}`: returned {type(mission).__name__} instead of a mission")
     return mission
 
 
-def _find_order_function(
-    policy: str, folder: Path | None
-) -> Callable[[Mission, OpenedSite], object]:
+def _find_order_function(policy: str) -> Callable[[Mission, OpenedSite], object]:
     """Return the function that orders the tasks by a policy, neither as written nor optimised.
 
     Raises NotFound if there is none, Unavailable if an installed package's can't be used.
     """
     if ":" in policy:
-        return cast("Callable[..., object]", import_policy(policy, folder))
+        return cast("Callable[..., object]", import_policy(policy))
     if policy not in POLICIES:
         others = "".join(f", {name}" for name in installed_names(POLICIES.group))
         raise NotFound(

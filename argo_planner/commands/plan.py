@@ -55,6 +55,7 @@ def plan_command(
         from argo_planner.service.web.access import AccessToken, TokenBook, load_or_make_secret
         from argo_planner.service.web.guard import LOOPBACK, GuardSettings
         from argo_planner.service.web.serving import ServiceSpec, listen, open_plan_folder, serve
+        from argo_planner.service.world.obstacle_store import ObstacleStore
     except ImportError as error:
         raise Unavailable(f"the page needs {error.name}: {install_line('planner')}") from None
     opened = open_site(site).prepare()
@@ -69,7 +70,7 @@ def plan_command(
             raise
         listening = listen("127.0.0.1", 0)
     port = listening.getsockname()[1]
-    plans = open_plan_folder(folder)
+    plans, obstacles = open_plan_folder(folder), ObstacleStore(folder)
     fragment = ""
     if source is not None and imported is not None:
         fragment = f"#/missions/{_add_mission(plans, source.stem, imported)}"
@@ -80,7 +81,7 @@ def plan_command(
     console.print(f"The page is {'open: ' if shown else 'at '}{address}")
     console.print("Press Ctrl-C to stop; all changes are saved.")
     settings = GuardSettings(frozenset(LOOPBACK), cookie=f"argo-{port}")
-    spec = ServiceSpec(plans, opened, TokenBook((token,)), settings, AfterRestart.WAIT)
+    spec = ServiceSpec(plans, obstacles, opened, TokenBook((token,)), settings, AfterRestart.WAIT)
     with suppress(KeyboardInterrupt):
         serve(spec, listening)
 

@@ -89,6 +89,7 @@ def serve_command(
         )
         from argo_planner.service.web.guard import LOOPBACK, GuardSettings
         from argo_planner.service.web.serving import ServiceSpec, listen, open_plan_folder, serve
+        from argo_planner.service.world.obstacle_store import ObstacleStore
     except ImportError as error:
         raise Unavailable(f"the service needs {error.name}: {install_line('planner')}") from None
     if after_restart not in list(AfterRestart):
@@ -111,7 +112,7 @@ def serve_command(
     settings = GuardSettings(
         frozenset(n.lower() for n in names), frozenset(origin or ()), f"argo-{port}"
     )
-    plans = open_plan_folder(folder)
+    plans, obstacles = open_plan_folder(folder), ObstacleStore(folder)
     opened = open_site(site).prepare()
     console = Console(stderr=True, highlight=False, quiet=is_quiet(), soft_wrap=True)
     shown = "127.0.0.1" if _is_any(host) else _in_address(host)
@@ -122,7 +123,13 @@ def serve_command(
     console.print("Press Ctrl-C to stop the service; all confirmed changes are saved.")
     with suppress(KeyboardInterrupt):
         spec = ServiceSpec(
-            plans, opened, TokenBook(tokens), settings, AfterRestart(after_restart), foxglove
+            plans,
+            obstacles,
+            opened,
+            TokenBook(tokens),
+            settings,
+            AfterRestart(after_restart),
+            foxglove,
         )
         serve(spec, listening)
 

@@ -92,6 +92,28 @@ def test_wrong_options_are_refused(argo, tmp_path, options, message) -> None:
     assert message in require_refusal(argo("serve", tmp_path / "m", *options))
 
 
+@pytest.mark.parametrize("damage", ["cut", "folder", "link"])
+@pytest.mark.parametrize("command", [["serve"], ["plan", "--no-browser", "--folder"]])
+def test_obstacles_that_can_not_be_read_are_refused_before_an_address_is_printed(
+    argo, tmp_path, command, damage
+) -> None:
+    folder, elsewhere = tmp_path / "m", tmp_path / "elsewhere"
+    folder.mkdir()
+    elsewhere.write_text("{}")
+    path = folder / "obstacles.json"
+    match damage:
+        case "cut":
+            path.write_text('{"checksum":"01234567","revision":2,"obst')
+        case "folder":
+            path.mkdir()
+        case "link":
+            path.symlink_to(elsewhere)
+    refusal = require_refusal(argo(*command, folder, "--port", "0"))
+    assert str(path) in refusal
+    assert "restore the file from a copy, or delete it" in refusal
+    assert "http" not in refusal
+
+
 def start_evaluation(client: httpx.Client) -> str:
     """Start a long evaluation and wait for its first rows; return its id."""
     plan = client.post(

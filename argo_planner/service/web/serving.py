@@ -34,9 +34,10 @@ from argo_planner.use_cases.extensions import usable_extensions
 
 @dataclass(frozen=True)
 class ServiceSpec:
-    """Options of the service: missions, site, tokens and access."""
+    """Options of the service: missions, obstacles, site, tokens and access."""
 
     plans: PlanFolder
+    obstacles: ObstacleStore
     site: OpenedSite
     tokens: TokenBook
     guard: GuardSettings
@@ -53,6 +54,7 @@ def open_plan_folder(path: Path) -> PlanFolder:
 
 def make_service_opener(
     plans: PlanFolder,
+    obstacles: ObstacleStore,
     site: OpenedSite,
     after_restart: AfterRestart = AfterRestart.WAIT,
     foxglove: int | None = None,
@@ -77,7 +79,6 @@ def make_service_opener(
             orders = OrderSearches(site.reference, plans.path / "orders", jobs, new_id, _now)
             evaluations = Evaluations(plans.path / "evaluations", jobs, new_id, _now)
             runs = RunHost(plans.path / "runs", after_restart, _now, foxglove)
-            obstacles = ObstacleStore(plans.path)
             await runs.open()
             await evaluations.open()
             await orders.open()
@@ -102,6 +103,7 @@ def make_service_opener(
                 await runs.close()
                 await jobs.kill_running()
                 await evaluations.close()
+                await orders.close()
                 await rooms.close()
         finally:
             analyst.close()
@@ -124,7 +126,10 @@ def listen(host: str, port: int) -> socket.socket:
 def serve(spec: ServiceSpec, listening: socket.socket) -> None:
     """Run the service at a listening socket; return after a signal has ended it."""
     raise_file_limit_for_connections()
-    app = make_app(make_service_opener(spec.plans, spec.site, spec.after_restart, spec.foxglove))
+    open_service = make_service_opener(
+        spec.plans, spec.obstacles, spec.site, spec.after_restart, spec.foxglove
+    )
+    app = make_app(open_service)
     guard = Guard(app, spec.tokens, spec.guard)
     uvicorn.Server(uvicorn.Config(guard, **server_options())).run(sockets=[listening])
 

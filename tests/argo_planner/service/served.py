@@ -23,6 +23,7 @@ from argo_planner.service.web.app import make_app
 from argo_planner.service.web.connections import server_options
 from argo_planner.service.web.guard import LOOPBACK, Guard, GuardSettings
 from argo_planner.service.web.serving import listen, make_service_opener, open_plan_folder
+from argo_planner.service.world.obstacle_store import ObstacleStore
 
 ALL = "all-may-be-done-with-this"
 SECRETS = {
@@ -116,7 +117,8 @@ def _if_match(revision: int | str) -> dict[str, str]:
 def served(folder: Path, site: OpenedSite) -> Iterator[Served]:
     """Serve the missions of a folder; all threads end with the context."""
     tokens = [AccessToken(ALL), *(AccessToken(s, role, str(role)) for role, s in SECRETS.items())]
-    app = make_app(make_service_opener(open_plan_folder(folder), site))
+    plans = open_plan_folder(folder)
+    app = make_app(make_service_opener(plans, ObstacleStore(folder), site))
     guard = Guard(app, TokenBook(tokens), GuardSettings(frozenset(LOOPBACK)))
     listening = listen("127.0.0.1", 0)
     server = uvicorn.Server(uvicorn.Config(guard, **server_options()))

@@ -12,14 +12,11 @@ from collections.abc import Callable
 from datetime import datetime
 from pathlib import Path
 
-from pydantic import ValidationError
-
 from argo_compiler.base.errors import ArgoError, Conflict, NotFound, Unavailable
 from argo_compiler.base.model import Model
 from argo_compiler.files.atomic_write import write_atomically
-from argo_compiler.files.loading import read_bytes
 from argo_env.evaluation.folder import REPORT
-from argo_env.files.checked_files import check_page, checked_json, damaged, read_checked
+from argo_env.files.checked_files import check_page, checked_json
 from argo_env.files.folders import make_private_folder
 from argo_planner.service.evaluations.replay import ReplayedRun, ReplayRequest, replay_run
 from argo_planner.service.jobs.evaluation import (
@@ -31,6 +28,12 @@ from argo_planner.service.jobs.evaluation import (
 from argo_planner.service.jobs.job import JOB_ID, EvaluationJob, Job, JobState
 from argo_planner.service.jobs.jobs import Jobs
 from argo_planner.service.processes.job_process import JobProcess
+from argo_planner.service.storage.stored_files import (
+    read_stored,
+    read_stored_bytes,
+    remove_if_empty,
+    require_own_id,
+)
 
 MOST_REPLAYED = 2
 """runs that are replayed at the same time"""
@@ -40,7 +43,6 @@ LONGEST_REPLAY = 120.0
 """longest time of a replay, in s of wall time"""
 _log = logging.getLogger(__name__)
 _JOB_FILE = "job.json"
-_MAX_BYTES = 100_000_000
 
 
 class StoredEvaluation(Model):
@@ -75,6 +77,7 @@ class EvaluationFolder:
         except OSError as error:
             if is_new:
                 shutil.rmtree(folder, ignore_errors=True)
+                remove_if_empty(self._path)
             raise Unavailable(
                 f"evaluation {evaluation.job.id} can't be stored: {folder}: {error.strerror}; free "
                 "disk space, and try again"
@@ -88,9 +91,7 @@ class EvaluationFolder:
         evaluations = []
         names = os.listdir(self._path) if os.path.isdir(self._path) else []
         for name in names:
-            if re.fullmatch(JOB_ID, name) and not os.path.islink(
-                self.unchecked_evaluation_path(name)
-            ):
+            if re.fullmatch(JOB_ID, name):
                 try:
                     evaluations.append(self._read(name))
                 except ArgoError as error:
@@ -131,18 +132,23 @@ class EvaluationFolder:
         Raises NotFound if there is none yet, Unavailable if it is damaged.
         """
         path = self.unchecked_evaluation_path(id) / REPORT
-        content = read_bytes(path, "report", _MAX_BYTES)
+        try:
+            content = read_stored_bytes(path)
+        except FileNotFoundError:
+            raise NotFound(f"{path} does not exist") from None
+        except OSError as error:
+            raise Unavailable(f"{path} can't be read: {error.strerror}; evaluate again") from None
         check_page(content, path, "evaluate again")
         return content
 
     def _read(self, id: str) -> StoredEvaluation:
-        path = self.unchecked_evaluation_path(id) / _JOB_FILE
-        content = read_bytes(path, "evaluation", _MAX_BYTES)
+        folder = self.unchecked_evaluation_path(id)
+        if os.path.islink(folder):
+            raise Unavailable(f"{folder} is a link, and links are not followed: move it away")
+        path = folder / _JOB_FILE
         remedy = "restore it from a copy, or delete its folder and evaluate again"
-        try:
-            evaluation = read_checked(StoredEvaluation, content, path, remedy)
-        except ValidationError:
-            raise damaged(path, "it is not of this version of Argo", remedy) from None
+        evaluation = read_stored(StoredEvaluation, path, remedy)
+        require_own_id(folder, evaluation.job.id, id, "move it out of this folder")
         if evaluation.job.state is not JobState.RUNNING:
             return evaluation
         why = "the service ended before the end of this evaluation was stored"

@@ -40,7 +40,7 @@ class _Job(Model):
     begun: datetime
     state: JobState = JobState.RUNNING
     problem: str | None = None
-    """why the job failed or was interrupted; None: it did not"""
+    """why the job failed or was interrupted, or its result can't be stored; None: nothing"""
 
 
 class OrderJob(_Job):

@@ -16,16 +16,24 @@ MOST_JOBS = 200
 OnEnd = Callable[[Job], Awaitable[None]]
 """function that is called with a job in its last state after it has ended"""
 
+Keep = Callable[[Job], Awaitable[Job]]
+"""function that stores a job whose work is done or has failed; returns it, maybe with a problem"""
+
 
 async def _do_nothing(_: Job) -> None:
     """Do nothing, as the default of `OnEnd`."""
+
+
+async def _keep_nothing(job: Job) -> Job:
+    """Return the job, as the default of `Keep`."""
+    return job
 
 
 @dataclass(frozen=True)
 class _RunningJob:
     work: JobProcess[Any]
     watching: asyncio.Task[None]
-    keep: OnEnd
+    keep: Keep
     on_end: OnEnd
 
 
@@ -63,7 +71,7 @@ class Jobs:
         job: Job,
         work: JobProcess[Any],
         on_end: OnEnd = _do_nothing,
-        keep: OnEnd = _do_nothing,
+        keep: Keep = _keep_nothing,
     ) -> Job:
         """Start the work of a job, and return the job.
 
@@ -122,7 +130,7 @@ class Jobs:
             job = job.model_copy(update={"state": state, "problem": str(error)})
         await work.end()
         if id in self._running:
-            await self._running[id].keep(job)
+            job = await self._running[id].keep(job)
         running = self._running.pop(id, None)
         if running is not None:
             self._store(job)

@@ -8,24 +8,30 @@ from contextlib import suppress
 from datetime import datetime
 from pathlib import Path
 
-from pydantic import ValidationError
-
-from argo_compiler.base.errors import Conflict, NotFound, Unavailable
+from argo_compiler.base.errors import ArgoError, Conflict, NotFound, Unavailable
 from argo_compiler.files.atomic_write import write_atomically
 from argo_compiler.il import Mission
 from argo_compiler.reorder.requirements import Requirements
-from argo_env.files.checked_files import checked_json, read_checked
+from argo_env.files.checked_files import checked_json
 from argo_env.files.folders import make_private_folder
 from argo_planner.service.jobs.job import Job, OrderJob
 from argo_planner.service.jobs.jobs import Jobs
 from argo_planner.service.jobs.order_search import search_order
 from argo_planner.service.processes.job_process import JobProcess
+from argo_planner.service.storage.stored_files import (
+    read_stored,
+    remove_if_empty,
+    require_own_id,
+)
 
 _log = logging.getLogger(__name__)
 MOST_SEARCHES = 2
 """searches that run at the same time"""
 MOST_STORED = 100
 """found orders that are stored; the oldest ones are deleted"""
+STORING_PERIOD = 5.0
+"""s between two attempts to store the found orders, for example on a full disk"""
+_REMEDY = "delete it, and search again"
 
 
 class OrderFolder:
@@ -35,24 +41,30 @@ class OrderFolder:
         self._path = path
 
     def store(self, job: OrderJob) -> None:
-        """Store a search; a failure is only logged, as the order can be searched again."""
+        """Store a search; raises Unavailable if that fails."""
+        path = self._path / f"{job.id}.json"
         try:
             make_private_folder(self._path)
-            content = checked_json(job.model_dump_json())
-            write_atomically(self._path / f"{job.id}.json", content, private=True)
-            for path in self._paths()[:-MOST_STORED]:
-                path.unlink(missing_ok=True)
+            write_atomically(path, checked_json(job.model_dump_json()), private=True)
+            for old in self._paths()[:-MOST_STORED]:
+                old.unlink(missing_ok=True)
         except OSError as error:
-            _log.warning("%s: the found order can't be stored: %s", self._path, error.strerror)
+            remove_if_empty(self._path)
+            raise Unavailable(
+                f"the found order can't be stored: {path}: {error.strerror}; accept it, or free "
+                "disk space, as it is lost if the service ends before"
+            ) from error
 
     def load_orders(self) -> list[OrderJob]:
         """Return the stored searches, the oldest first, without those that can't be read."""
         jobs = []
         for path in self._paths():
             try:
-                jobs.append(read_checked(OrderJob, path.read_bytes(), path, "search again"))
-            except (OSError, ValidationError, Unavailable) as error:
-                _log.warning("%s can't be read: %s", path, error)
+                job = read_stored(OrderJob, path, _REMEDY)
+                require_own_id(path, job.id, path.stem, _REMEDY)
+                jobs.append(job)
+            except ArgoError as error:
+                _log.warning("%s; the order is left out", error)
         return sorted(jobs, key=lambda job: job.begun)
 
     def delete_for_mission(self, plan: str) -> None:
@@ -89,13 +101,25 @@ class OrderSearches:
         self._jobs = jobs
         self._new_id = new_id
         self._clock = clock
+        self._unstored: dict[str, OrderJob] = {}
+        """searches whose orders could not be stored yet, by their ids"""
+        self._storing: asyncio.Task[None] | None = None
+        """task that stores them when that is possible"""
 
     async def open(self) -> None:
         """Load the stored searches, and add them to the jobs."""
         self._jobs.add_past(await asyncio.to_thread(self._folder.load_orders))
 
+    async def close(self) -> None:
+        """Store the orders that could not be stored yet, if that is possible now."""
+        if self._storing is not None:
+            self._storing.cancel()
+        await self._store_orders()
+
     async def delete_for_mission(self, plan: str) -> None:
         """Delete the stored searches of a mission."""
+        for job in [job for job in self._unstored.values() if job.mission == plan]:
+            del self._unstored[job.id]
         await asyncio.to_thread(self._folder.delete_for_mission, plan)
 
     def start(
@@ -122,13 +146,35 @@ class OrderSearches:
             id=self._new_id(), mission=plan, revision=revision, author=author, begun=self._clock()
         )
 
-        async def keep(ended: Job) -> None:
-            if isinstance(ended, OrderJob) and ended.found is not None:
+        async def keep(ended: Job) -> Job:
+            if not isinstance(ended, OrderJob) or ended.found is None:
+                return ended
+            try:
                 await asyncio.to_thread(self._folder.store, ended)
+            except Unavailable as error:
+                _log.error("%s", error)
+                self._unstored[ended.id] = ended
+                if self._storing is None or self._storing.done():
+                    self._storing = asyncio.create_task(self._store_orders_when_possible())
+                return ended.model_copy(update={"problem": str(error)})
+            return ended
 
         work = JobProcess(search_order, self._site, mission, requirements, time_limit, solvers)
         self._jobs.start(job, work, keep=keep)
         return job
+
+    async def _store_orders(self) -> None:
+        """Try to store all orders that are not stored yet; their jobs then have no problem."""
+        for id, job in [*self._unstored.items()]:
+            with suppress(Unavailable):
+                await asyncio.to_thread(self._folder.store, job)
+                self._unstored.pop(id, None)
+                self._jobs.replace_unless_discarded(job)
+
+    async def _store_orders_when_possible(self) -> None:
+        while self._unstored:
+            await asyncio.sleep(STORING_PERIOD)
+            await self._store_orders()
 
     def job_and_new_mission(self, id: str) -> tuple[OrderJob, Mission]:
         """Return the job of a search, and the mission in the order that it has found.

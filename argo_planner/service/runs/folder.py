@@ -20,13 +20,11 @@ from pydantic import ValidationError
 
 from argo_compiler.base.errors import ArgoError, NotFound, Unavailable
 from argo_compiler.base.model import Model
-from argo_compiler.base.operating_system import OPEN_FLAGS, sync_folder
+from argo_compiler.base.operating_system import NO_LINK_FLAGS, sync_folder
 from argo_compiler.files.atomic_write import write_atomically
 from argo_env.files.checked_files import (
     check_page,
     checked_json,
-    damaged,
-    read_checked,
     unchecked_json,
 )
 from argo_env.files.checked_lines import (
@@ -40,8 +38,14 @@ from argo_env.report.files import PAGE, RECORD
 from argo_env.run.journal import open_journal
 from argo_env.run.log import Entry
 from argo_planner.service.runs.requests import RequestState, RunOrder
-from argo_planner.service.runs.state import RunState
+from argo_planner.service.runs.state import RunState, RunStatus
 from argo_planner.service.runs.worker import journal_paths, load_entries
+from argo_planner.service.storage.stored_files import (
+    read_stored,
+    read_stored_bytes,
+    remove_if_empty,
+    require_own_id,
+)
 
 T = TypeVar("T")
 _log = logging.getLogger(__name__)
@@ -51,7 +55,7 @@ _RUN_FILE = "run.json"
 _REQUEST_FILE = "requests"
 _REMEDY = "restore it from a copy, or resume the newest journal in its folder with `argo resume`"
 _REPORT_REMEDY = "write it again, from the newest journal in its folder, with `argo resume`"
-_FLAGS = os.O_RDWR | os.O_APPEND | os.O_CREAT | OPEN_FLAGS
+_FLAGS = os.O_RDWR | os.O_APPEND | os.O_CREAT | NO_LINK_FLAGS
 
 
 class StoredRun(Model):
@@ -103,7 +107,7 @@ class RequestFile:
         wrong than the end of the last line. Raises Unavailable if the file can't be read.
         """
         try:
-            content = self._path.read_bytes()
+            content = read_stored_bytes(self._path)
         except FileNotFoundError:
             return []
         except OSError as error:
@@ -143,11 +147,13 @@ class RunFolder:
             folder.mkdir(mode=0o700)
             sync_folder(self._path)
         except OSError as error:
+            remove_if_empty(self._path)
             raise Unavailable(f"{folder} can't be created: {error.strerror}") from error
         try:
             self.store(stored)
         except Unavailable:
             shutil.rmtree(folder, ignore_errors=True)
+            remove_if_empty(self._path)
             raise
         return folder
 
@@ -182,13 +188,11 @@ class RunFolder:
         """
         path = self.run_path(id) / _RUN_FILE
         try:
-            return read_checked(StoredRun, path.read_bytes(), path, _REMEDY)
-        except (FileNotFoundError, NotADirectoryError):
+            stored = read_stored(StoredRun, path, _REMEDY)
+        except NotFound:
             raise NotFound(f"there is no run {id}") from None
-        except OSError as error:
-            raise Unavailable(f"{path} can't be read: {error.strerror}") from None
-        except ValidationError:
-            raise damaged(path, "it is not of this version of Argo", _REMEDY) from None
+        require_own_id(path.parent, stored.state.id, id, "move it out of this folder")
+        return stored
 
     def run_path(self, id: str) -> Path:
         """Return the folder of a run, which need not exist.
@@ -203,10 +207,17 @@ class RunFolder:
     def load_entries(self, id: str) -> tuple[Entry, ...]:
         """Return the log of a run whose process has ended.
 
-        Raises NotFound if there is no such run, ArgoError if one of its journals can't be read.
+        Raises NotFound if there is no such run, ArgoError if one of its journals is missing or
+        can't be read.
         """
-        self.load_run(id)
-        return load_entries(self.run_path(id))
+        state, path = self.load_run(id).state, self.run_path(id)
+        entries = load_entries(path)
+        if len(entries) < state.entries and (state.status is RunStatus.ENDED or not entries):
+            raise Unavailable(
+                f"{path}: its journals have {len(entries)} of {state.entries} entries: restore the "
+                "missing journal from a copy"
+            )
+        return entries
 
     def request_file(self, id: str) -> RequestFile:
         """Return the file with the requests to a run, which need not exist yet."""
@@ -221,7 +232,7 @@ class RunFolder:
         self.load_run(id)
         path = self.run_path(id) / file
         try:
-            content = path.read_bytes()
+            content = read_stored_bytes(path)
         except FileNotFoundError:
             return None
         except OSError as error:

@@ -1,6 +1,7 @@
 """The runs of the service's robot: starting, resuming, requests and followers."""
 
 import asyncio
+import logging
 import secrets
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -26,6 +27,7 @@ from argo_planner.service.runs.requests import (
 )
 from argo_planner.service.runs.state import EntryList, RequestTold, RunState, RunStatus, StateTold
 
+_log = logging.getLogger(__name__)
 _REPORT_ATTEMPTS = 50
 """number of times that a report which is being written is looked for"""
 _REPORT_PAUSE = 0.2
@@ -139,7 +141,12 @@ class RunHost:
                 return
             current, last = self._current, runs[0]
             file = self._folder.request_file(last.state.id)
-            current.replace_run_silently(last, await self._disk.run(file.load_requests))
+            try:
+                requests = await self._disk.run(file.load_requests)
+            except ArgoError as error:
+                _log.error("%s; the requests to run %s are not known", error, last.state.id)
+                requests = []
+            current.replace_run_silently(last, requests)
             await self._handle_loss("the service has ended during the run", may_stop=True)
             if self._after_restart is AfterRestart.GO_ON and (
                 current.stored.state.status is RunStatus.INTERRUPTED
@@ -253,7 +260,9 @@ class RunHost:
         Raises NotFound if there is no such run, ArgoError if a journal of an earlier run can't be
         read.
         """
-        if self._is_current(run):
+        if self._is_current(run) and (
+            self._current.entry_count or self._current.stored.state.status is not RunStatus.ENDED
+        ):
             return self._current.list_entries(after_first, most)
         if self._last_log is None or self._last_log[0] != run:
             self._last_log = run, await self._disk.run(self._folder.load_entries, run)
@@ -385,24 +394,25 @@ class RunHost:
         """
         current, ended = self._current, False
         run = current.stored.state.id
-        damaged = False
+        damage = None
         try:
             await current.load_missing_entries()
             ended = await self._disk.run(self._folder.has_ended, run)
         except ArgoError as error:
-            damaged = True
+            damage = str(error)
             if str(error) not in problem:
                 problem = f"{problem}; {error}"
         loss = _settle_loss(
             current.stored.state,
             current.book.pending,
             problem,
-            begun=damaged or current.entry_count > 0,
+            begun=damage is not None or current.entry_count > 0,
             ended=ended,
             may_stop=may_stop,
         )
         requests = current.book.pending_and_latest(loss.settled)
-        state = loss.state.model_copy(update={"requests": requests})
+        update = {"requests": requests, "problem": loss.state.problem or damage}
+        state = loss.state.model_copy(update=update)
         settled = [RequestTold(run=run, request=request) for request in loss.settled]
         await current.apply_messages([StateTold(state=state), *settled])
         if loss.stop is not None:

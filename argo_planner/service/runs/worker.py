@@ -40,14 +40,23 @@ _JOURNAL = re.compile(r"run-(\d{4})\.journal")
 
 
 def journal_paths(folder: Path) -> list[Path]:
-    """Return the paths of a run's journals in order: the first one, then one per edited plan."""
-    return sorted(folder / name for name in os.listdir(folder) if _JOURNAL.fullmatch(name))
+    """Return the paths of a run's journals in order: the first one, then one per edited plan.
+
+    Raises Unavailable if one before the last is missing, or one is a link, which is not followed.
+    """
+    paths = sorted(folder / name for name in os.listdir(folder) if _JOURNAL.fullmatch(name))
+    for number, path in enumerate(paths, 1):
+        expected = folder / f"run-{number:04d}.journal"
+        if path != expected or os.path.islink(path):
+            why = "is missing" if path != expected else "is a link, and links are not followed"
+            raise Unavailable(f"{expected} {why}: restore it from a copy")
+    return paths
 
 
 def load_entries(folder: Path) -> tuple[Entry, ...]:
     """Return the log of a run whose process has ended, from all its journals.
 
-    Raises ArgoError if a journal can't be read.
+    Raises ArgoError if a journal is missing or can't be read.
     """
     entries: list[Entry] = []
     for path in journal_paths(folder):

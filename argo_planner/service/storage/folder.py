@@ -24,6 +24,7 @@ MOST_PLANS = 2_000
 PLAN_ID = r"[0-9a-f]{12}"
 """regular expression for the id of a plan"""
 _BIN = "bin"
+_SUBFOLDERS = (_BIN, "evaluations", "notes", "orders", "runs")
 _SUFFIX = ".plan"
 
 
@@ -45,11 +46,19 @@ class PlanFolder(Closing):
     def __init__(self, path: Path, new_id: Callable[[], str]) -> None:
         """Open the folder, and create it if needed.
 
-        Raises Conflict if another service uses it, Unavailable if it can't be written to.
+        Raises Conflict if another service uses it, Unavailable if it can't be written to, or a
+        link or a file is in the place of one of its folders.
         """
         self.path = path
         self._new_id = new_id
         self._cache: dict[Path, _CachedSummary] = {}
+        for name in _SUBFOLDERS:
+            if os.path.lexists(path / name) and (
+                os.path.islink(path / name) or not os.path.isdir(path / name)
+            ):
+                raise Unavailable(
+                    f"{path / name} is not a folder, or a link, which is not followed: move it away"
+                )
         try:
             make_private_folder(path / _BIN)
             self._lock = os.open(path / ".lock", os.O_RDWR | os.O_CREAT | NO_LINK_FLAGS, 0o600)
@@ -102,8 +111,8 @@ class PlanFolder(Closing):
     def delete(self, id: str) -> None:
         """Move a plan to the bin.
 
-        Raises NotFound if there is no such plan, Conflict if the bin is full, Unavailable if the
-        file can't be moved.
+        Raises NotFound if there is no such plan, Conflict if the bin is full or has it already,
+        Unavailable if the file can't be moved.
         """
         if sum(1 for _ in _files(self.path / _BIN)) >= MOST_PLANS:
             raise Conflict(f"there are {MOST_PLANS} missions in the bin: empty it first")
@@ -112,9 +121,14 @@ class PlanFolder(Closing):
     def restore(self, id: str) -> None:
         """Move a plan out of the bin, even if the folder then has more than MOST_PLANS plans.
 
-        Raises NotFound if the bin does not have it, Unavailable if the file can't be moved.
+        Raises NotFound if the bin does not have it, Conflict if the folder has it as well,
+        Unavailable if it can't be opened or moved; nothing is moved then.
         """
-        self._move(self._deleted_path(id), self._path(id), id)
+        path = self._deleted_path(id)
+        _require_file(path, id)
+        if problem := read_plan_summary(path).problem:
+            raise Unavailable(problem)
+        self._move(path, self._path(id), id)
 
     def delete_from_bin(self, id: str) -> None:
         """Delete a plan in the bin permanently; raises NotFound if the bin does not have it."""
@@ -125,6 +139,8 @@ class PlanFolder(Closing):
 
     def _move(self, source: Path, target: Path, id: str) -> None:
         _require_file(source, id)
+        if os.path.lexists(target):
+            raise Conflict(f"{target} exists already: move it away, or {source}")
         try:
             for other in _companion_files(source):
                 other.replace(target.parent / other.name)

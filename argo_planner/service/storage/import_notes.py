@@ -7,14 +7,13 @@ import logging
 from contextlib import suppress
 from pathlib import Path
 
-from pydantic import ValidationError
-
-from argo_compiler.base.errors import Unavailable
+from argo_compiler.base.errors import NotFound, Unavailable
 from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.files.atomic_write import write_atomically
-from argo_env.files.checked_files import checked_json, read_checked
+from argo_env.files.checked_files import checked_json
 from argo_env.files.folders import make_private_folder
+from argo_planner.service.storage.stored_files import read_stored, remove_if_empty
 
 _log = logging.getLogger(__name__)
 MOST_NOTES = 200
@@ -35,6 +34,7 @@ def store_import_notes(
         stored = _Notes(revision=revision, notes=notes[:MOST_NOTES])
         write_atomically(path, checked_json(stored.model_dump_json()), private=True)
     except OSError as error:
+        remove_if_empty(path.parent)
         _log.warning("%s: can't be written: %s", path, error.strerror)
 
 
@@ -45,10 +45,10 @@ def load_import_notes(folder: Path, plan: str) -> tuple[int, tuple[Diagnostic, .
     """
     path = _path(folder, plan)
     try:
-        stored = read_checked(_Notes, path.read_bytes(), path, "import the mission again")
-    except FileNotFoundError:
+        stored = read_stored(_Notes, path, "import the mission again")
+    except NotFound:
         return 0, ()
-    except (OSError, ValidationError, Unavailable) as error:
+    except Unavailable as error:
         _log.warning("the notes of an import can't be read: %s", error)
         return 0, ()
     return stored.revision, stored.notes

@@ -36,9 +36,9 @@ def read_plan_summary(path: Path) -> PlanSummary:
     there is no such file.
     """
     try:
-        summary = _summarize(path.stem, read_plan_bytes_or_raise(path))
+        summary = _summarize(path, read_plan_bytes_or_raise(path))
         if summary is None and os.path.exists(previous := replaced_file_path(path)):
-            summary = _summarize(path.stem, read_plan_bytes_or_raise(previous))
+            summary = _summarize(path, read_plan_bytes_or_raise(previous))
     except NotFound:
         raise
     except ArgoError as error:
@@ -49,9 +49,9 @@ def read_plan_summary(path: Path) -> PlanSummary:
     return summary
 
 
-def _summarize(id: str, content: bytes) -> PlanSummary | None:
+def _summarize(path: Path, content: bytes) -> PlanSummary | None:
     lines = parse_lines(content).objects
-    base = parse_first_line(content.partition(b"\n")[0]) if lines else None
+    base = parse_first_line(path, content.partition(b"\n")[0]) if lines else None
     if base is None:
         return None
     try:
@@ -59,7 +59,7 @@ def _summarize(id: str, content: bytes) -> PlanSummary | None:
         fields = {key: base[key] for key in ("name", "created", "changed", "revision")}
         for line in lines[1:]:
             _apply_record(line.data, tasks, fields)
-        return PlanSummary(id=id, **fields, tasks=len(tasks))
+        return PlanSummary(id=path.stem, **fields, tasks=len(tasks))
     except (KeyError, TypeError, ValueError):
         return None  # written by another program
 

@@ -6,6 +6,7 @@ previous file is stored next to it.
 """
 
 import os
+from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -35,6 +36,7 @@ from argo_planner.service.core.document import (
 )
 from argo_planner.service.core.plan import MissionPlan
 from argo_planner.service.core.refusals import PlanTooLarge
+from argo_planner.service.storage.stored_files import open_stored_file, require_own_id
 
 VERSION = 1
 """version of the file's format"""
@@ -162,13 +164,13 @@ def open_plan_file(path: Path) -> PlanFile:
     Raises:
         NotFound: There is no such file.
         Invalid: Nothing in it can be read, or another version of Argo has written it.
-        Unavailable: It can't be opened or written.
+        Unavailable: It can't be opened or written, or is the file of another mission.
     """
     content = read_plan_bytes_or_raise(path)
-    parsed = _parse(content)
+    parsed = _parse(path, content)
     previous = replaced_file_path(path)
     if parsed is None and os.path.exists(previous):
-        parsed_previous = _parse(read_plan_bytes_or_raise(previous))
+        parsed_previous = _parse(path, read_plan_bytes_or_raise(previous))
         if parsed_previous is not None:
             lost = "its first line is damaged: this is an earlier state of the mission"
             return _recover(path, parsed_previous.document, lost)
@@ -179,7 +181,7 @@ def open_plan_file(path: Path) -> PlanFile:
         )
     if parsed.lost:
         return _recover(path, parsed.document, parsed.lost)
-    file = _open(path)
+    file = _open(path, lambda path: os.open(path, _FLAGS))
     stored = parse_lines(content)  # without a last line that was never acknowledged
     try:
         lines = LineWriter(file, stored)
@@ -198,10 +200,10 @@ class _ParsedFile:
     """what is lost; empty if no line is damaged but the last, which was not acknowledged"""
 
 
-def _parse(content: bytes) -> _ParsedFile | None:
+def _parse(path: Path, content: bytes) -> _ParsedFile | None:
     """Return the plan in the valid part of a file, or None if its first line is damaged."""
     stored = parse_lines(content)
-    base = parse_first_line(content.partition(b"\n")[0]) if stored.lines else None
+    base = parse_first_line(path, content.partition(b"\n")[0]) if stored.lines else None
     if base is None:
         return None
     base.pop("n", None)
@@ -228,11 +230,12 @@ def _lost(document: PlanDocument, number: int, count: int, known: bool) -> str:
     return f"{which}{why}: this is the mission at revision {document.plan.revision}"
 
 
-def parse_first_line(line: bytes) -> dict[str, Any] | None:
+def parse_first_line(path: Path, line: bytes) -> dict[str, Any] | None:
     """Return the fields of the first line of a mission plan's file, as parsed from its JSON.
 
     Returns None if the line is damaged, or is not that of a mission plan. Raises Invalid if it is
-    intact and has another version of the format.
+    intact and has another version of the format, Unavailable if it is of another mission than
+    that whose file has this path.
     """
     base = checked_object(line)
     if base is None or base.get("format") != "argo plan":
@@ -242,6 +245,7 @@ def parse_first_line(line: bytes) -> dict[str, Any] | None:
             f"the mission's file has format version {base.get('version')}, but this Argo reads "
             f"version {VERSION}: open it with the Argo that wrote it"
         )
+    require_own_id(path, str(base.get("id")), path.stem, "copy the mission in the service")
     return base
 
 
@@ -340,9 +344,9 @@ def replaced_file_path(path: Path) -> Path:
     return path.with_name(f"{path.name}.before")
 
 
-def _open(path: Path, flags: int = _FLAGS) -> int:
+def _open(path: Path, open_file: Callable[[Path], int]) -> int:
     try:
-        return os.open(path, flags)
+        return open_file(path)
     except FileNotFoundError:
         raise NotFound(f"{path.name}: there is no such mission") from None
     except OSError as error:
@@ -355,7 +359,7 @@ def read_plan_bytes_or_raise(path: Path) -> bytes:
     Raises NotFound if there is no such file, Unavailable if it can't be read, Invalid if it is too
     large.
     """
-    file = _open(path, os.O_RDONLY | NO_LINK_FLAGS)
+    file = _open(path, open_stored_file)
     try:
         if os.fstat(file).st_size > MAX_BYTES:
             raise Invalid(

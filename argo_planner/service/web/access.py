@@ -14,6 +14,7 @@ from urllib.parse import unquote
 from argo_compiler.base.errors import ArgoError, Invalid, Unavailable, reason_text
 from argo_compiler.base.operating_system import NO_LINK_FLAGS
 from argo_planner.service.core.plan_limits import require_displayable_name
+from argo_planner.service.storage.stored_files import read_stored_bytes
 
 MIN_TOKEN_LENGTH = 16
 """in characters"""
@@ -191,9 +192,8 @@ def load_or_make_secret(folder: Path) -> str:
             file = os.open(path, flags, 0o600)
             with open(file, "w", encoding="ascii") as new:
                 new.write(make_secret())
-        file = os.open(path, os.O_RDONLY | NO_LINK_FLAGS)
-        with open(file, encoding="ascii") as stored:
-            return validate_secret(stored.read().strip(), str(path))
+        secret = read_stored_bytes(path).decode("ascii")
+        return validate_secret(secret.strip(), str(path))
     except (OSError, UnicodeDecodeError) as error:
         raise Unavailable(
             f"{path}: the token can't be stored: {reason_text(error)}; choose another folder"

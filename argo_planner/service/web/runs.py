@@ -22,6 +22,7 @@ from argo_planner.service.runs.requests import (
     Speed,
 )
 from argo_planner.service.runs.state import EntryList, RunState
+from argo_planner.service.storage.stored_files import read_stored_bytes
 from argo_planner.service.web.access import AccessRole
 from argo_planner.service.web.bodies import JsonBody
 from argo_planner.service.web.live import accept_socket, exchange_messages, next_client_id
@@ -217,7 +218,7 @@ async def read_picture(
     """Return the picture of a reading; only the sensor `camera` takes pictures."""
     path = picture_path(service.runs.folder.run_path(run), checkpoint, milliseconds / 1000)
     try:
-        content = path.read_bytes()
+        content = read_stored_bytes(path)
     except OSError:
         raise NotFound(
             f"run {run} has no picture of checkpoint {checkpoint} at this time"

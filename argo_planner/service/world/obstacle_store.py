@@ -1,15 +1,17 @@
 """Obstacles that people have placed on a site, stored on disk."""
 
 import os
+from contextlib import suppress
 from pathlib import Path
 
-from pydantic import Field, ValidationError
+from pydantic import Field
 
-from argo_compiler.base.errors import Unavailable, reason_text
+from argo_compiler.base.errors import NotFound, Unavailable
 from argo_compiler.base.model import Model
 from argo_compiler.base.operating_system import NO_LINK_FLAGS, sync_folder
-from argo_env.files.checked_files import checked_json, read_checked
+from argo_env.files.checked_files import checked_json
 from argo_planner.service.core.refusals import StaleRevision
+from argo_planner.service.storage.stored_files import read_stored
 from argo_planner.service.world.obstacles import Obstacle
 
 _FILE = "obstacles.json"
@@ -33,17 +35,8 @@ class ObstacleStore:
         """Read a folder's obstacles, none without a file; raises Unavailable for a bad file."""
         self._path = folder / _FILE
         self.present = ObstacleList()
-        if not os.path.lexists(self._path):
-            return
-        try:
-            file = os.open(self._path, os.O_RDONLY | NO_LINK_FLAGS)
-            with open(file, "rb") as stored:
-                content = stored.read()
-            self.present = read_checked(ObstacleList, content, self._path, _REMEDY)
-        except (OSError, ValidationError) as error:
-            raise Unavailable(
-                f"{self._path}: the obstacles can't be read: {reason_text(error)}; {_REMEDY}"
-            ) from None
+        with suppress(NotFound):
+            self.present = read_stored(ObstacleList, self._path, _REMEDY)
 
     def replace(self, obstacles: tuple[Obstacle, ...], made_on: int | None) -> ObstacleList:
         """Replace all obstacles on disk and in memory, and return the new list.
@@ -70,6 +63,8 @@ class ObstacleStore:
             draft.replace(self._path)
             sync_folder(self._path.parent)
         except OSError as error:
+            with suppress(OSError):
+                draft.unlink(missing_ok=True)
             raise Unavailable(f"{self._path} can't be written: {error.strerror}") from error
         self.present = changed
         return changed

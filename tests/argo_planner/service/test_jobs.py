@@ -1,14 +1,18 @@
 """Searches for the best order as jobs: watched, accepted as one command, cancelled."""
 
+import errno
 import json
+import os
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from argo_compiler.il import Mission
 from argo_env.planning.opening import OpenedSite
+from argo_planner.service.jobs import order_searches
 from argo_planner.use_cases.importing import ImportedMission
 from argo_planner.use_cases.routing import suggest_order
 from tests.argo_planner.service.served import Served, require_private, served
@@ -103,6 +107,33 @@ def test_a_damaged_order_is_left_out(
     with served(tmp_path, site) as service:
         assert service.client.get("/api/jobs").json()["jobs"] == []
     assert f"{file} is damaged: its content does not fit its checksum" in caplog.text
+
+
+def test_an_order_that_can_not_be_stored_says_so_and_is_stored_when_there_is_room(
+    tmp_path: Path, site: OpenedSite, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    disk_is_full = True
+    write = order_searches.write_atomically
+
+    def write_if_possible(*arguments: Any, **options: Any) -> None:
+        if disk_is_full:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        write(*arguments, **options)
+
+    monkeypatch.setattr(order_searches, "write_atomically", write_if_possible)
+    monkeypatch.setattr(order_searches, "STORING_PERIOD", 0.05)
+    with served(tmp_path, site) as service:
+        job = start_search(service, import_script(service))
+        found = wait_for_end(service, job)
+        assert found["state"] == "done"
+        assert "can't be stored" in found["problem"]
+        assert "No space left on device" in found["problem"]
+        assert not (tmp_path / "orders").exists()
+        disk_is_full = False
+        while service.client.get(f"/api/jobs/{job}").json()["problem"] is not None:
+            time.sleep(0.05)
+    with served(tmp_path, site) as service:
+        assert service.client.get(f"/api/jobs/{job}").json() == found | {"problem": None}
 
 
 def test_an_order_of_an_earlier_revision_is_not_accepted(service: Served) -> None:

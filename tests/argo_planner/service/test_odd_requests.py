@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from websockets.exceptions import InvalidStatus
 
+from argo_env.files.checked_lines import checked_line, checked_object
 from argo_planner.service.rooms import mailbox
 from argo_planner.service.storage import folder, plan_file
 from tests.argo_planner.service.served import ALL, Served
@@ -43,8 +44,10 @@ def test_a_client_resumes_although_it_missed_more_messages_than_may_wait(
 def test_listing_missions_writes_no_files(service, plan) -> None:
     folder: Path = service.folder
     (folder / "aaaaaaaaaaaa.plan").write_bytes(b"no plan\n")
-    torn = (folder / f"{plan}.plan").read_bytes()[:-20]
-    (folder / "bbbbbbbbbbbb.plan").write_bytes(torn)
+    content = (folder / f"{plan}.plan").read_bytes()
+    first, _, others = content.partition(b"\n")
+    first = checked_line((checked_object(first) or {}) | {"id": "b" * 12})
+    (folder / "bbbbbbbbbbbb.plan").write_bytes(first + others[:-20])
     before = {path.name: path.stat().st_mtime_ns for path in folder.iterdir()}
     listed = service.client.get("/api/missions").json()["missions"]
     assert {path.name: path.stat().st_mtime_ns for path in folder.iterdir()} == before

@@ -140,6 +140,7 @@ export class RouteResult extends PageElement {
         : nothing}
       ${now.state === "cancelled" ? html`<p class="dim">${texts.cancelled}</p>` : nothing}
       ${now.state === "failed" ? html`<p class="warn">${texts.noneFound}: ${now.problem}</p>` : nothing}
+      ${now.state === "done" && now.problem ? html`<p class="warn">${now.problem}</p>` : nothing}
       ${now.state === "done" ? this.done(now) : nothing}
     </section>`;
   }

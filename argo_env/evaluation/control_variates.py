@@ -158,7 +158,9 @@ def _relative_cost(folder: Path, expensive: float, cheap: float) -> float:
     except (NotFound, ValidationError):
         cost = max(cheap, 1e-6) / max(expensive, 1e-6)
         with reporting_write_errors(path):
-            write_atomically(path, checked_json(_MeasuredCost(cost=cost).model_dump_json()))
+            write_atomically(
+                path, checked_json(_MeasuredCost(cost=cost).model_dump_json()), private=True
+            )
         return cost
 
 

@@ -1,5 +1,7 @@
 """Evaluation files in YAML: what is run, how often, and which requirements must be met."""
 
+from pathlib import Path
+
 from pydantic import Field, field_validator, model_validator
 
 from argo_compiler.base.errors import Invalid, Remedy
@@ -9,7 +11,7 @@ from argo_env.evaluation.case import AS_WRITTEN, NO_FAULTS
 from argo_env.evaluation.plan import NO_REQUIREMENT_ON_STRATA, parse_seeds
 from argo_env.evaluation.requirement import parse_requirement
 from argo_env.evaluation.worlds import NO_VARIATION, Variation
-from argo_env.files.folders import leaves_folder
+from argo_env.files.folders import leaves_folder, links_leave_folder
 from argo_env.files.yaml_file import parse_yaml
 from argo_env.run.drives_and_sensors import IDEAL, SENSORS, drive_names
 
@@ -130,12 +132,14 @@ class EvaluationFile(Model):
         return isinstance(self.faults, DrawnFaults) and self.faults.strata
 
 
-def decode_evaluation(content: bytes, source_name: str, trusted: bool = False) -> EvaluationFile:
+def decode_evaluation(
+    content: bytes, source_name: str, trusted: bool = False, folder: Path | None = None
+) -> EvaluationFile:
     """Parse an evaluation in YAML; messages refer to it as `source_name`.
 
-    Unless it is `trusted`, it names no code, and no files outside of its folder. Raises ArgoError
-    if the content is no text or too large, or is not trusted, and DiagnosticError, with positions
-    in the text, if it is no evaluation.
+    Unless it is `trusted`, it names no code, and no files outside of its folder, to which no links
+    lead either if `folder` is given. Raises ArgoError if the content is no text or too large, or is
+    not trusted, and DiagnosticError, with positions in the text, if it is no evaluation.
     """
     require_size(content, source_name, "evaluation", MAX_BYTES)
     text = decode_text(content, source_name, "evaluation")
@@ -149,11 +153,11 @@ def decode_evaluation(content: bytes, source_name: str, trusted: bool = False) -
         wrong_field="evaluation.wrong-field",
     )
     if not trusted:
-        _require_harmless(file, source_name)
+        _require_harmless(file, source_name, folder)
     return file
 
 
-def _require_harmless(file: EvaluationFile, source_name: str) -> None:
+def _require_harmless(file: EvaluationFile, source_name: str, folder: Path | None) -> None:
     """Raise Invalid if an evaluation names code, or files outside of its folder."""
     for policy in file.policies:
         if ":" in policy:
@@ -165,7 +169,7 @@ def _require_harmless(file: EvaluationFile, source_name: str) -> None:
     faults = (file.faults.file,) if isinstance(file.faults, DrawnFaults) else file.faults
     missions = [one if isinstance(one, str) else one.file for one in file.missions]
     for name in (*missions, *file.sites, *faults):
-        if leaves_folder(name):
+        if leaves_folder(name) or (folder is not None and links_leave_folder(folder, name)):
             raise Invalid(
                 f"{source_name}: `{name}` is outside of the folder of the file: copy it into that "
                 "folder, or trust the file",

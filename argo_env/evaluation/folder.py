@@ -17,7 +17,7 @@ from argo_env.evaluation.results import EvaluationResults
 from argo_env.evaluation.row import RunRow
 from argo_env.evaluation.store import RowStore, read_rows
 from argo_env.files.checked_files import checked_json, read_checked
-from argo_env.files.folders import make_folder, reporting_write_errors
+from argo_env.files.folders import make_folder, make_private_folder, reporting_write_errors
 
 PLAN = "evaluation.json"
 FAILING = "failing"
@@ -99,16 +99,16 @@ def write_plan(folder: Path, plan: EvaluationPlan, digest: str) -> None:
     """
     make_folder(folder)
     stored = _StoredPlan(digest=digest, plan=plan)
-    write_file(folder / PLAN, checked_json(stored.model_dump_json(indent=1)), private=True)
+    write_file(folder / PLAN, checked_json(stored.model_dump_json(indent=1)))
 
 
-def write_file(path: Path, text: str, private: bool = False) -> Path:
-    """Write a file of an evaluation and return its path.
+def write_file(path: Path, text: str) -> Path:
+    """Write a file of an evaluation, which only its owner can read, and return its path.
 
-    With `private`, only the owner can read it. Raises Unavailable if the file can't be written.
+    Raises Unavailable if the file can't be written.
     """
     with reporting_write_errors(path):
-        write_atomically(path, text, private)
+        write_atomically(path, text, private=True)
     return path
 
 
@@ -170,7 +170,8 @@ def replace_failing_specs(folder: Path, results: EvaluationResults) -> dict[str,
         run = results.plan.planned_run(case, row.seed)
         path = folder / FAILING / f"{row.key}.json"
         if not paths:
-            make_folder(folder / FAILING)
+            with reporting_write_errors(folder / FAILING):
+                make_private_folder(folder / FAILING)
         write_file(path, checked_json(run.spec.model_dump_json(indent=1)))
         paths[row.key] = path
     for name in spec_file_names(folder) - {path.name for path in paths.values()}:

@@ -21,6 +21,7 @@ from argo_compiler.base.operating_system import write_draft_and_replace
 from argo_compiler.files.json_places import format_path
 from argo_env.evaluation.row import RunRow
 from argo_env.files.checked_files import damaged
+from argo_env.files.folders import make_private_folder
 
 if TYPE_CHECKING:
     import pyarrow
@@ -58,7 +59,7 @@ def write_part(folder: Path, rows: Sequence[RunRow]) -> Path:
     path = parts / f"part-{number:05d}-{zlib.crc32(content):08x}.parquet"
     draft = parts / f".part-{number:05d}.parquet"
     try:
-        parts.mkdir(exist_ok=True)
+        make_private_folder(parts)
         write_draft_and_replace(draft, path, content)
     except OSError as error:
         raise Unavailable(f"{path} can't be written: {reason_text(error)}") from error

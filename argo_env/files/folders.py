@@ -3,7 +3,7 @@
 import errno
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from argo_compiler.base.errors import Conflict, Unavailable
@@ -36,6 +36,23 @@ def leaves_folder(name: str) -> bool:
     """
     parts = name.replace("\\", "/").split("/")
     return ".." in parts or (len(parts) > 1 and not parts[0]) or parts[0][1:2] == ":"
+
+
+def links_leave_folder(folder: Path, name: str) -> bool:
+    """Return True if links lead from a path relative to the folder to a place outside of it.
+
+    If the path is itself a folder, links in that one count too.
+    """
+    if "\0" in name:
+        return False  # there is no such file
+    path, root = folder / name, os.path.realpath(folder)
+    inside: list[str] = []
+    with suppress(OSError):
+        inside = os.listdir(path)
+    return not all(
+        Path(os.path.realpath(one)).is_relative_to(root)
+        for one in (path, *(path / entry for entry in inside))
+    )
 
 
 def make_folder(path: Path) -> None:

@@ -84,7 +84,8 @@ def read_evaluation_request(
                     "instead of the command line"
                 )
         content = read_bytes(path, "evaluation", MAX_BYTES)
-        return decode_evaluation(content, str(path), trust), path.parent, content
+        file = decode_evaluation(content, str(path), trust, path.parent)
+        return file, path.parent, content
     missions = tuple(
         MissionEntry(file=str(source), start_area=start_area, end_area=end_area)
         for source in sources

@@ -77,6 +77,9 @@ def test_a_file_is_evaluated_and_a_failed_run_is_repeated(argo, file, tmp_path):
     result = argo("evaluate", file, "--out", out, "--workers", "2", status=0)
     assert "5 of 10 runs did not succeed" in result.stdout
     assert "stop" in result.stdout
+    open_to_others = [path for path in out.rglob("*") if path.stat().st_mode & 0o077]
+    assert not open_to_others
+    assert {path.name for path in out.iterdir()} >= {"parts", "failing", "report.html"}
     rows = read_rows(out)
     assert len(rows) == 10
     failed = [row for row in rows if not row.success]

@@ -46,6 +46,30 @@ def test_names_stay_in_the_folder_of_the_file_unless_it_is_trusted(text, name):
     decode_evaluation(content, "file", trusted=True)
 
 
+@pytest.mark.parametrize("link", ["m.txt", "sub", "faults/f.yaml", "sub/deeper"])
+def test_links_stay_in_the_folder_of_the_file_unless_it_is_trusted(tmp_path, link):
+    folder = tmp_path / "folder"
+    for path in (tmp_path / "outside", folder / "sub", folder / "faults"):
+        path.mkdir(parents=True)
+    for path in (folder / "m.txt", folder / "faults" / "f.yaml", tmp_path / "outside" / "m.txt"):
+        path.touch()
+    text = b"missions: [m.txt, sub/m.txt, sub/deeper/m.txt]\nfaults: [none, faults]\n"
+    assert decode_evaluation(text, "file", folder=folder)
+    path = folder / link
+    if path.is_file():
+        path.unlink()
+    elif path.is_dir():
+        path.rmdir()
+    path.symlink_to(tmp_path / "outside")
+    with pytest.raises(Invalid, match=r"is outside of the folder of the file") as caught:
+        decode_evaluation(text, "file", folder=folder)
+    assert caught.value.remedies == (Remedy.TRUST,)
+    assert decode_evaluation(text, "file", trusted=True, folder=folder)
+    path.unlink()
+    path.symlink_to(folder)
+    assert decode_evaluation(text, "file", folder=folder)
+
+
 def test_names_in_the_folder_and_names_of_sites_are_no_paths_outside():
     text = (
         "missions: [m.txt, a/b/m.txt, ./m.txt, 'a..b.txt']\n"

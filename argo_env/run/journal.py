@@ -19,6 +19,7 @@ from pydantic import ValidationError
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid, NotFound, Remedy, Unavailable
 from argo_compiler.base.model import Model
 from argo_compiler.base.operating_system import OPEN_FLAGS, sync_folder, try_lock
+from argo_compiler.base.quantity_text import counted_text
 from argo_compiler.base.version import __version__
 from argo_env.closing import Closing
 from argo_env.files.checked_lines import (
@@ -288,9 +289,9 @@ def _loss(path: Path, entries: Sequence[Entry], stored: StoredLines) -> str:
     times = [line.data["t"] for line in stored.later if isinstance(line.data.get("t"), float | int)]
     until = f", with what the run did until {max(times):g} s" if times else ""
     return (
-        f"{path}: damaged from line {len(stored.lines) + 1} on, as by a loss of power: "
-        f"{stored.count_after} lines that were not known to be on disk are lost{until}. All lines "
-        f"before are whole: {then}"
+        f"{path}: damaged from line {len(stored.lines) + 1} on, as by a loss of power: the loss is "
+        f"at least {counted_text(stored.count_after, 'line')}, not known to be on disk{until}. All "
+        f"lines before are whole: {then}"
     )
 
 

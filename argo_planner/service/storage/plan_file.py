@@ -17,6 +17,7 @@ from pydantic import TypeAdapter, ValidationError
 from argo_compiler.base.errors import Invalid, NotFound, Unavailable
 from argo_compiler.base.model import Model
 from argo_compiler.base.operating_system import NO_LINK_FLAGS, sync_folder
+from argo_compiler.base.quantity_text import counted_text
 from argo_compiler.base.version import __version__
 from argo_compiler.il import Mission
 from argo_env.closing import Closing
@@ -225,9 +226,10 @@ def _parse(path: Path, content: bytes) -> _ParsedFile | None:
 
 def _lost(document: PlanDocument, number: int, count: int, known: bool) -> str:
     """Return what is lost from the line with this number on; `known`: it was on disk once."""
-    which = f"{count} of {number + count} lines are damaged or follow a damaged one"
-    why = "" if known else ", as by a loss of power, and were not known to be on disk"
-    return f"{which}{why}: this is the mission at revision {document.plan.revision}"
+    which = f"at least {counted_text(count, 'line')} after the first {number}"
+    why = "" if known else ", as by a loss of power, not known to be on disk"
+    present = f"this is the mission at revision {document.plan.revision}"
+    return f"the file is damaged, and the loss is {which}{why}: {present}"
 
 
 def parse_first_line(path: Path, line: bytes) -> dict[str, Any] | None:

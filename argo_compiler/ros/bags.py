@@ -25,9 +25,9 @@ from argo_compiler.files.mission_file import MAX_BYTES
 from argo_compiler.il import Mission
 from argo_compiler.ros.compression import (
     TooLargeError,
+    require_readable_metadata,
     require_small_mcap_chunks,
     require_small_ros1_chunks,
-    require_uncompressed_bag,
 )
 from argo_compiler.ros.messages import Received, from_message, raise_error, to_message
 from argo_compiler.ros.package import SPECIFICATION
@@ -49,8 +49,11 @@ The time is fixed so that equal missions give equal bags; it is not 0, which mea
 """
 
 _UNPACK = "unpack it first: rosbag decompress, or ros2 bag convert"
-_MAX_MESSAGES = 1000
-"""Largest number of messages that may repeat the same mission."""
+_OF_PYTHON = (
+    ArithmeticError, AssertionError, AttributeError, LookupError, RecursionError, TypeError,
+    UnicodeError, struct.error,
+)  # fmt: skip
+"""errors whose texts are for programmers"""
 _MAX_COPIED_BYTES = 1_000_000_000
 """Largest size of a bag that has to be copied before it is read, such as `/dev/stdin`."""
 _MAX_LISTED_TOPICS = 8
@@ -174,14 +177,22 @@ def read_bag_here(path: Path, name: str) -> Received:
     except TooLargeError as error:
         raise_error(name, "ros.compressed", f"the bag is not unpacked: {error}", _UNPACK)
     except Exception as error:
-        reason = " ".join(str(error).split())[:200] or type(error).__name__
         raise_error(
             name,
             "ros.broken-bag",
-            f"the file can't be read as a bag: {reason}",
+            f"the file can't be read as a bag: {_reason(error)}",
             "record or copy it again",
         )
     return from_message(message, types, name)
+
+
+def _reason(error: Exception) -> str:
+    """Return why a bag can't be read; a text of Python, which helps nobody, is replaced."""
+    text = " ".join(str(error).split())[:200].replace("; please report issue", "")
+    is_from_python = isinstance(error, _OF_PYTHON) or isinstance(error.__cause__, _OF_PYTHON)
+    if not text or is_from_python or re.search(r"\w+Error\(", text):
+        return "a part of it is damaged, or is not that of a bag"
+    return text
 
 
 def _first_bytes(path: Path, name: str) -> bytes:
@@ -243,7 +254,7 @@ def _open_reader(path: Path, first: bytes) -> Iterator[Any]:
         from rosbags.rosbag2 import Reader as Ros2Reader
 
         if os.path.isdir(path):
-            require_uncompressed_bag(path)
+            require_readable_metadata(path)
         for file in path.glob("*") if os.path.isdir(path) else [path]:
             start = first_bytes_if_readable(file)
             if start.startswith(MCAP):
@@ -313,7 +324,7 @@ def _read_message(name: str, reader: Any, types: RosTypes) -> bytes:
                 f"this Argo uses {types.digest()}: build its ros-package and record again",
             )
     contents: set[bytes] = set()
-    for count, (_, _, raw) in enumerate(reader.messages(connections=connections), 1):
+    for _, _, raw in reader.messages(connections=connections):
         if len(raw) > MAX_BYTES:
             raise_error(
                 name,
@@ -322,7 +333,7 @@ def _read_message(name: str, reader: Any, types: RosTypes) -> bytes:
                 "a mission is far smaller: is this the right bag?",
             )
         contents.add(bytes(raw))
-        if len(contents) > 1 or count > _MAX_MESSAGES:
+        if len(contents) > 1:
             raise_error(
                 name,
                 "ros.several-missions",

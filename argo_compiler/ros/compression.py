@@ -14,6 +14,8 @@ from argo_compiler.files.yaml_text import load_yaml
 MAX_CHUNK_BYTES = 100_000_000
 """Largest size of an unpacked chunk; recorders start a new chunk after a few megabytes."""
 MAX_METADATA_BYTES = 1_000_000
+MAX_VERSION = 9
+"""Newest version of the metadata of rosbag2 that rosbags reads."""
 
 
 class TooLargeError(Exception):
@@ -51,16 +53,26 @@ def require_small_mcap_chunks(path: Path) -> None:
             file.seek(end)
 
 
-def require_uncompressed_bag(folder: Path) -> None:
+def require_readable_metadata(folder: Path) -> None:
     """Raise TooLargeError if a rosbag2 folder is compressed by file or by message.
 
-    The size of the unpacked data is unknown then.
+    The size of the unpacked data is unknown then. Raises ValueError if its metadata.yaml has no
+    metadata of a bag, or those of another version.
     """
     path = folder / "metadata.yaml"
     if path.stat().st_size > MAX_METADATA_BYTES:
         raise TooLargeError(f"its metadata.yaml is larger than {MAX_METADATA_BYTES // 1000} kB")
     data = load_yaml(path.read_text(encoding="utf-8"), str(path))
-    mode = str(data["rosbag2_bagfile_information"].get("compression_mode") or "none").lower()
+    bag = data.get("rosbag2_bagfile_information") if isinstance(data, dict) else None
+    if not isinstance(bag, dict):
+        raise ValueError("its metadata.yaml has no `rosbag2_bagfile_information`")
+    version = bag.get("version")
+    if not isinstance(version, int) or version > MAX_VERSION:
+        raise ValueError(
+            f"the `version` in its metadata.yaml is {str(version)[:40]}, and those up to "
+            f"{MAX_VERSION} can be read"
+        )
+    mode = str(bag.get("compression_mode") or "none").lower()
     if mode != "none":
         raise TooLargeError(f"it is compressed by {mode}")
 

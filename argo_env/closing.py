@@ -5,6 +5,7 @@ from types import TracebackType
 from typing import NoReturn, Self, SupportsIndex
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.quantity_text import with_article
 
 
 class CopyRefused(Invalid, TypeError):
@@ -17,8 +18,8 @@ class NonCopyable:
     def __reduce_ex__(self, protocol: SupportsIndex) -> NoReturn:
         """Raise CopyRefused: two objects with one simulator would disturb each other."""
         raise CopyRefused(
-            f"a {type(self).__name__} can't be copied or pickled, as the copy would hold the same "
-            "simulator or file and disturb it: make another one of the same arguments"
+            f"{with_article(type(self).__name__)} can't be copied or pickled, as the copy would "
+            "hold the same simulator or file and disturb it: make another one of the same arguments"
         )
 
 

@@ -82,6 +82,11 @@ def counted_text(count: int, noun: str) -> str:
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
+def with_article(noun: str) -> str:
+    """Return a noun with its indefinite article, such as `a script` and `an evaluation`."""
+    return f"{'an' if noun[:1].lower() in 'aeiou' else 'a'} {noun}"
+
+
 def _three_digits(value: float, to_whole: Callable[[float], int]) -> float:
     """Round a number below 1,000 to three digits."""
     if value == 0 or abs(value) >= 1000:

@@ -19,6 +19,7 @@ from pydantic import (
 )
 
 from argo_compiler.base.model import Model, Pose
+from argo_compiler.base.quantity_text import with_article
 from argo_compiler.editing import groups, header, reactions, removal, tasks, transitions
 from argo_compiler.editing.consequences import Edited
 from argo_compiler.editing.errors import EditInvalid, invalid
@@ -319,10 +320,10 @@ def apply(mission: Mission, edit: Edit) -> Edited:
     mission or not an edit.
     """
     if not isinstance(mission, Mission):
-        message = f"a {type(mission).__name__} is not a mission"
+        message = f"{with_article(type(mission).__name__)} is not a mission"
         raise invalid("edit.value", message, "read the mission from its file first")
     if not isinstance(edit, EditCommand):
-        message = f"a {type(edit).__name__} is not an edit"
+        message = f"{with_article(type(edit).__name__)} is not an edit"
         raise invalid("edit.value", message, "read an edit in JSON with read_edit first")
     return FUNCTIONS[edit.kind](mission, **edit.given_fields())
 

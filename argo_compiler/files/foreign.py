@@ -16,6 +16,8 @@ from argo_compiler.files.encodings import detect_encoding
 
 _HEAD = 4096
 """number of bytes in which the formats that are texts are recognised"""
+_XML_HEAD = 1_000_000
+"""number of bytes in which the root element of XML is looked for, behind any comments"""
 _MAX_YAML = 100_000
 """number of characters of the longest YAML whose fields are looked at, which takes seconds"""
 CHOOSE = "choose the mission's file"
@@ -52,8 +54,10 @@ def find_foreign_file(name: str, content: bytes) -> ForeignFile | None:
     if encoding is None:
         return None  # binary; the readers report that
     head = content[:_HEAD].decode(encoding, "replace").removeprefix("\ufeff")
-    if root := _XML_ROOT.match(head):
-        return _find_by_root(root[1], head)
+    if head.lstrip().startswith("<"):
+        text = content[:_XML_HEAD].decode(encoding, "replace").removeprefix("\ufeff")
+        if root := _XML_ROOT.match(text):
+            return _find_by_root(root[1], text[root.start(1) :][:_HEAD])
     for pattern, found in _TEXTS:
         if pattern.search(head):
             return found
@@ -103,8 +107,9 @@ _PARTS_OF_ZIP = (
 
 
 def _find_by_first_bytes(content: bytes) -> ForeignFile | None:
+    start = content[:_HEAD].lstrip(b" \t\r\n")[:16]
     for magic, found in _MAGIC:
-        if content.startswith(magic):
+        if content.startswith(magic) or (found.way_out == _TEXT and start.startswith(magic)):
             return found
     if content.startswith(b"PK\x03\x04"):
         return _find_in_zip(content)
@@ -195,6 +200,25 @@ _TEXTS = (
         ),
         ForeignFile("a plan of a PDDL planner", _STEPS),
     ),
+    (re.compile(r"\A\s*0\r?\n\s*SECTION\r?\n\s*2\r?\n"), ForeignFile("a CAD drawing (DXF)")),
+    (
+        re.compile(r"\A(?>\s+|(?://|#).*\n)*+(?:strict\s+)?(?:di)?graph\b[^{\n]*\{"),
+        ForeignFile("a graph (Graphviz)", _CHART),
+    ),
+    (
+        re.compile(
+            r"\A(?>\s+|%%.*\n)*+"
+            r"(?:stateDiagram(?:-v2)?|(?:flowchart|graph)[ \t]+(?:T[BD]|BT|RL|LR))"
+            r"[ \t]*;?[ \t]*\r?\n"
+        ),
+        ForeignFile("a diagram (Mermaid)", _CHART),
+    ),
+    (
+        re.compile(
+            rf"\A{_BLANK}[ \t]*def \w+\(.*\):[ \t]*\r?\n(?:.*\n)*?[ \t]*end[ \t]*\r?(?:\n|\Z)"
+        ),
+        ForeignFile("a program of a robot arm (URScript)", _STEPS),
+    ),
     (re.compile(r"\A[$!][A-Z]{5},"), ForeignFile("a track of positions (NMEA)")),
     (re.compile(r"\A# \.PCD "), ForeignFile("a point cloud (PCD)")),
     (re.compile(r"\Aply\r?\nformat "), ForeignFile("a mesh or point cloud (PLY)")),
@@ -281,8 +305,16 @@ _ISAR_1_34 = "write it again in the format of isar 1.34"
 _GEOJSON = ForeignFile("places of a map (GeoJSON)", _STOPS)
 
 
-def find_foreign_json(data: Mapping[str, Any]) -> ForeignFile | None:
-    """Return what a JSON object of another program is, or None if it is not known."""
+def find_foreign_json(data: Any) -> ForeignFile | None:
+    """Return what the JSON of another program is, or None if it is not known.
+
+    A list is what its first item is.
+    """
+    if isinstance(data, list) and data and isinstance(data[0], Mapping):
+        found = find_foreign_json(data[0])
+        return found and ForeignFile(f"a list, beginning with {found.kind}", found.way_out)
+    if not isinstance(data, Mapping):
+        return None
     if {"headerId", "manufacturer", "serialNumber"} <= data.keys() or _has(
         "orderId", "nodes", "edges"
     )(data):
@@ -309,6 +341,8 @@ def _vda5050(data: Mapping[str, Any]) -> ForeignFile:
 
 def _find_isar(data: Mapping[str, Any]) -> ForeignFile | None:
     """Return an isar mission in a format that Argo does not read, by its first task."""
+    if isinstance(data.get("mission_steps"), list):
+        return ForeignFile("an isar mission of an older format", _ISAR_1_34)
     definition = data.get("mission_definition", data)
     tasks = definition.get("tasks") if isinstance(definition, Mapping) else None
     first = tasks[0] if isinstance(tasks, list) and tasks else None

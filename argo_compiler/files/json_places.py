@@ -9,6 +9,9 @@ from typing import NamedTuple
 
 from argo_compiler.diagnostics import Span
 
+LONG_NUMBER = "it has a number with thousands of digits"
+"""meaning of a ValueError of `json.loads` that is no JSONDecodeError"""
+
 Step = str | int
 JsonPath = tuple[Step, ...]
 """Names of fields and positions in lists, from the outermost value inward."""

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from argo_compiler.base.errors import ArgoError, Invalid, NotFound
+from argo_compiler.base.quantity_text import with_article
 from argo_compiler.files.atomic_write import OPEN_FILES
 from argo_compiler.files.encodings import detect_encoding
 
@@ -157,7 +158,7 @@ def require_size(content: bytes, name: object, kind: str, max_bytes: int) -> Non
             name,
             FileProblem.TOO_LARGE,
             f"is larger than {max_bytes} bytes",
-            f"a {kind} is far smaller: is it the right file?",
+            f"{with_article(kind)} is far smaller: is it the right file?",
         )
 
 
@@ -184,6 +185,9 @@ def decode_text(content: bytes, name: object, kind: str) -> str:
         ) from error
     if "\0" in text:
         raise UnreadableFile(
-            name, FileProblem.NOT_TEXT, "is a binary file, not text", f"a {kind} is plain text"
+            name,
+            FileProblem.NOT_TEXT,
+            "is a binary file, not text",
+            f"{with_article(kind)} is plain text",
         )
     return text

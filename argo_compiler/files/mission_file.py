@@ -16,6 +16,7 @@ from argo_compiler.diagnostics import (
 from argo_compiler.files.atomic_write import write_atomically
 from argo_compiler.files.foreign import ForeignFile, find_foreign_json
 from argo_compiler.files.json_places import (
+    LONG_NUMBER,
     JsonPath,
     JsonText,
     find_duplicate_keys,
@@ -106,6 +107,8 @@ def decode_mission(content: bytes, source_name: str) -> MissionFile:
         _refuse_file(source_name, error)
     data, has_repeated_keys = _parse(source_name, text)
     faults = [*_duplicate_keys(text)] if has_repeated_keys else []
+    if isinstance(data, list) and (foreign := find_foreign_json(data)):
+        _refuse(source_name, text, [_foreign(foreign)])
     if not isinstance(data, dict):
         _refuse(source_name, text, [*faults, _not_a_mission()])
     if _RECORD_FIELDS.issubset(data):
@@ -213,8 +216,8 @@ def _parse(source_name: str, text: str) -> tuple[Any, bool]:
         raise DiagnosticError(source_name, [_with_span(lines, diagnostic, span)]) from None
     except RecursionError:
         _refuse(source_name, text, [too_deep()])
-    except ValueError as error:  # an integer with thousands of digits
-        message = f"the file has a number that can't be read: {error}"
+    except ValueError:
+        message = f"the file can't be read: {LONG_NUMBER}"
         _refuse(source_name, text, [unplaced("file.not-json", message, "correct the number")])
 
 

@@ -17,7 +17,13 @@ from pydantic import BaseModel, ConfigDict, ValidationError, create_model
 from argo_compiler.base.errors import Invalid, Unavailable
 from argo_compiler.base.nearest_name import nearest_name
 from argo_compiler.files.atomic_write import write_atomically
-from argo_compiler.files.json_places import JsonPath, JsonText, find_places_or_parents, format_path
+from argo_compiler.files.json_places import (
+    LONG_NUMBER,
+    JsonPath,
+    JsonText,
+    find_places_or_parents,
+    format_path,
+)
 from argo_compiler.files.loading import decode_text, read_bytes
 from argo_compiler.route.problem import (
     NEVER,
@@ -112,8 +118,8 @@ def parse_route_problem(text: str, name: str) -> RouteProblem:
         where = f"{error.lineno}:{error.colno}:" if isinstance(error, json.JSONDecodeError) else ""
         what = getattr(error, "msg", "it is nested too deeply")
         raise Invalid(f"{name}:{where} the text is not JSON: {what}; correct it there") from error
-    except ValueError as error:  # an integer with thousands of digits
-        raise Invalid(f"{name} has a number that can't be read: {error}; correct it") from error
+    except ValueError as error:
+        raise Invalid(f"{name} can't be read: {LONG_NUMBER}; correct it") from error
     version = data.get("version") if isinstance(data, dict) else None
     if version != VERSION or isinstance(version, bool):
         raise Invalid(

@@ -141,9 +141,12 @@ def compose_yaml(text: str) -> YamlText:
         mark = error.problem_mark
         place = (mark.line + 1, mark.column + 1) if mark else (None, None)
         raise NotYamlError(f"the file is not YAML: {error.problem}", *place) from None
-    except (ValueError, RecursionError, yaml.YAMLError) as error:
-        # ValueError: impossible dates, numbers too long.
-        why = "it is nested too deeply" if isinstance(error, RecursionError) else str(error)
+    except yaml.YAMLError as error:
+        raise NotYamlError(f"the file is not YAML: {error}") from None
+    except RecursionError:
+        raise NotYamlError("the file is not YAML: it is nested too deeply") from None
+    except ValueError:
+        why = "it has a value that can't be read, such as a number with thousands of digits"
         raise NotYamlError(f"the file is not YAML: {why}") from None
 
 

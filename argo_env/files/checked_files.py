@@ -12,6 +12,7 @@ from pydantic import ValidationError
 
 from argo_compiler.base.errors import Unavailable
 from argo_compiler.base.model import Model
+from argo_compiler.files.json_places import LONG_NUMBER
 
 CHECKSUM = "checksum"
 """key of the checksum in a JSON object: the CRC-32 of all bytes after its comma"""
@@ -84,6 +85,8 @@ def _place(content: bytes) -> str:
         return f"line {error.lineno}, column {error.colno}: {error.msg}"
     except UnicodeDecodeError as error:
         return f"byte {error.start}: {error.reason}"
-    except (ValueError, RecursionError) as error:
-        return str(error)
+    except ValueError:
+        return LONG_NUMBER
+    except RecursionError:
+        return "it is nested too deeply"
     return ""

@@ -110,6 +110,8 @@ def test_scripts_of_people_are_not_foreign():
         "# Mission\nCheck 4.\n",
         "from area 1, go to checkpoint 4\n",
         "solid waste round: check checkpoint 4\n",
+        "graph of pressures: check checkpoint 4\n",
+        "Section 2\nCheck 4.\n",
     ],
 )
 def test_what_begins_like_another_format_is_still_a_script(text):

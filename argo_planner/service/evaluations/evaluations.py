@@ -33,6 +33,7 @@ from argo_planner.service.storage.stored_files import (
     read_stored_bytes,
     remove_if_empty,
     require_own_id,
+    require_regular_files,
 )
 
 MOST_REPLAYED = 2
@@ -143,8 +144,7 @@ class EvaluationFolder:
 
     def _read(self, id: str) -> StoredEvaluation:
         folder = self.unchecked_evaluation_path(id)
-        if os.path.islink(folder):
-            raise Unavailable(f"{folder} is a link, and links are not followed: move it away")
+        require_regular_files(folder)
         path = folder / _JOB_FILE
         remedy = "restore it from a copy, or delete its folder and evaluate again"
         evaluation = read_stored(StoredEvaluation, path, remedy)

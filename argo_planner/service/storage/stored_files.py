@@ -63,6 +63,18 @@ def read_stored(model: type[ModelT], path: Path, remedy: str) -> ModelT:
         raise damaged(path, why, remedy) from None
 
 
+def require_regular_files(folder: Path) -> None:
+    """Raise Unavailable if a folder is a link, or has links or pipes inside."""
+    if os.path.islink(folder):
+        raise Unavailable(f"{folder} is a link, and links are not followed: move it away")
+    for above, folders, files in os.walk(folder):
+        for path in (Path(above, name) for name in (*folders, *files)):
+            with suppress(FileNotFoundError):  # a draft that has meanwhile replaced its file
+                mode = path.lstat().st_mode
+                if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
+                    raise Unavailable(f"{path} is a link, or not a regular file: move it away")
+
+
 def require_own_id(path: Path, stored: str, id: str, remedy: str) -> None:
     """Raise Unavailable, which ends with the `remedy`, unless the file of `id` has this id inside.
 

@@ -274,6 +274,21 @@ def test_only_regular_files_are_read(
     assert "pydantic" not in said
 
 
+@pytest.mark.parametrize("name", ["evaluation.json", "rows.log", "parts/part.parquet", "parts"])
+@pytest.mark.parametrize("is_link", [True, False])
+def test_an_evaluation_with_links_or_pipes_is_refused(
+    tmp_path: Path, name: str, is_link: bool
+) -> None:
+    path = write_evaluation(tmp_path) / name
+    path.parent.mkdir(exist_ok=True)
+    if is_link:
+        path.symlink_to(tmp_path)
+    else:
+        os.mkfifo(path)
+    with pytest.raises(Unavailable, match=f"{name} is a link, or not a regular file: move it"):
+        read_evaluation(tmp_path, ID)
+
+
 @pytest.mark.parametrize("name", ["bin", "evaluations", "notes", "orders", "runs"])
 @pytest.mark.parametrize("is_link", [True, False])
 def test_the_folders_of_a_service_are_no_links_and_no_files(

@@ -35,6 +35,7 @@ settings.register_profile("campaign", _UNTIMED, print_blob=True)
 settings.load_profile("campaign" if EXAMPLES else "suite")
 
 if EXAMPLES:
+    os.environ.setdefault("PYTEST_TIMEOUT", "0")  # none: a campaign takes hours
     os.environ.setdefault("ARGO_FIRST_SEED", str(random.randrange(1_000_000)))
 FIRST_SEED = int(os.environ.get("ARGO_FIRST_SEED", "0"))
 """The first seed of generators: 0 in the suite, and another one in each campaign. The workers of a

@@ -27,14 +27,11 @@ HIDING = 6.0  # dB by which the loudest tone must exceed what is needed, or else
 _PHASES = np.arange(0.0, ALARM_PERIOD, 0.02)
 
 
-def has_alarm_tone(samples: NDArray[np.float32]) -> bool:
-    """Return True if the alarm's tone stands out of a recording (Pa, `RATE` samples a second)."""
-    tone, needed = _tone_and_needed_power(samples)
-    return tone > needed
+def tone_and_needed_power(samples: NDArray[np.float32]) -> tuple[float, float]:
+    """Return the power of the line at the alarm's tone, and the power above which it is the tone.
 
-
-def _tone_and_needed_power(samples: NDArray[np.float32]) -> tuple[float, float]:
-    """Return the power of the line at the tone, and the power from which it is the tone."""
+    `samples` is a recording (Pa, `RATE` samples a second).
+    """
     bins_per_hertz = len(samples) / RATE
     first, last = round(NOISE_BAND[0] * bins_per_hertz), round(NOISE_BAND[1] * bins_per_hertz)
     spectrum = np.fft.rfft(samples)[first:last]
@@ -93,7 +90,7 @@ class AlarmWatch:
         self._idle_updates = (self._idle_updates + 1) % IDLE_UPDATES
         if self._idle_updates != 1 and not any(has_tone for _, has_tone in self._recordings):
             return ()
-        power, needed = _tone_and_needed_power(self._microphone.record_sound(now, pose, RECORDING))
+        power, needed = tone_and_needed_power(self._microphone.record_sound(now, pose, RECORDING))
         tone = power > needed
         self._recordings.append((now, tone))
         if tone:

@@ -256,6 +256,8 @@ def _open_reader(path: Path, first: bytes) -> Iterator[Any]:
         if os.path.isdir(path):
             require_readable_metadata(path)
         for file in path.glob("*") if os.path.isdir(path) else [path]:
+            if not os.path.isfile(file) and not os.path.isdir(file):
+                raise ValueError(f"`{file.name}` in it is not a file")
             start = first_bytes_if_readable(file)
             if start.startswith(MCAP):
                 require_small_mcap_chunks(file)

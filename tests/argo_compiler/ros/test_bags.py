@@ -240,6 +240,18 @@ def test_metadata_that_are_not_those_of_a_bag_are_refused_in_words(tmp_path, old
     assert not OF_PYTHON.search(diagnostic.message)
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes have names in folders on POSIX only")
+@pytest.mark.parametrize("place", [os.mkfifo, lambda path: path.symlink_to("nothing")])
+def test_a_pipe_or_a_broken_link_in_a_bag_is_refused_at_once(tmp_path, place):
+    path = write(tmp_path, Storage.SQLITE3)
+    (data,) = path.glob("mission.*")
+    data.unlink()
+    place(data)
+    diagnostic = read_error(path)
+    assert diagnostic.code == "ros.broken-bag"
+    assert f"`{data.name}` in it is not a file" in diagnostic.message
+
+
 @pytest.mark.parametrize(
     "change",
     [

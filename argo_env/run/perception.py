@@ -57,8 +57,9 @@ class Perception:
             now: time at which the run continues in s.
         """
         self._known = [anomaly for anomaly, _ in reported]
+        sources = {watch.name for watch, _, _ in self._turns}
         for anomaly in self._known:
-            if anomaly.kind in _LASTING:
+            if anomaly.kind in _LASTING and anomaly.source in sources:
                 self._dangers[anomaly.source] = anomaly.kind
             elif anomaly.kind is EventKind.ALL_CLEAR:
                 self._dangers.pop(anomaly.source, None)

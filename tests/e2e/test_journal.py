@@ -223,6 +223,7 @@ def test_what_a_loss_of_power_left_is_told_when_the_run_is_resumed(argo, folder,
     assert "damaged from line 2 on" in require_refusal(argo("resume", journal))
 
 
+@pytest.mark.physics
 def test_a_damaged_report_next_to_the_journal_is_told_and_stays(argo, folder, tmp_path):
     report = tmp_path / "report"
     argo(*run_arguments(folder), "--report", report, status=0)

@@ -237,9 +237,9 @@ def draw_database(rng: random.Random) -> bytes:
                     chosen = ", ".join(f"{v} AS {c}" for v, c in zip(values, columns, strict=True))
                     definitions = [f"CREATE VIEW {name} AS SELECT {chosen}"]
                 case 1:
-                    kept = ", ".join(columns[:-1])
+                    kept, small = ", ".join(columns[:-1]), rng.choice(expressions[2:5])
                     definitions = [
-                        f"CREATE TABLE {name}({kept}, {columns[-1]} DEFAULT ({values[0]}))",
+                        f"CREATE TABLE {name}({kept}, {columns[-1]} DEFAULT ({small}))",
                         f"INSERT INTO {name}({kept}) VALUES({', '.join('1' for _ in columns[1:])})",
                     ]
                 case _:

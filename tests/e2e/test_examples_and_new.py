@@ -74,7 +74,7 @@ def test_examples_are_listed_with_a_line_each(argo) -> None:
 
 
 @pytest.mark.physics
-@pytest.mark.parametrize("site", ["umad", "plant.yaml"])
+@pytest.mark.parametrize("site", [pytest.param("umad", marks=pytest.mark.long), "plant.yaml"])
 def test_skeletons_are_valid_and_used_together(argo, tmp_path, site) -> None:
     argo("new", "site", "plant", cwd=tmp_path, status=0)
     argo("sites", "plant.yaml", cwd=tmp_path, status=0)

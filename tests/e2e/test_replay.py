@@ -30,6 +30,7 @@ def reports_equal(a: Path, b: Path) -> bool:
     return all((a / name).read_bytes() == (b / name).read_bytes() for name in names)
 
 
+@pytest.mark.long
 @pytest.mark.physics
 def test_replay_makes_the_output_report_and_film_of_the_run_again(argo, folder: Path) -> None:
     run = ("run", "short.json", "--site", "yard.yaml", "--seed", 3)
@@ -59,6 +60,7 @@ def test_replay_makes_the_output_report_and_film_of_the_run_again(argo, folder: 
     assert "run.mcap is damaged after" in require_refusal(argo("replay", "run.mcap", cwd=elsewhere))
 
 
+@pytest.mark.long
 @pytest.mark.physics
 def test_a_killed_run_can_be_replayed_up_to_the_kill(argo, folder: Path) -> None:
     with start_argo(

@@ -79,6 +79,7 @@ def test_an_order_is_found_watched_accepted_and_undone(service: Served, site: Op
     assert service.mission(id) == before
 
 
+@pytest.mark.long
 def test_a_found_order_is_accepted_after_a_restart(tmp_path: Path, site: OpenedSite) -> None:
     with served(tmp_path, site) as first:
         id = import_script(first)
@@ -97,6 +98,7 @@ def test_a_found_order_is_accepted_after_a_restart(tmp_path: Path, site: OpenedS
         assert [f.name for f in (tmp_path / "orders").iterdir()] == ["0123456789ab.json"]
 
 
+@pytest.mark.long
 def test_a_damaged_order_is_left_out(
     tmp_path: Path, site: OpenedSite, caplog: pytest.LogCaptureFixture
 ) -> None:
@@ -109,6 +111,7 @@ def test_a_damaged_order_is_left_out(
     assert f"{file} is damaged: its content does not fit its checksum" in caplog.text
 
 
+@pytest.mark.long
 def test_an_order_that_can_not_be_stored_says_so_and_is_stored_when_there_is_room(
     tmp_path: Path, site: OpenedSite, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -252,6 +252,17 @@ def test_a_pipe_or_a_broken_link_in_a_bag_is_refused_at_once(tmp_path, place):
     assert f"`{data.name}` in it is not a file" in diagnostic.message
 
 
+def changed_database(folder: Path, command: str) -> Path:
+    """Write a bag in SQLite and execute a command of SQL in it; return its path."""
+    path = folder / "bag.db3"
+    (data,) = write(folder, Storage.SQLITE3).glob("mission.*")
+    path.write_bytes(data.read_bytes())
+    with closing(sqlite3.connect(path)) as database:
+        database.execute(command)
+        database.commit()
+    return path
+
+
 @pytest.mark.parametrize(
     "change",
     [
@@ -263,12 +274,7 @@ def test_a_pipe_or_a_broken_link_in_a_bag_is_refused_at_once(tmp_path, place):
     ],
 )
 def test_values_of_other_types_in_a_database_are_refused_in_words(tmp_path, change):
-    path = tmp_path / "bag.db3"
-    (data,) = write(tmp_path, Storage.SQLITE3).glob("mission.*")
-    path.write_bytes(data.read_bytes())
-    with closing(sqlite3.connect(path)) as database:
-        database.execute(change)
-        database.commit()
+    path = changed_database(tmp_path, change)
     with suppress(DiagnosticError):
         assert read_bag(path).mission == PLAN
         return
@@ -360,13 +366,7 @@ CALCULATED = {
 @pytest.mark.parametrize("name", CALCULATED)
 def test_databases_that_calculate_their_content_are_refused(tmp_path, name):
     definition, part = CALCULATED[name]
-    path = tmp_path / "bag.db3"
-    (data,) = write(tmp_path, Storage.SQLITE3).glob("mission.*")
-    path.write_bytes(data.read_bytes())
-    with closing(sqlite3.connect(path)) as database:
-        database.execute(definition)
-        database.commit()
-    diagnostic = read_error(path)
+    diagnostic = read_error(changed_database(tmp_path, definition))
     assert diagnostic.code == "ros.broken-bag"
     assert f"the content of its {part} is calculated" in diagnostic.message
 

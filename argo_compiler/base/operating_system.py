@@ -10,7 +10,7 @@ import signal
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 if sys.platform == "win32":
@@ -64,14 +64,21 @@ def _open_private(path: str, flags: int) -> int:
 def write_draft_and_replace(draft: Path, path: Path, content: bytes) -> None:
     """Write a draft, which only its owner can read and which then replaces `path`, and sync both.
 
-    The draft is in the folder of `path`. Raises OSError; the old file then stays.
+    The draft is in the folder of `path`; what lies there in its place is removed. Raises OSError;
+    the old file then stays, and no draft.
     """
-    with open(draft, "wb", opener=_open_private) as file:
-        file.write(content)
-        file.flush()
-        os.fsync(file.fileno())
-    os.replace(draft, path)
-    sync_folder(path.parent)
+    try:
+        draft.unlink(missing_ok=True)
+        with open(draft, "xb", opener=_open_private) as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(draft, path)
+        sync_folder(path.parent)
+    except OSError:
+        with suppress(OSError):
+            draft.unlink(missing_ok=True)
+        raise
 
 
 def sync_content(file: int) -> None:

@@ -1,6 +1,5 @@
 """Obstacles that people have placed on a site, stored on disk."""
 
-import os
 from contextlib import suppress
 from pathlib import Path
 
@@ -8,7 +7,7 @@ from pydantic import Field
 
 from argo_compiler.base.errors import NotFound, Unavailable
 from argo_compiler.base.model import Model
-from argo_compiler.base.operating_system import NO_LINK_FLAGS, sync_folder
+from argo_compiler.base.operating_system import write_draft_and_replace
 from argo_env.files.checked_files import checked_json
 from argo_planner.service.core.refusals import StaleRevision
 from argo_planner.service.storage.stored_files import read_stored
@@ -53,18 +52,10 @@ class ObstacleStore:
             raise StaleRevision(made_on, self.present.revision)
         changed = ObstacleList(revision=self.present.revision + 1, obstacles=obstacles)
         draft = self._path.with_name(f"{_FILE}.new")
+        content = checked_json(changed.model_dump_json(indent=1)).encode()
         try:
-            draft.unlink(missing_ok=True)
-            file = os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_EXCL | NO_LINK_FLAGS, 0o600)
-            with open(file, "wb") as new:
-                new.write(checked_json(changed.model_dump_json(indent=1)).encode())
-                new.flush()
-                os.fsync(new.fileno())
-            draft.replace(self._path)
-            sync_folder(self._path.parent)
+            write_draft_and_replace(draft, self._path, content)
         except OSError as error:
-            with suppress(OSError):
-                draft.unlink(missing_ok=True)
             raise Unavailable(f"{self._path} can't be written: {error.strerror}") from error
         self.present = changed
         return changed

@@ -27,6 +27,7 @@ from argo_planner.service.jobs.evaluation import (
 )
 from argo_planner.service.jobs.job import JOB_ID, EvaluationJob, Job, JobState
 from argo_planner.service.jobs.jobs import Jobs
+from argo_planner.service.jobs.retried_storage import RetriedStorage
 from argo_planner.service.processes.job_process import JobProcess
 from argo_planner.service.storage.stored_files import (
     read_stored,
@@ -38,8 +39,6 @@ from argo_planner.service.storage.stored_files import (
 
 MOST_REPLAYED = 2
 """runs that are replayed at the same time"""
-STORING_PERIOD = 5.0
-"""s between two attempts to store the end of an evaluation, for example on a full disk"""
 LONGEST_REPLAY = 120.0
 """longest time of a replay, in s of wall time"""
 _log = logging.getLogger(__name__)
@@ -170,10 +169,7 @@ class Evaluations:
         """held while an evaluation is started, resumed or deleted, and while the end of one is
         stored, so that this can't overwrite the state of an evaluation that was resumed"""
         self._replays = asyncio.Semaphore(MOST_REPLAYED)
-        self._unstored: dict[str, StoredEvaluation] = {}
-        """evaluations whose ends could not be stored yet, by their ids"""
-        self._storing: asyncio.Task[None] | None = None
-        """task that stores them when that is possible"""
+        self._ends = RetriedStorage(self._folder.store, self._turn)
 
     async def open(self) -> None:
         """Load the stored evaluations, and add them to the jobs."""
@@ -182,10 +178,7 @@ class Evaluations:
 
     async def close(self) -> None:
         """Store the ends that could not be stored yet, if that is possible now."""
-        if self._storing is not None:
-            self._storing.cancel()
-        async with self._turn:
-            await self._store_ends()
+        await self._ends.close()
 
     async def start(
         self, plan: str, revision: int, spec: EvaluationSpec, author: str
@@ -256,7 +249,7 @@ class Evaluations:
             if job.state is JobState.RUNNING:
                 raise Conflict(f"evaluation {id} is running: cancel it first")
             self._jobs.discard_if_present(id)
-            self._unstored.pop(id, None)
+            self._ends.discard_pending(lambda end: end.job.id == id)
             await asyncio.to_thread(self._folder.delete, id)
 
     async def delete_for_mission(self, plan: str) -> None:
@@ -328,7 +321,7 @@ class Evaluations:
 
     async def _start_job(self, evaluation: StoredEvaluation) -> EvaluationJob:
         await asyncio.to_thread(self._folder.store, evaluation)
-        self._unstored.pop(evaluation.job.id, None)
+        self._ends.discard_pending(lambda end: end.job.id == evaluation.job.id)
         work = JobProcess(
             evaluate_mission,
             evaluation.order,
@@ -343,25 +336,7 @@ class Evaluations:
                     job = await asyncio.to_thread(self._folder.with_stored_results, job)
                     self._jobs.replace_unless_discarded(job)
                 ended = StoredEvaluation(order=evaluation.order, job=job)
-                self._unstored[job.id] = ended
-                await self._store_ends()
-                if self._unstored and (self._storing is None or self._storing.done()):
-                    self._storing = asyncio.create_task(self._store_ends_when_possible())
+                await self._ends.store_or_retry_later(job.id, ended)
 
         self._jobs.start(evaluation.job, work, on_end)
         return evaluation.job
-
-    async def _store_ends(self) -> None:
-        """Try to store all ends that are not stored yet."""
-        for id, ended in [*self._unstored.items()]:
-            try:
-                await asyncio.to_thread(self._folder.store, ended)
-                del self._unstored[id]
-            except ArgoError as error:
-                _log.error("the end of %s", error)
-
-    async def _store_ends_when_possible(self) -> None:
-        while self._unstored:
-            await asyncio.sleep(STORING_PERIOD)
-            async with self._turn:
-                await self._store_ends()

@@ -17,6 +17,7 @@ from argo_env.files.folders import make_private_folder
 from argo_planner.service.jobs.job import Job, OrderJob
 from argo_planner.service.jobs.jobs import Jobs
 from argo_planner.service.jobs.order_search import search_order
+from argo_planner.service.jobs.retried_storage import RetriedStorage
 from argo_planner.service.processes.job_process import JobProcess
 from argo_planner.service.storage.stored_files import (
     read_stored,
@@ -29,8 +30,6 @@ MOST_SEARCHES = 2
 """searches that run at the same time"""
 MOST_STORED = 100
 """found orders that are stored; the oldest ones are deleted"""
-STORING_PERIOD = 5.0
-"""s between two attempts to store the found orders, for example on a full disk"""
 _REMEDY = "delete it, and search again"
 
 
@@ -101,10 +100,11 @@ class OrderSearches:
         self._jobs = jobs
         self._new_id = new_id
         self._clock = clock
-        self._unstored: dict[str, OrderJob] = {}
-        """searches whose orders could not be stored yet, by their ids"""
-        self._storing: asyncio.Task[None] | None = None
-        """task that stores them when that is possible"""
+        self._turn = asyncio.Lock()
+        """held while found orders are stored or deleted"""
+        self._orders = RetriedStorage(
+            self._folder.store, self._turn, on_late_success=jobs.replace_unless_discarded
+        )
 
     async def open(self) -> None:
         """Load the stored searches, and add them to the jobs."""
@@ -112,15 +112,13 @@ class OrderSearches:
 
     async def close(self) -> None:
         """Store the orders that could not be stored yet, if that is possible now."""
-        if self._storing is not None:
-            self._storing.cancel()
-        await self._store_orders()
+        await self._orders.close()
 
     async def delete_for_mission(self, plan: str) -> None:
         """Delete the stored searches of a mission."""
-        for job in [job for job in self._unstored.values() if job.mission == plan]:
-            del self._unstored[job.id]
-        await asyncio.to_thread(self._folder.delete_for_mission, plan)
+        async with self._turn:
+            self._orders.discard_pending(lambda job: job.mission == plan)
+            await asyncio.to_thread(self._folder.delete_for_mission, plan)
 
     def start(
         self,
@@ -149,32 +147,13 @@ class OrderSearches:
         async def keep(ended: Job) -> Job:
             if not isinstance(ended, OrderJob) or ended.found is None:
                 return ended
-            try:
-                await asyncio.to_thread(self._folder.store, ended)
-            except Unavailable as error:
-                _log.error("%s", error)
-                self._unstored[ended.id] = ended
-                if self._storing is None or self._storing.done():
-                    self._storing = asyncio.create_task(self._store_orders_when_possible())
-                return ended.model_copy(update={"problem": str(error)})
-            return ended
+            async with self._turn:
+                error = await self._orders.store_or_retry_later(ended.id, ended)
+            return ended if error is None else ended.model_copy(update={"problem": str(error)})
 
         work = JobProcess(search_order, self._site, mission, requirements, time_limit, solvers)
         self._jobs.start(job, work, keep=keep)
         return job
-
-    async def _store_orders(self) -> None:
-        """Try to store all orders that are not stored yet; their jobs then have no problem."""
-        for id, job in [*self._unstored.items()]:
-            with suppress(Unavailable):
-                await asyncio.to_thread(self._folder.store, job)
-                self._unstored.pop(id, None)
-                self._jobs.replace_unless_discarded(job)
-
-    async def _store_orders_when_possible(self) -> None:
-        while self._unstored:
-            await asyncio.sleep(STORING_PERIOD)
-            await self._store_orders()
 
     def job_and_new_mission(self, id: str) -> tuple[OrderJob, Mission]:
         """Return the job of a search, and the mission in the order that it has found.

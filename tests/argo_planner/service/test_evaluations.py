@@ -18,12 +18,12 @@ from argo_env.evaluation.evaluation import Evaluation
 from argo_env.evaluation.store import read_rows
 from argo_env.faults.robot import LowBattery
 from argo_env.planning.opening import OpenedSite
-from argo_planner.service.evaluations import evaluations
 from argo_planner.service.evaluations.evaluations import (
     EvaluationFolder,
     Evaluations,
     StoredEvaluation,
 )
+from argo_planner.service.jobs import retried_storage
 from argo_planner.service.jobs.evaluation import EvaluationAsked, EvaluationSpec
 from argo_planner.service.jobs.job import EvaluationJob
 from argo_planner.service.jobs.jobs import Jobs
@@ -240,7 +240,7 @@ def test_an_evaluation_whose_client_leaves_is_stored_and_runs_or_neither(
 @pytest.mark.long
 def test_an_evaluation_on_a_full_disk(site: OpenedSite, monkeypatch: pytest.MonkeyPatch) -> None:
     """It is refused with nothing left; the end of one that runs is stored when there is room."""
-    monkeypatch.setattr(evaluations, "STORING_PERIOD", 0.1)
+    monkeypatch.setattr(retried_storage, "STORING_PERIOD", 0.1)
     with small_disk(400 * 4096) as disk, served(disk / "missions", site) as service:
         stored = disk / "missions" / "evaluations"
         id = import_script(service)

@@ -12,7 +12,7 @@ import pytest
 
 from argo_compiler.il import Mission
 from argo_env.planning.opening import OpenedSite
-from argo_planner.service.jobs import order_searches
+from argo_planner.service.jobs import order_searches, retried_storage
 from argo_planner.use_cases.importing import ImportedMission
 from argo_planner.use_cases.routing import suggest_order
 from tests.argo_planner.service.served import Served, require_private, served
@@ -124,7 +124,7 @@ def test_an_order_that_can_not_be_stored_says_so_and_is_stored_when_there_is_roo
         write(*arguments, **options)
 
     monkeypatch.setattr(order_searches, "write_atomically", write_if_possible)
-    monkeypatch.setattr(order_searches, "STORING_PERIOD", 0.05)
+    monkeypatch.setattr(retried_storage, "STORING_PERIOD", 0.05)
     with served(tmp_path, site) as service:
         job = start_search(service, import_script(service))
         found = wait_for_end(service, job)

@@ -213,7 +213,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         help="states in python-statemachine, which takes minutes for more",
     )
     options = parser.parse_args(arguments)
-    from argo_compiler.script.syntax.repeats import repeats
+    from argo_compiler.script.parsing.repeats import repeats
 
     catalog = make_catalog()
     began = time.process_time()

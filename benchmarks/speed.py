@@ -120,7 +120,7 @@ def compare_command_with_numpy(name: str, repeats: int) -> float:
 def prepare_import() -> Work:
     """Return a function that imports a script of a thousand tasks, with an empty cache of lines."""
     from argo_compiler.script import import_script
-    from argo_compiler.script.syntax.repeats import repeats
+    from argo_compiler.script.parsing.repeats import repeats
     from benchmarks.compile import make_catalog, make_script
 
     catalog = make_catalog()

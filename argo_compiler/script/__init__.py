@@ -15,17 +15,17 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
+    from argo_compiler.script.documents.reading import decode_script, read_script
+    from argo_compiler.script.parsing.parser import parse
     from argo_compiler.script.resolve.importing import Resolved, import_script, resolve_script
-    from argo_compiler.script.syntax.parsing import parse
-    from argo_compiler.script.syntax.reading import decode_script, read_script
     from argo_compiler.script.write.protocol import format_script
 else:
     __getattr__, __dir__ = lazy_names(
         __name__,
         {
             "resolve.importing": ["Resolved", "import_script", "resolve_script"],
-            "syntax.parsing": ["parse"],
-            "syntax.reading": ["decode_script", "read_script"],
+            "parsing.parser": ["parse"],
+            "documents.reading": ["decode_script", "read_script"],
             "write.protocol": ["format_script"],
         },
     )

@@ -9,12 +9,12 @@ from importlib.resources import files
 from pathlib import Path
 
 from argo_compiler.script.reference import BEGIN, END, as_markdown
-from argo_compiler.script.syntax.grammar.tables import save_tables
-from argo_compiler.script.syntax.words.loading import LANGUAGES, save_lexicons
+from argo_compiler.script.sentences.grammar.tables import save_tables
+from argo_compiler.script.sentences.words.loading import LANGUAGES, save_lexicons
 
 if __name__ == "__main__":
-    save_tables(Path(str(files("argo_compiler.script.syntax.grammar"))))
-    save_lexicons(Path(str(files("argo_compiler.script.syntax.words"))))
+    save_tables(Path(str(files("argo_compiler.script.sentences.grammar"))))
+    save_lexicons(Path(str(files("argo_compiler.script.sentences.words"))))
     for argument in sys.argv[1:]:
         page = Path(argument)
         text = page.read_text(encoding="utf-8")

@@ -15,7 +15,7 @@ from argo_compiler.files.atomic_write import (
 from argo_compiler.files.loading import read_bytes
 from argo_compiler.files.mission_file import read_mission_bytes
 from argo_compiler.ros.recognition import is_bag
-from argo_compiler.script.syntax.reading import MAX_BYTES
+from argo_compiler.script.documents.reading import MAX_BYTES
 from argo_env.files.folders import require_folder_or_creatable
 from argo_planner.use_cases.importing import Upload
 

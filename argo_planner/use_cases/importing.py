@@ -26,7 +26,7 @@ from argo_compiler.files.mission_file import MissionFile, decode_mission
 from argo_compiler.il import Mission
 from argo_compiler.isar.recognition import find_isar_data
 from argo_compiler.ros.recognition import is_bag_content
-from argo_compiler.script.syntax.text.source import Source as Script
+from argo_compiler.script.documents.source import Source as Script
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.site_warnings import above_own_speed_warnings, with_seeing_poses
 

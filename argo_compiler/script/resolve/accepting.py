@@ -7,10 +7,10 @@ passed over. A test tries each with each.
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
 
-from argo_compiler.script.syntax.text.source import Diagnostics
-from argo_compiler.script.syntax.tree import orders
-from argo_compiler.script.syntax.tree.manner import Manner
-from argo_compiler.script.syntax.tree.orders import PlainWord, ScriptOrder
+from argo_compiler.script.documents.source import Diagnostics
+from argo_compiler.script.sentences.tree import orders
+from argo_compiler.script.sentences.tree.manner import Manner
+from argo_compiler.script.sentences.tree.orders import PlainWord, ScriptOrder
 
 ROUND = frozenset(
     {

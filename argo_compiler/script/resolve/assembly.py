@@ -4,9 +4,9 @@ from collections import Counter
 from collections.abc import Sequence
 
 from argo_compiler.il import Action, Group, OnFailure, Stop, Task, TimeWindow, Transition
+from argo_compiler.script.documents.source import Diagnostics
 from argo_compiler.script.resolve.lowering import Item, Lowered, Point, Range
 from argo_compiler.script.resolve.program import own_names
-from argo_compiler.script.syntax.text.source import Diagnostics
 
 
 def assemble(

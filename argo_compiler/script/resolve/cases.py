@@ -9,6 +9,7 @@ from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.base.listing import listed
 from argo_compiler.il import Action, OnFailure
 from argo_compiler.il.exclusive_conditions import are_surely_exclusive
+from argo_compiler.script.documents.source import RefusedError
 from argo_compiler.script.resolve.accepting import require_used
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.manners import Manners
@@ -25,18 +26,17 @@ from argo_compiler.script.resolve.program import (
     in_branch,
     leads_away,
 )
-from argo_compiler.script.syntax.text.source import RefusedError
-from argo_compiler.script.syntax.tree import orders
-from argo_compiler.script.syntax.tree.conditions import (
+from argo_compiler.script.sentences.tree import orders
+from argo_compiler.script.sentences.tree.conditions import (
     InState,
     SaidCondition,
     TaskState,
     Test,
     TooLate,
 )
-from argo_compiler.script.syntax.tree.nouns import Pronoun
-from argo_compiler.script.syntax.tree.orders import Case, PlainWord, Rest, ScriptOrder
-from argo_compiler.script.syntax.tree.places import DockLocation
+from argo_compiler.script.sentences.tree.nouns import Pronoun
+from argo_compiler.script.sentences.tree.orders import Case, PlainWord, Rest, ScriptOrder
+from argo_compiler.script.sentences.tree.places import DockLocation
 
 _ENDINGS = {
     PlainWord.ABORT: Ahead.END,

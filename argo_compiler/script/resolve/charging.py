@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import EventKind
-from argo_compiler.script.syntax.text.source import Diagnostics
-from argo_compiler.script.syntax.tree.conditions import (
+from argo_compiler.script.documents.source import Diagnostics
+from argo_compiler.script.sentences.tree.conditions import (
     Amount,
     Asked,
     BatteryLevel,

@@ -6,12 +6,12 @@ from itertools import product
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.il import Condition, ConditionType
 from argo_compiler.il.exclusive_conditions import are_contradictory, are_surely_exhaustive
+from argo_compiler.script.documents.source import Diagnostics
 from argo_compiler.script.resolve.lookup import told
 from argo_compiler.script.resolve.nouns import NounResolver
 from argo_compiler.script.resolve.program import Alternatives
 from argo_compiler.script.resolve.units import converted
-from argo_compiler.script.syntax.text.source import Diagnostics
-from argo_compiler.script.syntax.tree.conditions import (
+from argo_compiler.script.sentences.tree.conditions import (
     Amount,
     Asked,
     Between,
@@ -22,7 +22,7 @@ from argo_compiler.script.syntax.tree.conditions import (
     TaskState,
     Test,
 )
-from argo_compiler.script.syntax.tree.nouns import AllOf, Labelled, Nouns, Pronoun
+from argo_compiler.script.sentences.tree.nouns import AllOf, Labelled, Nouns, Pronoun
 
 _MOST = 64
 """alternatives of one condition"""

@@ -8,6 +8,7 @@ from typing import Any, NoReturn
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Action
+from argo_compiler.script.documents.source import Diagnostics, RefusedError
 from argo_compiler.script.resolve.conditions import ConditionResolver
 from argo_compiler.script.resolve.lookup import Lookup
 from argo_compiler.script.resolve.nouns import Memory, NounResolver
@@ -22,10 +23,9 @@ from argo_compiler.script.resolve.program import (
     own_names,
 )
 from argo_compiler.script.resolve.reacting import Reactions
-from argo_compiler.script.syntax.text.source import Diagnostics, RefusedError
-from argo_compiler.script.syntax.tree import orders
-from argo_compiler.script.syntax.tree.orders import ScriptOrder
-from argo_compiler.script.syntax.tree.places import Steps
+from argo_compiler.script.sentences.tree import orders
+from argo_compiler.script.sentences.tree.orders import ScriptOrder
+from argo_compiler.script.sentences.tree.places import Steps
 
 
 @dataclass

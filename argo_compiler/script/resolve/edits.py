@@ -16,10 +16,10 @@ from argo_compiler.script.resolve.program import (
     ProgramRound,
     measurement,
 )
-from argo_compiler.script.syntax.tree import orders
-from argo_compiler.script.syntax.tree.nouns import Nouns
-from argo_compiler.script.syntax.tree.orders import Side
-from argo_compiler.script.syntax.tree.places import Steps
+from argo_compiler.script.sentences.tree import orders
+from argo_compiler.script.sentences.tree.nouns import Nouns
+from argo_compiler.script.sentences.tree.orders import Side
+from argo_compiler.script.sentences.tree.places import Steps
 
 Edit = orders.Add | orders.Delete | orders.Move | orders.Replace
 

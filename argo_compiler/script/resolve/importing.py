@@ -8,6 +8,8 @@ from argo_compiler.base.garbage_collector import collector_held
 from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError
 from argo_compiler.il import Mission, Mode
+from argo_compiler.script.documents.source import Diagnostics, RefusedError, Source
+from argo_compiler.script.parsing.parser import parse
 from argo_compiler.script.resolve.assembly import assemble
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.lookup import Lookup
@@ -15,10 +17,8 @@ from argo_compiler.script.resolve.lowering import lower_program
 from argo_compiler.script.resolve.planning import Planner
 from argo_compiler.script.resolve.program import Do, ProgramNode, all_nodes, depth
 from argo_compiler.script.resolve.starting import Starting, area_choices
-from argo_compiler.script.syntax.parsing import parse
-from argo_compiler.script.syntax.text.source import Diagnostics, RefusedError, Source
-from argo_compiler.script.syntax.tree.places import Steps
-from argo_compiler.script.syntax.tree.script import Script, ScriptHeader
+from argo_compiler.script.sentences.tree.places import Steps
+from argo_compiler.script.sentences.tree.script import Script, ScriptHeader
 
 _DEEPEST = 100
 

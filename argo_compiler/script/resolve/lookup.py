@@ -10,10 +10,9 @@ from argo_compiler.base.catalog import Area, Catalog, CheckpointInfo, Checkpoint
 from argo_compiler.base.listing import listed
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Span
-from argo_compiler.script.syntax.text.source import Diagnostics
-from argo_compiler.script.syntax.text.spelling import nearest
-from argo_compiler.script.syntax.tree.nouns import Kind, Quantity
-from argo_compiler.script.syntax.tree.places import (
+from argo_compiler.script.documents.source import Diagnostics
+from argo_compiler.script.sentences.tree.nouns import Kind, Quantity
+from argo_compiler.script.sentences.tree.places import (
     AreaLocation,
     Coordinates,
     DockLocation,
@@ -22,7 +21,8 @@ from argo_compiler.script.syntax.tree.places import (
     NamedFloor,
     PlaceLocation,
 )
-from argo_compiler.script.syntax.words.language import place_key
+from argo_compiler.script.sentences.words.language import place_key
+from argo_compiler.script.sentences.words.spelling import nearest
 
 _QUANTITIES = {
     CheckpointKind.PRESSURE_GAUGE: (Quantity.PRESSURE,),

@@ -21,7 +21,7 @@ from argo_compiler.script.resolve.program import (
     Target,
     inner_blocks,
 )
-from argo_compiler.script.syntax.tree.places import Steps
+from argo_compiler.script.sentences.tree.places import Steps
 
 MEETING = WaitRule(duration=0)
 

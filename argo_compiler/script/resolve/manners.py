@@ -5,6 +5,7 @@ from dataclasses import fields, replace
 
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Action, Condition, JointState, OnFailure, TimeWindow, WaitRule
+from argo_compiler.script.documents.source import Diagnostics
 from argo_compiler.script.resolve.accepting import ROUND, said
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.program import (
@@ -15,11 +16,10 @@ from argo_compiler.script.resolve.program import (
     ProgramNode,
     ProgramRound,
 )
-from argo_compiler.script.syntax.text.source import Diagnostics
-from argo_compiler.script.syntax.tree import orders
-from argo_compiler.script.syntax.tree.conditions import SaidCondition
-from argo_compiler.script.syntax.tree.manner import Joints, Manner
-from argo_compiler.script.syntax.tree.orders import ScriptOrder
+from argo_compiler.script.sentences.tree import orders
+from argo_compiler.script.sentences.tree.conditions import SaidCondition
+from argo_compiler.script.sentences.tree.manner import Joints, Manner
+from argo_compiler.script.sentences.tree.orders import ScriptOrder
 
 _NOTHING = Manner()
 _FRESH = Do("", Action.MEASURE)

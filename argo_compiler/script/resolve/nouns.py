@@ -7,9 +7,9 @@ from typing import NoReturn
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.base.listing import listed
 from argo_compiler.diagnostics import Span
+from argo_compiler.script.documents.source import Diagnostics, RefusedError
 from argo_compiler.script.resolve.lookup import Lookup, agrees, told
-from argo_compiler.script.syntax.text.source import Diagnostics, RefusedError
-from argo_compiler.script.syntax.tree.nouns import (
+from argo_compiler.script.sentences.tree.nouns import (
     AllOf,
     Kind,
     Labelled,
@@ -18,7 +18,7 @@ from argo_compiler.script.syntax.tree.nouns import (
     Pronoun,
     TheOne,
 )
-from argo_compiler.script.syntax.tree.places import FloorName
+from argo_compiler.script.sentences.tree.places import FloorName
 
 _SHOWN = 6
 """checkpoints that a message names"""

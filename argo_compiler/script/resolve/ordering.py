@@ -10,6 +10,7 @@ from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.checks.precedence import check_precedence
 from argo_compiler.diagnostics import Severity, Span
 from argo_compiler.il import Action, Mission, Order
+from argo_compiler.script.documents.source import RefusedError
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.program import (
     Do,
@@ -18,10 +19,9 @@ from argo_compiler.script.resolve.program import (
     all_nodes,
     inner_blocks,
 )
-from argo_compiler.script.syntax.text.source import RefusedError
-from argo_compiler.script.syntax.tree.orders import ReadBefore, StepsOrdered
-from argo_compiler.script.syntax.tree.places import Steps
-from argo_compiler.script.syntax.tree.script import ScriptHeader
+from argo_compiler.script.sentences.tree.orders import ReadBefore, StepsOrdered
+from argo_compiler.script.sentences.tree.places import Steps
+from argo_compiler.script.sentences.tree.script import ScriptHeader
 
 _Checkpoints = tuple[CheckpointInfo, ...]
 

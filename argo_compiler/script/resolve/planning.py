@@ -6,6 +6,7 @@ from contextlib import suppress
 from dataclasses import replace
 
 from argo_compiler.il import OnFailure, Order
+from argo_compiler.script.documents.source import MOST_KEPT, RefusedError
 from argo_compiler.script.resolve.accepting import require_used, said
 from argo_compiler.script.resolve.cases import Cases
 from argo_compiler.script.resolve.context import Context
@@ -24,18 +25,17 @@ from argo_compiler.script.resolve.program import (
 from argo_compiler.script.resolve.repeating import Repeating
 from argo_compiler.script.resolve.starting import Starting
 from argo_compiler.script.resolve.tasks import TaskMaker
-from argo_compiler.script.syntax.text.source import MOST_KEPT, RefusedError
-from argo_compiler.script.syntax.tree import orders
-from argo_compiler.script.syntax.tree.manner import Manner
-from argo_compiler.script.syntax.tree.node import Node
-from argo_compiler.script.syntax.tree.orders import Fact, PlainWord, ScriptOrder, Sentence
-from argo_compiler.script.syntax.tree.places import (
+from argo_compiler.script.sentences.tree import orders
+from argo_compiler.script.sentences.tree.manner import Manner
+from argo_compiler.script.sentences.tree.node import Node
+from argo_compiler.script.sentences.tree.orders import Fact, PlainWord, ScriptOrder, Sentence
+from argo_compiler.script.sentences.tree.places import (
     AreaLocation,
     DockLocation,
     FloorName,
     Location,
 )
-from argo_compiler.script.syntax.tree.script import ScriptHeader, ScriptStep, Unread
+from argo_compiler.script.sentences.tree.script import ScriptHeader, ScriptStep, Unread
 
 _WHOLE_PLAN = (
     *(orders.Repeat, orders.Add, orders.Delete, orders.Move, orders.Replace, orders.Start),

@@ -14,7 +14,7 @@ from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Span
 from argo_compiler.editing.linked_list import LinkedList, ListItem
 from argo_compiler.il import Action, Condition, JointState, OnFailure, TimeWindow, WaitRule
-from argo_compiler.script.syntax.tree.places import Steps
+from argo_compiler.script.sentences.tree.places import Steps
 
 Alternatives = tuple[tuple[Condition, ...], ...]
 """conditions, of one of whose tuples all must hold; none at all: in any case"""

@@ -7,6 +7,7 @@ from typing import NamedTuple, NoReturn
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Afterwards, EventKind, Reaction, Response
+from argo_compiler.script.documents.source import Diagnostics
 from argo_compiler.script.resolve.accepting import said, words_of
 from argo_compiler.script.resolve.charging import (
     FULL,
@@ -16,17 +17,16 @@ from argo_compiler.script.resolve.charging import (
     low_level,
 )
 from argo_compiler.script.resolve.lookup import Lookup
-from argo_compiler.script.syntax.text.source import Diagnostics
-from argo_compiler.script.syntax.tree import orders
-from argo_compiler.script.syntax.tree.conditions import (
+from argo_compiler.script.sentences.tree import orders
+from argo_compiler.script.sentences.tree.conditions import (
     Asked,
     BatteryLevel,
     Occurs,
     SaidCondition,
 )
-from argo_compiler.script.syntax.tree.manner import Manner
-from argo_compiler.script.syntax.tree.orders import Case, PlainWord, ScriptOrder
-from argo_compiler.script.syntax.tree.places import FloorName
+from argo_compiler.script.sentences.tree.manner import Manner
+from argo_compiler.script.sentences.tree.orders import Case, PlainWord, ScriptOrder
+from argo_compiler.script.sentences.tree.places import FloorName
 
 _USED = frozenset(
     {"priority", "until", "duration", "time_limit", "on_limit", "charge", "charge_time"}

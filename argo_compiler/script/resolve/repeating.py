@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from itertools import islice, takewhile
 
 from argo_compiler.il import Action, WaitRule
+from argo_compiler.script.documents.source import RefusedError
 from argo_compiler.script.resolve.accepting import said
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.manners import make_round
@@ -23,10 +24,9 @@ from argo_compiler.script.resolve.program import (
     all_nodes,
     nodes_from,
 )
-from argo_compiler.script.syntax.text.source import RefusedError
-from argo_compiler.script.syntax.tree import orders
-from argo_compiler.script.syntax.tree.manner import Manner
-from argo_compiler.script.syntax.tree.places import Steps
+from argo_compiler.script.sentences.tree import orders
+from argo_compiler.script.sentences.tree.manner import Manner
+from argo_compiler.script.sentences.tree.places import Steps
 
 _MOST_AGAIN = 1000
 

@@ -10,12 +10,12 @@ from argo_compiler.base.listing import listed
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Action
+from argo_compiler.script.documents.source import Diagnostics
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.program import Do, HomeAhead, dock
-from argo_compiler.script.syntax.text.source import Diagnostics
-from argo_compiler.script.syntax.tree import orders
-from argo_compiler.script.syntax.tree.places import DockLocation
-from argo_compiler.script.syntax.tree.script import AreaChosen, Areas, ScriptHeader
+from argo_compiler.script.sentences.tree import orders
+from argo_compiler.script.sentences.tree.places import DockLocation
+from argo_compiler.script.sentences.tree.script import AreaChosen, Areas, ScriptHeader
 
 _REMEDIES = {"start": Remedy.CHOOSE_START, "end": Remedy.CHOOSE_END}
 

@@ -13,11 +13,11 @@ from argo_compiler.script.resolve.lookup import told
 from argo_compiler.script.resolve.manners import Manners, make_round, timed
 from argo_compiler.script.resolve.program import Do, ProgramRound, dock, measurement
 from argo_compiler.script.resolve.starting import Starting
-from argo_compiler.script.syntax.tree import orders
-from argo_compiler.script.syntax.tree.manner import Manner
-from argo_compiler.script.syntax.tree.nouns import AllOf, Labelled
-from argo_compiler.script.syntax.tree.orders import PlainWord, ScriptOrder, Side
-from argo_compiler.script.syntax.tree.places import FloorName, PlaceLocation
+from argo_compiler.script.sentences.tree import orders
+from argo_compiler.script.sentences.tree.manner import Manner
+from argo_compiler.script.sentences.tree.nouns import AllOf, Labelled
+from argo_compiler.script.sentences.tree.orders import PlainWord, ScriptOrder, Side
+from argo_compiler.script.sentences.tree.places import FloorName, PlaceLocation
 
 _DEMANDS = frozenset(["latest", "earliest", "priority", "rank"])
 

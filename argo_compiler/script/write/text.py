@@ -6,9 +6,9 @@ from math import degrees, radians
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.model import Pose
-from argo_compiler.script.syntax.words.language import Language
-from argo_compiler.script.syntax.words.lexer import words
-from argo_compiler.script.syntax.words.numbers import read_figure
+from argo_compiler.script.sentences.words.language import Language
+from argo_compiler.script.sentences.words.lexer import words
+from argo_compiler.script.sentences.words.numbers import read_figure
 
 WIDTH = 100
 """characters in a line, where the text can be broken"""

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from argo_compiler.diagnostics import Severity
-from argo_compiler.script.syntax.text.healing import heal
+from argo_compiler.script.documents.healing import heal
 
 WORDS = """
     a and anomaly check checkpoint connected docked duration gauge in is mission mission's normal on

@@ -8,8 +8,8 @@ from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.errors import ArgoError
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.script import parse, read_script
-from argo_compiler.script.syntax.parsing import MAX_LINES
-from argo_compiler.script.syntax.reading import MAX_BYTES
+from argo_compiler.script.documents.reading import MAX_BYTES
+from argo_compiler.script.parsing.parser import MAX_LINES
 from tests.argo_compiler.script.conftest import refusals
 
 

@@ -8,8 +8,8 @@ from itertools import chain
 import pytest
 
 from argo_compiler.script import import_script, parse
-from argo_compiler.script.syntax.repeats import repeats
-from argo_compiler.script.syntax.tree.script import Script
+from argo_compiler.script.parsing.repeats import repeats
+from argo_compiler.script.sentences.tree.script import Script
 from tests.argo_compiler.script.conftest import CATALOG
 from tests.campaigns.fuzz.sentences import english_generator, text_of
 

@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 from lark import Lark
 
-from argo_compiler.script.syntax.grammar import tables
-from argo_compiler.script.syntax.grammar.parser import Grammar, StumbleError
-from argo_compiler.script.syntax.words import loading
-from argo_compiler.script.syntax.words.language import Language
-from argo_compiler.script.syntax.words.lexer import words
+from argo_compiler.script.sentences.grammar import tables
+from argo_compiler.script.sentences.grammar.parser import Grammar, StumbleError
+from argo_compiler.script.sentences.words import loading
+from argo_compiler.script.sentences.words.language import Language
+from argo_compiler.script.sentences.words.lexer import words
 
 DOCS = Path(__file__).parents[3] / "docs" / "script.md"
 

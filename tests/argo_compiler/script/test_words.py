@@ -9,7 +9,7 @@ import pytest
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.script import import_script
 from argo_compiler.script.reference import BEGIN, END, as_markdown
-from argo_compiler.script.syntax.words import loading
+from argo_compiler.script.sentences.words import loading
 
 FOLDER = Path(loading.__file__).parent
 

@@ -7,10 +7,10 @@ from functools import cache
 
 from lark.grammar import NonTerminal, Rule, Symbol
 
-from argo_compiler.script.syntax.grammar.parser import sentence_grammar
-from argo_compiler.script.syntax.tree.nouns import Kind
-from argo_compiler.script.syntax.words.language import Language
-from argo_compiler.script.syntax.words.lexicon import Lexicon
+from argo_compiler.script.sentences.grammar.parser import sentence_grammar
+from argo_compiler.script.sentences.tree.nouns import Kind
+from argo_compiler.script.sentences.words.language import Language
+from argo_compiler.script.sentences.words.lexicon import Lexicon
 from tests.argo_compiler.script.conftest import CATALOG
 
 _DEPTH_LIMIT = 8

@@ -1,0 +1,189 @@
+"""The lines of a script with the numbers, letters and bullets that they begin with, and where the
+sentences in them end: not behind `approx.`, in `Nr. R25` or in `2. Stock`."""
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+from argo_compiler.script.documents.source import ScriptText, quotes
+from argo_compiler.script.sentences.words.loading import pattern
+
+
+class LineMark(StrEnum):
+    """What a line begins with."""
+
+    NUMBER = "number"
+    LETTER = "letter"
+    BULLET = "bullet"
+    NONE = "none"
+
+
+@dataclass(slots=True)
+class ScriptLine:
+    """A line without its mark."""
+
+    text: ScriptText
+    indent: int
+    mark: LineMark = LineMark.NONE
+    number: int | None = None
+    first: bool = False
+    """whether it is the first line of a paragraph"""
+    marked: ScriptText | None = None
+    """the line with its mark, if that is a number"""
+    heading: bool = False
+    """whether it stands over others, if it says nothing by itself: marked so, or before a mark"""
+
+    @property
+    def unmarked(self) -> ScriptText:
+        """The text, if what looks like a mark is none."""
+        return self.marked or self.text
+
+
+_NUMBER = (
+    r"\(?(?:<step>\s+)?([0-9]{1,6})"
+    r"\s*(?:\.?\)(?![0-9])|\.(?![0-9])|:(?![0-9])|\s-\s+(?=[^\W\d_]))\s*"
+)
+_STEP = r"<step>\s+([0-9]{1,6})\b[.:)]?\s*"
+_SUB_NUMBER = re.compile(r"[0-9]{1,4}\.[0-9]{1,4}[.)]?\s+(?=[A-Z])")
+_BRACKETED = re.compile(r"\[([0-9]{1,6})\]\s+")
+_LETTER = re.compile(r"\(?([a-z]|[ivx]{1,4})[.)]\s+", re.IGNORECASE)
+_BULLET = re.compile(
+    r"(?:[-*+o]\s+|-(?=[^\W\d_])|[•–‣◦·▪▫●○■□☐☑✓✔→➔►▶]\s*)(?:\[[ xX]?\]\s+)?|#+\s+"
+)
+_RULE = re.compile(r"([-=_~*'])\1{2,}|\+[-=+]+\+")
+_RULE_SIGNS = ("-", "=", "_", "~", "*", "'", "+")
+_MAIL = re.compile(r"\s*(?:>\s?)+")
+"""before the lines of a letter that is quoted in another one"""
+_RUN_IN = re.compile(r"(?:^|[,;.!])\s+([0-9]{1,3})[.)]\s+(?=[^\W\d_])")
+_LABEL = re.compile(r"\s*(?:[A-Za-z]?-?[0-9]|[A-Z](?!\w))")
+_ORDINAL = re.compile(r"(?<![\w.,])[0-9]{1,2}\.$")
+_SENTENCE_END = r"(?:[.!?…]+|;(?=\s*<new_sentence>\b))(?=\s|$)"
+_ABBREVIATED = r"\b<abbreviation>\.$"
+_NUMBERED = r"\b<number>\.$"
+_MORE_ORDINALS = r"(?:\s*(?:,|<between_ordinals>)\s*[0-9]{1,2}\.)"
+_BEHIND_ORDINAL = (
+    rf"{_MORE_ORDINALS}*(?:\s+<behind_ordinals>|\s*(?:,|<between_ordinals>)$)|{_MORE_ORDINALS}+$"
+)
+"""what stands behind an ordinal, where no line cuts it: `im 1. und 2. Stock`"""
+_NEXT_SIGN = re.compile(r"\s*(\S)")
+
+
+def lines_of(texts: Sequence[ScriptText]) -> Iterator[ScriptLine]:
+    """The lines that say anything, with their marks."""
+    first = True
+    above: ScriptLine | None = None
+    for text in _unquoted(texts):
+        stripped = text.strip()
+        rule = stripped.content[:1] in _RULE_SIGNS and _RULE.fullmatch(stripped.content)
+        if rule and above is not None:
+            above.heading = above.heading or (not first and above.mark is LineMark.NONE)
+        if not stripped.content or rule:
+            first = True
+            continue
+        indent = len(text.content) - len(text.content.lstrip(" \t"))
+        for line in _split(_marked(stripped, indent)):
+            line.first = first
+            first = False
+            if above is not None:
+                if line.mark is not LineMark.NONE and above.mark is LineMark.NONE:
+                    above.heading = True
+                yield above
+            above = line
+    if above is not None:
+        yield above
+
+
+def _unquoted(texts: Sequence[ScriptText]) -> Iterator[ScriptText]:
+    """The lines of a letter without its marks. A single line with one is taken as it is: in it the
+    sign may say that a value is greater."""
+    if not any(">" in text.content for text in texts):
+        yield from texts
+        return
+    marks = [_MAIL.match(text.content) for text in texts]
+    for i, (text, mark) in enumerate(zip(texts, marks, strict=True)):
+        beside = any(marks[k : k + 1] != [None] for k in (i - 1, i + 1) if 0 <= k < len(marks))
+        yield text[mark.end() :] if mark is not None and beside else text
+
+
+def _marked(text: ScriptText, indent: int) -> ScriptLine:
+    if bullet := _BULLET.match(text.content):
+        inner = _marked(text[bullet.end() :].strip(), indent)
+        mark = inner.mark if inner.number else LineMark.BULLET
+        return ScriptLine(
+            inner.text, indent, mark, inner.number, heading=text.content.startswith("#")
+        )
+    patterns = (pattern(_NUMBER), pattern(_STEP), _BRACKETED)
+    if number := next(filter(None, (p.match(text.content) for p in patterns)), None):
+        rest = text[number.end() :].strip()
+        return ScriptLine(rest, indent, LineMark.NUMBER, int(number[1]), marked=text)
+    if letter := _LETTER.match(text.content) or _SUB_NUMBER.match(text.content):
+        return ScriptLine(text[letter.end() :].strip(), indent, LineMark.LETTER)
+    return ScriptLine(text, indent)
+
+
+def _split(line: ScriptLine) -> Iterator[ScriptLine]:
+    """The steps of a line that has more than one: `1. ..., 2. ..., 3. ...`."""
+    if line.number is None or _RUN_IN.search(line.text.content) is None:
+        yield line
+        return
+    expected = line.number + 1
+    start = 0
+    quoted = quotes(line.text.content)
+    for found in _RUN_IN.finditer(line.text.content):
+        if any(a < found.start() < b for a, b in quoted):
+            continue
+        if int(found[1]) != expected:
+            continue
+        before = line.text.content[: found.start()]
+        if before.count("(") > before.count(")"):
+            continue  # `(1, 2, 5) heading 90 degrees` in step 4
+        yield ScriptLine(
+            line.text[start : found.start()].strip(), line.indent, line.mark, expected - 1
+        )
+        start = found.end()
+        expected += 1
+    if start == 0:
+        yield line
+    else:
+        yield ScriptLine(line.text[start:].strip(), line.indent, line.mark, expected - 1)
+
+
+# ---- sentences
+
+
+def sentences(text: ScriptText) -> list[ScriptText]:
+    """The sentences of a text, without their full stops."""
+    found = (text[start:end].strip() for start, end in sentence_bounds(text.content))
+    return [sentence for sentence in found if sentence.content]
+
+
+def sentence_bounds(content: str) -> list[tuple[int, int]]:
+    """Where the sentences of a text begin and end; at least one."""
+    found: list[tuple[int, int]] = []
+    start = k = 0
+    quoted = quotes(content)
+    for end in pattern(_SENTENCE_END).finditer(content):
+        while k < len(quoted) and quoted[k][1] <= end.start():
+            k += 1
+        if k < len(quoted) and quoted[k][0] < end.start():
+            continue
+        behind = _NEXT_SIGN.match(content, end.end())
+        more = behind is not None and not behind[1].isupper()
+        if more and pattern(_ABBREVIATED).search(content, max(0, end.start() - 8), end.start() + 1):
+            continue
+        if _goes_on_behind(content, end.start() + 1):
+            continue
+        found.append((start, end.start()))
+        start = end.end()
+    if content[start:].strip() or not found:
+        found.append((start, len(content)))
+    return found
+
+
+def _goes_on_behind(content: str, stop: int) -> bool:
+    """Whether a full stop belongs to `Nr. R25` or `2. Stock`."""
+    if pattern(_NUMBERED).search(content, max(0, stop - 5), stop) and _LABEL.match(content, stop):
+        return True
+    ordinal = _ORDINAL.search(content, max(0, stop - 4), stop)
+    return ordinal is not None and pattern(_BEHIND_ORDINAL).match(content, stop) is not None

@@ -1,0 +1,242 @@
+"""Lists of items that a line over them says something of: a condition, a floor, a kind.
+
+`If it is above 5:` stands over `a) check #4` and `b) check #8`, `Second floor:` over `- all
+valves`, `Check these pressure gauges:` over `- 1` and `- 3`.
+"""
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from itertools import takewhile
+
+from argo_compiler.script.documents.source import ScriptText, join
+from argo_compiler.script.layout.items import LineItem
+from argo_compiler.script.layout.lines import LineMark, sentences
+from argo_compiler.script.sentences.tree.manner import Manner
+from argo_compiler.script.sentences.tree.nouns import Pronoun
+from argo_compiler.script.sentences.tree.orders import Measure, ScriptOrder, Sentence
+from argo_compiler.script.sentences.tree.places import FloorName
+from argo_compiler.script.sentences.tree.script import Said
+from argo_compiler.script.sentences.understanding import Understanding
+from argo_compiler.script.sentences.words.prose import either
+
+_CASES = frozenset(["IF", "UNLESS", "ELSE", "IN_ALL_OTHERS"])
+"""what a sentence begins with that says in which case something is done"""
+_FLOORS = frozenset(["FLOOR", "FLOOR_NAME", "ORDINAL"])
+_LONGEST = 40
+"""characters of a floor's name over a list"""
+_HEADS = ((), ("MEASURE",), ("ALL",), ("MEASURE", "ALL"))
+"""what may stand before the kind in the sentence over a list"""
+_LABELS = frozenset(["NUMBER", "IDENT", "HASH"])
+_ENDS = frozenset("0123456789.!?…")
+"""signs, none of which ends the sentence over a list; most lines end with one of them"""
+_LONGEST_HEAD = 80
+"""characters"""
+
+
+@dataclass(frozen=True, slots=True)
+class _Head:
+    """The sentence over a list."""
+
+    text: ScriptText
+    said: ScriptText
+    """what it says of each item: `Check pressure gauges`"""
+    listing: bool
+    """whether it says that a list follows"""
+
+
+@dataclass(frozen=True)
+class Lists:
+    """Tells the items of lists what the lines over them say."""
+
+    understanding: Understanding
+    note: Callable[[ScriptText, str], None]
+    """says that a text has no effect"""
+
+    def told(self, items: Iterable[LineItem]) -> Iterator[LineItem]:
+        """Return the items, of which each says by itself what is meant."""
+        return self._of_kinds(self._on_floors(self._in_cases(items)))
+
+    # ---- under a condition
+
+    def _in_cases(self, items: Iterable[LineItem]) -> Iterator[LineItem]:
+        """The items; of those under a condition one with all of them, where that makes sense."""
+        waiting = list(items)
+        taken = 0
+        for i, item in enumerate(waiting):
+            if taken:
+                taken -= 1
+                continue
+            if item.text.content.endswith(":"):
+                inner, item.items = item.items, []
+                below = inner or _list_of(waiting, i + 1)
+                if not self._put_together(item, below):
+                    item.items = inner
+                elif not inner:
+                    taken = len(below)
+            yield item
+
+    def _put_together(self, item: LineItem, below: Sequence[LineItem]) -> bool:
+        over = sentences(item.text)[-1:]
+        inner = [one for lower in below for one in sentences(lower.text)]
+        plain = len(inner) == len(below) > 0 and not any(lower.items for lower in below)
+        if not plain or not over or not self._is_case(over[0]) or any(map(self._is_case, inner)):
+            return False
+        head = self._condition(over[0])
+        whole = join([head, *(one[: len(one.content.rstrip(" .;,"))] for one in inner)], ", ")
+        if not self.understanding.fits(whole):
+            return False
+        before = item.text[: len(item.text.content) - len(over[0].content)].strip()
+        item.text = join([before, whole]) if before.content else whole
+        return True
+
+    def _condition(self, text: ScriptText) -> ScriptText:
+        """The condition without `, do the following:`."""
+        words = self.understanding.words(text)
+        end = words[-1].start if words[-1].type == "DO_FOLLOWING" else len(text.content)
+        return text[: len(text.content[:end].rstrip(" :,"))]
+
+    def _is_case(self, text: ScriptText) -> bool:
+        return not {*self.understanding.types(text)[:1]}.isdisjoint(_CASES)
+
+    # ---- under a floor
+
+    def _on_floors(self, items: Iterable[LineItem]) -> Iterator[LineItem]:
+        """The items without headings that name a floor; those below are told where they are."""
+        waiting = list(items)
+        floors: Sequence[FloorName] = ()
+        chapter = False
+        for item, after in zip(waiting, [*waiting[1:], None], strict=False):
+            heading = item.line.heading or bool(item.items)
+            marked = item.line.mark is not LineMark.NONE
+            listed = after is not None and after.line.mark is not LineMark.NONE
+            found = self._floors(item) if heading or listed else ()
+            if found and item.items:
+                _place(item.items, found)
+                item.text = item.text[:0]
+                floors = ()
+            elif found:
+                floors, chapter = found, marked  # `# Second floor` stands over all to the next one
+                continue
+            elif (item.line.heading and (marked or not chapter)) or not (marked or chapter):
+                floors = ()
+            elif floors:
+                _place([item], floors)
+            yield item
+
+    def _floors(self, item: LineItem) -> Sequence[FloorName]:
+        """The floors that a text names, if it says nothing else."""
+        text = item.text[: len(item.text.content.rstrip(" :."))]
+        if not 0 < len(text.content) <= _LONGEST:
+            return ()
+        if {*self.understanding.types(text)[:1]}.isdisjoint(_FLOORS):
+            return ()
+        found = self.understanding.location(text)
+        return found if isinstance(found, tuple) else ()
+
+    # ---- under what the items are
+
+    def _of_kinds(self, items: Iterable[LineItem]) -> Iterator[LineItem]:
+        """The items; those of such a list say themselves what they are."""
+        over: LineItem | None = None
+        head: _Head | None = None
+        for item in items:
+            if head is not None and self._is_label(item.text):
+                over = self._without(over, head)
+                item.text = join([head.said, item.text])
+            elif head is not None and head.listing and item.line.mark is not LineMark.NONE:
+                if over is not None:
+                    self.note(head.text, "a heading")
+                over = self._without(over, head)
+            else:
+                head = None
+            if over is not None:
+                yield over
+                over = None
+            if head is None:
+                head = self._head(item.text)
+                if head is not None and item.items and self._is_label(item.items[0].text):
+                    self._put_before(head, item)
+                    head = None
+                elif head is not None:
+                    over = item
+                    continue
+            yield item
+        if over is not None:
+            yield over
+
+    def _without(self, item: LineItem | None, head: _Head) -> LineItem | None:
+        """An item without the sentence at its end; None if nothing is left."""
+        if item is None:
+            return None
+        item.text = item.text[: len(item.text.content) - len(head.text.content)].strip()
+        return item if item.text.content else None
+
+    def _put_before(self, head: _Head, item: LineItem) -> None:
+        """Puts the sentence before the items that lie within its own one."""
+        first, *others = item.items
+        start = item.text[: len(item.text.content) - len(head.text.content)]
+        item.text = join([*([start] if start.content else []), head.said, first.text])
+        for other in others:
+            if self._is_label(other.text):
+                other.text = join([head.said, other.text])
+        item.items = [*first.items, *others]
+
+    def _head(self, text: ScriptText) -> _Head | None:
+        if text.content[-1:] in _ENDS:
+            return None
+        last = sentences(text)[-1:]
+        if not last or not text.content.endswith(last[0].content):
+            return None
+        content = last[0].content.rstrip(": ")
+        if not content or len(content) > _LONGEST_HEAD or content[-1].isdigit():
+            return None
+        said = last[0][: len(content)]
+        if found := _listing(self.understanding.language.prose.listing).search(content):
+            parts = said[: found.start()].strip(), said[found.end() :].strip()
+            said = join([part for part in parts if part.content] or [said])
+        types = self.understanding.types(said)
+        fits = types[-1:] == ("KIND",) and types[:-1] in _HEADS
+        return _Head(last[0], said, found is not None) if fits else None
+
+    def _is_label(self, text: ScriptText) -> bool:
+        return {*self.understanding.types(text)[:1]} <= _LABELS
+
+
+def _list_of(items: Sequence[LineItem], start: int) -> list[LineItem]:
+    """The items of a list that begins here, if its marks are no numbers of steps."""
+    mark = items[start].line.mark if start < len(items) else LineMark.NONE
+    if mark not in (LineMark.BULLET, LineMark.LETTER):
+        return []
+    return list(takewhile(lambda item: item.line.mark is mark, items[start:]))
+
+
+def _place(items: Iterable[LineItem], floors: Sequence[FloorName]) -> None:
+    for item in items:
+        item.floors = floors
+        _place(item.items, floors)
+
+
+def on_floors(said: list[Said], floors: Sequence[FloorName]) -> list[Said]:
+    """What is said, of checkpoints on these floors."""
+    if not floors:
+        return said
+    return [
+        replace(one, orders=tuple(_on(order, floors) for order in one.orders))
+        if isinstance(one, Sentence)
+        else one
+        for one in said
+    ]
+
+
+def _on(order: ScriptOrder, floors: Sequence[FloorName]) -> ScriptOrder:
+    if not isinstance(order, Measure) or any(isinstance(n, Pronoun) for n in order.what.nouns):
+        return order
+    manner = order.manner or Manner()
+    return order if manner.floors else replace(order, manner=replace(manner, floors=tuple(floors)))
+
+
+@cache
+def _listing(phrases: str) -> re.Pattern[str]:
+    return re.compile(rf"\b(?:{either(phrases)})\b", re.IGNORECASE)

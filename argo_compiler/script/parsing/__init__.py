@@ -1,0 +1,1 @@
+"""A script read piece by piece: text to syntax tree."""

@@ -1,0 +1,287 @@
+"""Reads the sentences of a script one after the other: which say what, and which have no effect."""
+
+from dataclasses import dataclass, replace
+
+from argo_compiler.script.documents.source import Diagnostics, ScriptText
+from argo_compiler.script.layout.asides import Asides, ask_of_remark
+from argo_compiler.script.layout.fields import ScriptFields
+from argo_compiler.script.layout.items import LineItem
+from argo_compiler.script.layout.lines import LineMark
+from argo_compiler.script.sentences.doubts import ask_of_words, placed_in
+from argo_compiler.script.sentences.grammar.parser import StumbleError
+from argo_compiler.script.sentences.tree.orders import Amend, Follow, Sentence, Start
+from argo_compiler.script.sentences.tree.script import Said, Text, Unread
+from argo_compiler.script.sentences.understanding import Reading, Understanding
+from argo_compiler.script.sentences.words.word import VERBS
+
+MAX_SENTENCE = 10_000
+"""characters in a sentence of many lines; a longer one is refused unread"""
+
+
+@dataclass(frozen=True)
+class _Title:
+    """A title, and what stands behind it in the same line."""
+
+    head: ScriptText
+    fields: ScriptText | None = None
+    parts: tuple[ScriptText, ...] = ()
+    """what makes sense behind a comma"""
+
+
+@dataclass
+class SentenceReader:
+    """Reads sentences. Mutable: what one is depends on those before it."""
+
+    understanding: Understanding
+    asides: Asides
+    fields: ScriptFields
+    diagnostics: Diagnostics
+    ordered: bool = False
+    """whether anything is to be done by now but to start"""
+    begun: bool = False
+    """whether anything but a title has been read"""
+    listed: str = ""
+    """`Pressure gauges`, if that is what was read last"""
+
+    def note(self, text: ScriptText, what: str) -> None:
+        """Says that a text has no effect."""
+        said = text.content if len(text.content) <= 60 else f"{text.content[:57]}..."
+        message = f"`{said}` is taken for {what} and has no effect"
+        self.diagnostics.note("no-effect", message, text.span())
+
+    def remark(self, text: ScriptText) -> list[Said]:
+        """Says that a remark has no effect; a warning, where it tells what is to be done. What it
+        says of the order is kept: `Note: valve R40 has to be checked before valve R12.`"""
+        inner = self.asides.remark(text)
+        if self.asides.ranks(inner):
+            return self._ask_of_rank(inner)
+        types = {*self.understanding.types(inner)}
+        if types & {"BEFORE", "AFTER"} and not types & {"IF", "UNLESS", *VERBS}:
+            reading = self.understanding.read(inner)
+            if not isinstance(reading, StumbleError):
+                return [self._node(inner, reading)]
+        if self.asides.bids(inner):
+            message = f"`{text.content}` is taken for a remark: the command in it has no effect"
+            hint = "write it as a step if the robot has to do it"
+            self.diagnostics.warning("remark", message, text.span(), hint)
+        else:
+            self.note(text, "a remark")
+        return []
+
+    def read(self, text: ScriptText, item: LineItem) -> list[Said]:
+        """What a sentence says; nothing where it has no effect."""
+        if len(text.content) > MAX_SENTENCE:
+            length = len(text.content)
+            message = f"the sentence has {length} characters; at most {MAX_SENTENCE} are read"
+            self.diagnostics.error("too-long", message, text.span(), "write several sentences")
+            return [Unread(span=text.span())]
+        text = self.understanding.figures(text)
+        if not self.understanding.types(text):
+            self.note(text, "a remark")
+            return []
+        if self._is_stray(text, item):
+            _ask_of_stray(text, self.listed, self.diagnostics)
+            return [Unread(span=text.span())]
+        if item.line.number is None and self.asides.ranks(text):
+            return self._ask_of_rank(text)
+        self.listed = _kind_listed(text, tuple(self.understanding.types(text)))
+        stands_over = item.line.heading or text.content.endswith(":")
+        if stands_over and self.fields.introduces(text):
+            return []
+        if item.line.heading and {*self.understanding.types(text)} == {"KIND"}:
+            self.note(text, "a heading")  # `Pressure gauges` over steps
+            return []
+        if not self.ordered and self.fields.whole_mission(text):
+            return []
+        reading = self.understanding.read(text)
+        if isinstance(reading, StumbleError) or "WORD" in self.understanding.types(text):
+            respelled = self.understanding.respelled(text)
+            if respelled is not None:
+                text, reading = respelled, self.understanding.read(respelled)
+                if stands_over and self.fields.introduces(text):
+                    return []
+        if isinstance(reading, StumbleError):
+            cut = self.asides.without(text, first=not self.begun)
+            if cut is not None:
+                text, asides = cut
+                for aside in asides:
+                    if self.asides.corrects(aside) and not self.asides.is_reason(aside):
+                        ask_of_remark(aside, self.diagnostics)
+                    else:
+                        self.note(aside, "a remark")
+                reading = self.understanding.read(text)
+        if isinstance(reading, StumbleError):
+            return self._not_understood(text, item, reading)
+        joint = self.understanding.unfinished(text)
+        if joint is not None:
+            message = f"nothing follows `{joint.content}`"
+            hint = "write what follows, or remove it"
+            self.diagnostics.error("unfinished", message, joint.span(), hint)
+        node = self._node(text, reading)
+        introduces = text.content.endswith(":") and not item.items
+        if introduces and item.over and not _is_amend(node):
+            return self._announced(text, node)
+        if stands_over and not item.items and _is_amend(node):
+            message = "this is above other lines, and only says how they are done"
+            hint = "write it in each of them, or write them as sub-steps of this line"
+            self.diagnostics.error("stray-clause", message, text.span(), hint)
+            return [Unread(span=text.span())]
+        return [node]
+
+    def _announced(self, text: ScriptText, node: Said) -> list[Said]:
+        """What a line over steps of their own says besides `do the following:`."""
+        if not isinstance(node, Sentence) or node.cases or not node.orders:
+            return [node]
+        *orders, last = node.orders
+        if not isinstance(last, Follow) or last.manner is not None or last.name is not None:
+            return [node]
+        self.diagnostics.note("no-effect", f"`{text.content}` has no effect by itself", text.span())
+        return [replace(node, orders=tuple(orders))] if orders or node.facts else []
+
+    def _ask_of_rank(self, text: ScriptText) -> list[Said]:
+        message = f"`{text.content}` can mean all of them, or the order of the other lines"
+        hint = "write `check all ...` as a step, or the steps in the intended order"
+        self.diagnostics.error("ambiguous-order", message, text.span(), hint)
+        return [Unread(span=text.span())]
+
+    def _is_stray(self, text: ScriptText, item: LineItem) -> bool:
+        """Whether a line is a number alone, as a page's is, and no list says of what."""
+        alone = item.line.mark is LineMark.NONE and text.content == item.text.content
+        return alone and not self.fields.lists and self.understanding.types(text) == ("NUMBER",)
+
+    def _node(self, text: ScriptText, reading: Reading) -> Said:
+        self.begun = True
+        for idle in self.asides.idle(text):
+            self.diagnostics.note("no-effect", f"`{idle.content}` has no effect", idle.span())
+        lexicon = self.understanding.language.lexicon
+        ask_of_words(text, lexicon, self.diagnostics, self.ordered)
+        node = self.understanding.node(text, reading)
+        if isinstance(node, Sentence):
+            placed = placed_in(text, node, lexicon)
+            node = replace(node, placed=placed) if placed else node
+            self.ordered |= any(not isinstance(order, Start) for order in node.orders)
+        return Unread(span=text.span()) if node is None else node
+
+    def _not_understood(
+        self, text: ScriptText, item: LineItem, stumble: StumbleError
+    ) -> list[Said]:
+        """What makes no sense: said of the mission as a whole, a title, small talk or an error."""
+        if self.fields.whole_mission(text):
+            return []
+        free = item.line.mark in (LineMark.NONE, LineMark.BULLET) and item.line.number is None
+        if free and self.fields.leaves_open(text):
+            return []
+        if free and self.asides.is_small_talk(text):
+            self.note(text, "a remark")
+            return []
+        header = self.fields.header
+        first = not self.begun and header.title is None and item.line.number is None
+        title = self._title(text, item, first)
+        if title is not None:
+            return self._entitled(title, item, first)
+        if not self.fields.is_unknown(text):
+            self.understanding.not_understood(text, stumble)
+        self.begun = True
+        return [Unread(span=text.span())]
+
+    # ---- titles and headings, with what stands behind them: `Evening round, at most 40 minutes`
+
+    def _title(self, text: ScriptText, item: LineItem, first: bool) -> _Title | None:
+        """The title that a text may be. `first`: nothing but it has been read, and it is no
+        step."""
+        if not first and not self._is_heading(text, item):
+            return None
+        titled = self.fields.behind(text) if first else None
+        if titled is not None and self.asides.is_title(titled[0]):
+            return _Title(titled[0], fields=titled[1])
+        alone = text.content == item.text.content
+        over = first and alone and item.line.heading and self.asides.stands_for_title(text)
+        if over or self.asides.is_title(text):
+            return _Title(text)
+        if not first or "," not in text.content:
+            return None
+        head = text[: text.content.index(",")]
+        parts = self._behind(text[len(head.content) + 1 :].strip())
+        return _Title(head, parts=parts) if self.asides.is_title(head) and parts else None
+
+    def _behind(self, text: ScriptText) -> tuple[ScriptText, ...]:
+        """The parts of what stands behind a title, if all of them make sense."""
+        commas = [i for i, sign in enumerate(text.content) if sign == ","]
+        ends = [*commas, len(text.content)]
+        starts = [0, *(comma + 1 for comma in commas)]
+        parts = tuple(text[a:b].strip() for a, b in zip(starts, ends, strict=True))
+        sensible = (p for p in (parts, (text,)) if all(self._makes_sense(part) for part in p))
+        return next(sensible, ())
+
+    def _makes_sense(self, text: ScriptText) -> bool:
+        return self.fields.says_whole(text) or self.understanding.fits(text)
+
+    def _is_heading(self, text: ScriptText, item: LineItem) -> bool:
+        """Whether a line stands over others: marked as a heading, or with items of its own."""
+        line = item.line
+        if self.fields.has_value(text):
+            return False
+        whole = text.content == item.text.content.rstrip(".!")
+        above = bool(item.items) or text.content.endswith(":")
+        return line.heading or (whole and line.number is None and above)
+
+    def _entitled(self, title: _Title, item: LineItem, first: bool) -> list[Said]:
+        """Keeps a title, and reads what stands behind it."""
+        self.begun = True
+        if first:
+            self._entitle(title.head, asked=not self.asides.is_title(title.head))
+        elif self.asides.sets_aside(title.head):
+            message = f"`{title.head.content}` can mean that the lines below it are not tasks, "
+            message += "or not always"
+            hint = "remove the lines that are not tasks, and the heading; or write another heading"
+            self.diagnostics.error("ambiguous-title", message, title.head.span(), hint)
+        else:
+            self.note(title.head, "a heading")
+        if title.fields is not None:
+            rest = self.fields.read(title.fields)
+            return self.read(rest, item) if rest.content else []
+        said: list[Said] = []
+        for part in title.parts:
+            reading = self.understanding.read(part)
+            if not self.fields.whole_mission(part) and not isinstance(reading, StumbleError):
+                said.append(self._node(part, reading))
+        return said
+
+    def _entitle(self, title: ScriptText, asked: bool = False) -> None:
+        """Takes a text for the title; with a warning, where something may be asked for in it."""
+        header = self.fields.header
+        header.title = Text(span=title.span(), text=title.content)
+        header.format_title = self.asides.is_explicit_title(title)
+        if asked:
+            message = f"`{title.content}` is taken for the title, and adds no task"
+            hint = "write it as a step if the robot has to do it"
+            self.diagnostics.warning("title", message, title.span(), hint)
+        elif not self.asides.is_explicit_title(title):
+            message = f"`{title.content}` is taken for the title, and has no effect on what is done"
+            self.diagnostics.note("title", message, title.span())
+
+
+def _is_amend(node: Said) -> bool:
+    """Whether a sentence says only how something is done."""
+    if not isinstance(node, Sentence) or node.cases or not node.orders:
+        return False
+    return all(isinstance(order, Amend) for order in node.orders)
+
+
+def _ask_of_stray(text: ScriptText, listed: str, diagnostics: Diagnostics) -> None:
+    number = text.content
+    message, hint = (
+        f"`{number}` can be checkpoint {number}",
+        f"write `check checkpoint {number}`",
+    )
+    if listed:
+        message += f", one more of the `{listed}` above it"
+        hint += f", or `{listed}:` above the list"
+    message, hint = f"{message}, or have no meaning", f"{hint}, or remove it"
+    diagnostics.error("not-understood", message, text.span(), hint)
+
+
+def _kind_listed(text: ScriptText, types: tuple[str, ...]) -> str:
+    """The words for the kind where a text is a checkpoint's kind, or that with its number."""
+    listed = types[:1] == ("KIND",) and {*types[1:]} <= {"NUMBER", "HASH", "IDENT"}
+    return text.content.rstrip("0123456789#: ") if listed else ""

@@ -1,0 +1,1 @@
+"""Words, grammar and tree of single sentences."""

@@ -1,0 +1,143 @@
+"""Makes noun phrases."""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+from argo_compiler.script.sentences.building.conditions import require_one_joint
+from argo_compiler.script.sentences.building.part import Make, RulePart, whole
+from argo_compiler.script.sentences.tree.nouns import (
+    AllOf,
+    Kind,
+    Labelled,
+    Noun,
+    Nouns,
+    Pronoun,
+    Quantity,
+    TheOne,
+)
+from argo_compiler.script.sentences.words.numbers import Figure
+from argo_compiler.script.sentences.words.word import Word
+
+
+class Label(NamedTuple):
+    """A number or an identifier, and the numbers that it may be a list of."""
+
+    first: int | str
+    listed: tuple[int, ...] = ()
+
+
+def _label(part: RulePart) -> Label:
+    (word,) = part.children
+    if word.type != "NUMBER":
+        return Label(word.value)
+    figure: Figure = word.value
+    if figure.listed:
+        return Label(figure.listed[0], figure.listed)
+    return Label(whole(part, figure))
+
+
+def _kind(word: Word | None) -> tuple[Kind | None, bool]:
+    if word is None:
+        return None, False
+    kind, plural = word.value[:2]
+    return kind, plural
+
+
+def named(part: RulePart) -> list[Noun]:
+    """The checkpoint; several where a number is a list without blanks: `1,4`."""
+    kind, plural = _kind(part.word("KIND"))
+    (label, listed), *upto = part.every(Label)
+    return [
+        Labelled(
+            span=part.span,
+            label=one,
+            kind=kind,
+            plural=plural,
+            hash=part.has("HASH"),
+            last=upto[0].first if upto else None,
+            floors=next((t for t in part.every(tuple) if not isinstance(t, Label)), ()),
+        )
+        for one in listed or (label,)
+    ]
+
+
+def _of(part: RulePart) -> list[Noun]:
+    word, nouns = part.children
+    quantity = Quantity(word.value)
+    return [
+        replace(noun, quantity=quantity) if isinstance(noun, Labelled) else noun
+        for noun in (nouns if isinstance(nouns, list) else [nouns])
+    ]
+
+
+def _aka(part: RulePart) -> list[Noun]:
+    (first, *_), (second, *_) = part.every(list)
+    return [replace(first, also=second, span=part.span)]
+
+
+def _all(part: RulePart) -> AllOf:
+    kind, _ = _kind(part.word("KIND"))
+    number = part.word("NUMBER")
+    count = 2 if part.has("BOTH") else whole(part, number.value) if number else None
+    return AllOf(
+        span=part.span,
+        kind=kind or Kind.CHECKPOINT,
+        floors=part.joined(tuple),
+        count=count,
+        whole=part.has("EVERYTHING"),
+    )
+
+
+def _the_one(part: RulePart) -> TheOne:
+    kind, plural = _kind(part.word("KIND"))
+    return TheOne(
+        span=part.span, kind=kind or Kind.CHECKPOINT, floors=part.joined(tuple), plural=plural
+    )
+
+
+def _pronoun(part: RulePart) -> Pronoun:
+    them = part.word("THEM", "BOTH")
+    number = part.word("NUMBER")
+    return Pronoun(
+        span=part.span,
+        every=them is not None,
+        either=them is not None and them.value == "either",
+        or_one=them is not None and them.value == "or one",
+        count=whole(part, number.value) if number else None,
+        kind=_kind(part.word("KIND"))[0],
+    )
+
+
+def _nouns(part: RulePart) -> Nouns:
+    require_one_joint(part)
+    nouns: list[Noun] = []
+    but: list[Noun] = []
+    either = excluded = False
+    for child in part.children:
+        if isinstance(child, Word):
+            excluded = excluded or child.type == "EXCEPT"
+            either = either or child.type.startswith("OR_")
+        else:
+            either = either or (isinstance(child, Pronoun) and child.either)
+            (but if excluded else nouns).extend(child if isinstance(child, list) else [child])
+    words = part.every(Word)
+    parted = len(nouns) == 2 and len(words) == 1 and str(words[0].value).strip() != ","
+    parted = parted and str(words[0].value).startswith(",")
+    all_ = tuple(nouns)
+    return Nouns(span=part.span, nouns=all_, but=tuple(but), either=either, parted=parted)
+
+
+RULES: dict[str, Make] = {
+    # `except valve R40`, behind how the others are measured
+    "but": lambda part: Nouns(span=part.span, nouns=(), but=part.joined(list)),
+    "label": _label,
+    "upto": lambda part: part.the(Label),
+    "named": named,
+    "of": _of,
+    "aka": _aka,
+    "all": _all,
+    "the_one": _the_one,
+    "pronoun": _pronoun,
+    "the_same": _pronoun,
+    "nouns": _nouns,
+}

@@ -1,0 +1,261 @@
+"""Small words that change nothing where they mostly stand, and what is meant where they stand here.
+
+Of `if only one of them is above 4`, `check 8 also if ...`, `go back there` that is asked. What
+words say of where something stands, `at the end`, `first of all`, `there`, has to be so: else it is
+asked what is meant.
+"""
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
+
+from argo_compiler.script.documents.source import Diagnostics, ScriptText
+from argo_compiler.script.sentences.tree import orders
+from argo_compiler.script.sentences.tree.conditions import InState, Test, TooLate
+from argo_compiler.script.sentences.tree.nouns import AllOf, Labelled, TheOne
+from argo_compiler.script.sentences.tree.orders import Case, Placed, Placing, ScriptOrder, Sentence
+from argo_compiler.script.sentences.tree.script import ScriptStep
+from argo_compiler.script.sentences.words.lexer import all_words, placed_words
+from argo_compiler.script.sentences.words.lexicon import Lexicon
+from argo_compiler.script.sentences.words.loading import everywhere, pattern
+from argo_compiler.script.sentences.words.prose import either
+from argo_compiler.script.sentences.words.word import VERBS, Word
+
+_OPENS = frozenset(["IF", "IF_ONLY", "UNLESS", "UNTIL"])
+_ENDS = frozenset(
+    [*VERBS, "GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "STATE", "FAILS", "IS"]
+)
+"""words behind which a condition says no more of which checkpoints it is"""
+_FROM_START = frozenset(["SINCE_START", "BACK_IN", "MAX_DURATION"])
+_NAMED = frozenset(["KIND", "HASH", "NUMBER", "IDENT", "STRING", "IT", "THEM", "BOTH", "THIS"])
+_WORK = (orders.Measure, orders.VisitOrder, orders.Go, orders.Patrol)
+_DOUBTFUL = r"(?<![\w-])(?:<restricting>|<adding>|<thither>|<summing>|<yonder>|<windows>)(?![\w-])"
+"""what words that are asked about look like, so that few sentences are looked at once more"""
+_AND_SO_ON = re.compile(r"(?:^|[\d,])\s*(\.{3}|…)(?=\s|$)")
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """What a word may change, and how to say what is meant."""
+
+    message: str
+    hint: str
+
+
+_ONLY = Doubt(
+    "can mean that the others do not satisfy this",
+    "remove it, or write the condition for the others, too",
+)
+_ONLY_THEN = Doubt(
+    "can mean only in that case, or only after that",
+    "write `if ..., then ...` for the first, and remove it for the second",
+)
+_SUM = Doubt("can mean their sum, or each of them", "write `and` for the second")
+_ALSO = Doubt(
+    "can mean `if`, or `even if`",
+    "write `if ...` for the first, and remove the condition for the second",
+)
+_WITHIN = Doubt(
+    "can count from the start of the mission, or from the previous task",
+    "write `within 10 minutes of the start`; Argo counts times from the start only",
+)
+_THERE = Doubt(
+    "can be the docking station, or the place named before",
+    "name the place: `return to the docking station`",
+)
+_AND_BACK = Doubt(
+    "can mean the path home, or the same checkpoints in reverse order",
+    "name the tasks on the way back",
+)
+
+
+def ask_of_dots(text: ScriptText, diagnostics: Diagnostics) -> None:
+    """Asks about `Check 1, 4, ...`."""
+    dots = _AND_SO_ON.search(text.content)
+    if dots is not None:
+        message = f"`{dots[1]}` can mean that more tasks follow"
+        hint = "write all tasks, or remove the dots"
+        diagnostics.error("ambiguous-word", message, text.span(*dots.span(1)), hint)
+
+
+def ask_of_words(
+    text: ScriptText, lexicon: Lexicon, diagnostics: Diagnostics, ordered: bool
+) -> None:
+    """Asks about the words of a sentence that may change what is meant. `ordered`: something is
+    to be done before it."""
+    if pattern(_DOUBTFUL).search(text.content) is None:
+        return
+    words = all_words(text.content, lexicon)
+    for word, doubt in _doubts(words, text.content.lower(), ordered):
+        said = text.content[word.start : word.end]
+        span = text.span(word.start, word.end)
+        diagnostics.error("ambiguous-word", f"`{said}` {doubt.message}", span, doubt.hint)
+
+
+def _doubts(words: Sequence[Word], content: str, ordered: bool) -> Iterator[tuple[Word, Doubt]]:
+    for i, word in enumerate(words):
+        said = content[word.start : word.end]
+        after = [w.type for w in words[i + 1 :] if w.type != "FILLER"]
+        before = words[i - 1] if i > 0 else None
+        orders_ = sum(w.type in VERBS and w.type != "START" for w in words[:i])
+        match word.type:
+            case "FILLER" if _is(said, "restricting"):
+                if _names_subject(words, i) and after[:1] and after[0] in _NAMED:
+                    yield word, _ONLY
+                elif i == 0 and _is(_next(words, i, content), "following"):
+                    yield word, _ONLY_THEN
+            case "FILLER" if _is(said, "adding"):
+                behind = [type_ for type_ in after if type_ != "JOINT"]
+                bidden = any(w.type in VERBS for w in words[:i])
+                if bidden and behind[:1] == ["IF"] and not {*VERBS} & {*behind}:
+                    yield word, _ALSO
+            case "FILLER" if _is(said, "thither") and after[:2] == ["JOINT", "BACK"]:
+                yield word, _AND_BACK
+            case "JOINT" if _is(said, "summing") and _names_subject(words, i):
+                yield word, _SUM
+            case "WITHIN" if ordered or orders_ > 1:
+                types = {w.type for w in words}
+                first = re.search(rf"\b(?:{everywhere('of_start')})\b", said)  # `within the first`
+                if types.isdisjoint(_FROM_START) and first is None:
+                    yield word, _WITHIN
+            case "THERE" if before is not None and before.type == "HOME":
+                yield word, _THERE
+
+
+def _next(words: Sequence[Word], i: int, content: str) -> str:
+    """The word behind one."""
+    return content[words[i + 1].start : words[i + 1].end] if i + 1 < len(words) else ""
+
+
+def _names_subject(words: Sequence[Word], i: int) -> bool:
+    """Whether a word stands where a condition says of which checkpoints it is."""
+    last = next((w.type for w in reversed(words[:i]) if w.type in _OPENS | _ENDS), "")
+    return last in _OPENS
+
+
+def _is(said: str, name: str) -> bool:
+    return re.fullmatch(everywhere(name), said) is not None
+
+
+# ---- where something stands
+
+
+def placed_in(text: ScriptText, node: Sentence, lexicon: Lexicon) -> tuple[Placed, ...]:
+    """The words of a sentence that say where it stands."""
+    found: list[Placed] = []
+    if _placing(lexicon).search(text.content) is None:
+        return ()
+    for word in placed_words(text.content, lexicon):
+        span = text.span(word.start, word.end)
+        at = (span.line, span.column)
+        before = sum((o.span.line, o.span.column) < at for o in node.orders)
+        placing = Placing.AT_BEGIN if word.type == "ORDINAL" else Placing(word.type)
+        found.append(Placed(span=span, placing=placing, orders=before))
+    return tuple(found)
+
+
+@dataclass
+class PlacingCheck:
+    """Looks at the sentences of a script, one after the other."""
+
+    diagnostics: Diagnostics
+    last: Placed | None = None
+    """what is said to be done at the end"""
+    line: int = 0
+    """of the first order to do something; 0: none was given yet"""
+
+    def steps(self, steps: Iterable[ScriptStep]) -> None:
+        """Says where a word is not so."""
+        for step in steps:
+            for sentence in step.sentences:
+                if isinstance(sentence, Sentence):
+                    self._sentence(sentence)
+            self.steps(step.steps)
+
+    def _sentence(self, sentence: Sentence) -> None:
+        work = [order for order in sentence.orders if isinstance(order, _WORK)]
+        if work and self.last is not None:
+            self._not_last(self.last, work[0])
+            self.last = None
+        for placed in sentence.placed:
+            self._placed(placed, sentence)
+        if work and not self.line:
+            self.line = work[0].span.line
+
+    def _placed(self, placed: Placed, sentence: Sentence) -> None:
+        before, after = sentence.orders[: placed.orders], sentence.orders[placed.orders :]
+        match placed.placing:
+            case Placing.THERE:
+                if any(_is_of_all(order) for order in _orders(sentence)):
+                    message = "it is not clear where `there` is"
+                    hint = "name the floor: `all gauges on floor 3`"
+                    self.diagnostics.error("which-place", message, placed.span, hint)
+            case Placing.AT_END | Placing.AT_BEGIN if any(map(_names_twice, before)):
+                message = "this can move a checkpoint of the list, or ask for it once more"
+                hint = "write the list in the intended order"
+                self.diagnostics.error("ambiguous-measure", message, placed.span, hint)
+            case Placing.AT_END if not sentence.cases:
+                others = [order for order in after if before and isinstance(order, _WORK)]
+                if others:
+                    self._not_last(placed, others[0])
+                else:
+                    self.last = placed
+            case Placing.INSTEAD if not all(map(_is_other_way, sentence.cases or (None,))):
+                message = "it is not clear what this replaces"
+                hint = "write `otherwise, ...` after the condition that it belongs to"
+                self.diagnostics.error("instead", message, placed.span, hint)
+            case Placing.AT_BEGIN:
+                if self.line or len(before) > 1:
+                    line = self.line or placed.span.line
+                    message = f"this has to come first, but line {line} has a task before it"
+                    hint = "write the first task above the others"
+                    self.diagnostics.error("not-first", message, placed.span, hint)
+
+    def _not_last(self, placed: Placed, other: ScriptOrder) -> None:
+        message = f"this has to come last, but line {other.span.line} has a task after it"
+        hint = "write the last task below the others"
+        self.diagnostics.error("not-last", message, placed.span, hint)
+
+
+def _orders(sentence: Sentence) -> Iterator[ScriptOrder]:
+    yield from sentence.orders
+    for case in sentence.cases:
+        yield from case.orders
+
+
+def _is_of_all(order: ScriptOrder) -> bool:
+    """Whether an order is of checkpoints that a floor would tell."""
+    return isinstance(order, orders.Measure) and any(
+        isinstance(noun, AllOf | TheOne) and not noun.floors for noun in order.what.nouns
+    )
+
+
+def _names_twice(order: ScriptOrder) -> bool:
+    """Whether an order names a checkpoint more than once."""
+    nouns = order.what.nouns if isinstance(order, orders.Measure) else ()
+    labels = [noun.label for noun in nouns if isinstance(noun, Labelled)]
+    return len({*labels}) < len(labels)
+
+
+@cache
+def _placing(lexicon: Lexicon) -> re.Pattern[str]:
+    """What such words look like, so that few sentences are looked at once more."""
+    said = [phrase for p in Placing for phrase in lexicon.phrases.get((p, None), ())]
+    return re.compile(rf"\b(?:{either('|'.join(said))}|first\W*$)\b", re.IGNORECASE)
+
+
+def _is_other_way(case: Case | None) -> bool:
+    """Whether a case is what is done instead of something: if it failed, or otherwise."""
+    if case is None or case.condition is None:
+        return case is not None
+    tests = [test for tests in case.condition.alternatives for test in tests]
+    return all(
+        isinstance(test, TooLate)
+        or (
+            isinstance(test, Test)
+            and isinstance(test.predicate, InState)
+            and test.predicate.is_failure
+        )
+        for test in tests
+    )

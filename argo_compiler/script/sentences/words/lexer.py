@@ -1,0 +1,263 @@
+"""Cuts a sentence into the words of the grammar."""
+
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import lru_cache
+from types import MappingProxyType
+from typing import Any
+
+from argo_compiler.script.sentences.words.amounts import read_clock, read_glued
+from argo_compiler.script.sentences.words.joints import joined
+from argo_compiler.script.sentences.words.lexicon import Lexicon, folded
+from argo_compiler.script.sentences.words.merging import merged, negated
+from argo_compiler.script.sentences.words.numbers import Figure, compose, read_figure, split_number
+from argo_compiler.script.sentences.words.unknown import UnknownError, UnknownFigure, unknown_text
+from argo_compiler.script.sentences.words.word import Word
+from argo_compiler.script.sentences.words.word_order import arranged
+
+_PIECE = re.compile(
+    r"""(?P<STRING>"(?:[^"\\]|\\.)*"(?:\s*"(?:[^"\\]|\\.)*")*)
+    |(?P<CLOCK>[0-9]{1,3}:[0-9]{2}(?::[0-9]{2})?(?![\d:]))
+    |(?P<ORDINAL>[0-9]+(?:st|nd|rd|th)\b)
+    |(?P<GLUED>[0-9]+(?:h|std)[0-9]{1,2}(?:m|min)?(?:[0-9]{1,2}s)?\b|[0-9]+(?:m|min)[0-9]{1,2}s\b)
+    |(?P<NUMBER>[0-9]*[½¼¾]|[0-9]+(?:[.,'][0-9]+)*(?:e[+-]?[0-9]+\b)?)
+    |(?P<IDENT>[^\W\d_]+-?[0-9]+\w*)
+    |(?P<WORD>[^\W\d_](?:[\w'-]*\w)?)
+    |(?P<SIGN><=|>=|\S)""",
+    re.VERBOSE,
+)
+_QUOTED = re.compile(r"\"(?:[^\"\\]|\\.)*\"")
+_GLUED_NUMBER = re.compile(r"([^\W\d_]{2,})([0-9]+)")
+_SIGNS = {"(": "LPAR", ")": "RPAR", "[": "LSQB", "]": "RSQB", "-": "DASH", "=": "EQUAL"}
+_JOINTS = {",": ",", ";": ";", ":": ":", "&": "and"}
+_LONGEST = 60
+"""letters of a number in one word"""
+_NAMES = {("AREA", "NUMBER"), ("KIND", "IDENT"), ("KIND", "NUMBER"), ("AREA",), ("PLACE",)}
+"""what is often put between quotation marks, and means the same without"""
+_NAMING = frozenset(["STEP", "SHOWN_IN", "ABOUT", "LPAR_CALLED", "LSQB"])
+_JOINING = frozenset(["JOINT", "TO", "DASH", "UPTO"])
+_PLACED = frozenset(["AT_END", "AT_BEGIN", "THERE", "INSTEAD"])
+"""words that say where something stands in the script, or on the site"""
+_UNSAID = frozenset(["FILLER", "IDLE"]) | _PLACED
+
+
+# A sentence is looked at several times: what it is, whether it makes sense, what it says.
+@lru_cache(maxsize=2048)
+def words(text: str, lexicon: Lexicon) -> list[Word]:
+    """The words of `text`, with the joints between them told apart by what they join; in another
+    language where far more of them are known in that one."""
+    return words_of(text, lexicon)
+
+
+def _with_unknown(word: Word, text: str, left: dict[int, UnknownFigure]) -> Word:
+    """The word with an unknown figure, or a name with some in it, if they are left."""
+    value: object = None
+    if word.type == "NUMBER":
+        value = left.pop(word.start, None)
+    elif word.type == "STRING":
+        within = [at for at in left if word.start < at < word.end]
+        plain = unquoted(text[word.start : word.end]) == text[word.start + 1 : word.end - 1]
+        if within and plain:
+            value = unknown_text(word.value, [(at - word.start - 1, left.pop(at)) for at in within])
+    return word if value is None else Word(word.type, value, word.start, word.end)
+
+
+def _unknown(words: list[Word]) -> int:
+    return sum(word.type == "WORD" for word in words)
+
+
+def words_of(
+    text: str, lexicon: Lexicon, unknown: Mapping[int, UnknownFigure] = MappingProxyType({})
+) -> list[Word]:
+    """As `words`; the figures that begin at these places are not known. Raises UnknownError if one
+    of them is no number by itself."""
+    found = _in(text, lexicon, unknown)
+    strange = _unknown(found)
+    if lexicon.other is None or not strange:
+        return found
+    other = _in(text, lexicon.other, unknown)
+    return other if 2 * _unknown(other) < strange else found
+
+
+def _in(text: str, lexicon: Lexicon, unknown: Mapping[int, UnknownFigure]) -> list[Word]:
+    found = _looked_up(text, lexicon)
+    if unknown:
+        left = dict(unknown)
+        found = [_with_unknown(word, text, left) for word in found]
+        if left:
+            raise UnknownError
+    found = merged(found)
+    return joined(_goals(negated(found if lexicon.verbs_first else arranged(found))))
+
+
+def _goals(words: list[Word]) -> list[Word]:
+    """The words; `go from starting area 2` does not say where to, so that `from` makes no sense."""
+    for i in range(1, len(words)):
+        if words[i].type == "FROM" and words[i - 1].type in ("GO", "HOME"):
+            words[i] = replace(words[i], type="STRAY")
+    return words
+
+
+def placed_words(text: str, lexicon: Lexicon) -> list[Word]:
+    """The words of a sentence that say where it stands: `at the end`, `first of all`, `there`; and
+    `first` at its very end."""
+    found = _looked_up(text, lexicon, _UNSAID - _PLACED)
+    ends = found[-1:] if found and found[-1].type == "ORDINAL" and found[-1].value == 1 else []
+    return [word for word in found if word.type in _PLACED] + ends
+
+
+def all_words(text: str, lexicon: Lexicon) -> list[Word]:
+    """The words of a sentence one by one, those that say nothing as well."""
+    return _looked_up(text, lexicon, frozenset())
+
+
+def _looked_up(text: str, lexicon: Lexicon, unsaid: frozenset[str] = _UNSAID) -> list[Word]:
+    pieces = list(_PIECE.finditer(_lower(text)))
+    said = [folded(piece.group()) for piece in pieces]
+    apart: set[int] = set()
+    found: list[Word] = []
+    i = 0
+    while i < len(pieces):
+        if i in apart:
+            i += 1
+            continue
+        phrase = lexicon.longest(said, i)
+        if phrase is None and pieces[i].lastgroup == "STRING":
+            inner = [] if _is_name(found) else _unwrapped(pieces[i], text, lexicon)
+            if inner and not (i + 1 < len(pieces) and pieces[i + 1].group() == ":"):
+                found += inner
+                i += 1
+                continue
+        if phrase is None and pieces[i].lastgroup == "IDENT":
+            numbered = _numbered(pieces[i], lexicon)
+            if numbered:
+                found += numbered
+                i += 1
+                continue
+        if phrase is None:
+            after = pieces[i + 1] if i + 1 < len(pieces) else None
+            found.append(_plain(pieces[i], after, found, text, lexicon))
+            i += 1
+            continue
+        type_, value = phrase.entry
+        if type_ not in unsaid:
+            if type_ == "KIND":
+                value = _definite(value, said[i - 1] if i > 0 else "", lexicon)
+            elif type_ == "UNIT_S" and _is_one(value, said, i, found, lexicon):
+                type_ = "A_UNIT"
+            end = pieces[i + phrase.length - 1].end()
+            found.append(Word(type_, value, pieces[i].start(), end))
+        apart.update(phrase.apart)
+        i += phrase.length
+    return found
+
+
+def _numbered(piece: re.Match[str], lexicon: Lexicon) -> list[Word]:
+    """The words of `LLG2` and `checkpoint4`, kinds and numbers; none of a name such as `R25`."""
+    parts = _GLUED_NUMBER.fullmatch(piece.group())
+    phrase = None if parts is None else lexicon.longest([folded(parts[1])], 0)
+    if parts is None or phrase is None or phrase.entry[0] != "KIND":
+        return []
+    middle = piece.start() + len(parts[1])
+    kind = Word("KIND", _definite(phrase.entry[1], "", lexicon), piece.start(), middle)
+    return [kind, Word("NUMBER", read_figure(parts[2]), middle, piece.end())]
+
+
+def _is_name(before: list[Word]) -> bool:
+    """Whether what stands in quotation marks behind these words is a name, whatever it says."""
+    if not before:
+        return False
+    listed = len(before) > 1 and before[-2].type == "STRING"
+    return before[-1].type in _NAMING or (listed and before[-1].type in _JOINING)
+
+
+def _is_one(seconds: float, said: list[str], i: int, found: list[Word], lexicon: Lexicon) -> bool:
+    """Whether a unit of time stands for one of it: `an hour`, `every minute`, `quarter-hour`."""
+    if len(said[i]) > 3 and said[i].endswith(lexicon.plural_ending):
+        return False
+    counted = i > 0 and said[i - 1] in lexicon.passed_over and seconds > 1
+    every = bool(found) and found[-1].type in ("EVERY", "ALL") and seconds > 1
+    return counted or every or seconds in (900.0, 1800.0, 2700.0)
+
+
+def _definite(kind: tuple[Any, bool | None], last: str, lexicon: Lexicon) -> tuple[Any, ...]:
+    """A kind with whether an article says that it is known which; `die` is the article of
+    several where the noun is the same for one."""
+    plural = last == lexicon.plural_article if kind[1] is None and last else kind[1]
+    return kind[0], plural or kind[1], last in lexicon.definite
+
+
+def _unwrapped(piece: re.Match[str], text: str, lexicon: Lexicon) -> list[Word]:
+    """The words in quotation marks that name a thing as it is named without: `"area 1"`."""
+    start = piece.start() + 1
+    inner = _looked_up(text[start : piece.end() - 1], lexicon)
+    types = tuple(word.type for word in inner)
+    if types not in _NAMES:
+        return []
+    return [Word(w.type, w.value, w.start + start, w.end + start) for w in inner]
+
+
+def _plain(
+    piece: re.Match[str],
+    after: re.Match[str] | None,
+    before: list[Word],
+    text: str,
+    lexicon: Lexicon,
+) -> Word:
+    """The word of a piece that is in no lexicon."""
+    said, kind = piece.group(), piece.lastgroup or "WORD"
+    value: object = said
+    match kind:
+        case "NUMBER":
+            value = read_figure(said)
+            kind = kind if value is not None else "BAD_NUMBER"
+        case "ORDINAL":
+            value = int(said[:-2])
+        case "STRING":
+            value = unquoted(text[piece.start() : piece.end()])
+            kind = kind if value is not None else "BAD_STRING"
+        case "CLOCK" | "GLUED":
+            length = read_clock(said) if kind == "CLOCK" else read_glued(said)
+            kind, value = (kind, said) if length is None else ("DURATION", length)
+        case "WORD":
+            kind, value = _compound(said, lexicon)
+        case "SIGN":
+            kind = "JOINT" if said in _JOINTS else _SIGNS.get(said, "SIGN")
+            value = _JOINTS.get(said, said)
+            if kind == "DASH" and after is not None and after.lastgroup == "NUMBER":
+                last = before[-1].type if before else ""
+                negative = last not in ("NUMBER", "IDENT") and after.start() == piece.end()
+                kind = "MINUS" if negative else kind
+    return Word(kind, value, piece.start(), piece.end())
+
+
+def _compound(said: str, lexicon: Lexicon) -> tuple[str, object]:
+    """`zweihundertfünf` and `dreimal`; any other word is one that is not known."""
+    head = folded(said)
+    ending = lexicon.times_ending
+    times = ending != "" and head.endswith(ending)
+    parts = split_number(head.removesuffix(ending), lexicon.numerals)
+    if parts and len(said) <= _LONGEST:
+        number, n = compose(parts)
+        if n == len(parts):
+            return "TIMES" if times else "NUMBER", Figure(float(number))
+    return "WORD", said
+
+
+def unquoted(text: str) -> str | None:
+    """The text that quoted pieces, one after the other, stand for; None if one is no JSON."""
+    try:
+        whole = "".join(str(json.loads(piece)) for piece in _QUOTED.findall(text))
+        whole.encode()
+    except ValueError:
+        return None
+    return whole
+
+
+def _lower(text: str) -> str:
+    """`text` in lower case, character by character: no position moves."""
+    if text.isascii():
+        return text.lower()
+    return "".join(c.lower() if len(c.lower()) == 1 else c for c in text)

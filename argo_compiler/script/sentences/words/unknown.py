@@ -1,0 +1,146 @@
+"""Numbers of which only a range is known: what follows for one of them follows for all of it.
+
+A sentence is read with such numbers to see what hangs on its figures. Whatever asks more of one
+than its range tells raises UnknownError; so what comes out holds for all numbers of the range.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, NoReturn
+
+from argo_compiler.script.sentences.words.numbers import Figure
+
+Fill = Callable[[Sequence[str]], Any]
+"""the number, by the figures that a text has"""
+
+
+class UnknownError(Exception):
+    """Something hangs on a number that is not known."""
+
+
+def _refuse(*_: object) -> NoReturn:
+    raise UnknownError
+
+
+class Unknown:
+    """A number from `low` to `high`. It can be handed on, multiplied, and compared with what lies
+    outside of its range."""
+
+    __slots__ = ("fill", "high", "low")
+
+    def __init__(self, low: float, high: float, fill: Fill) -> None:
+        self.low = low
+        self.high = high
+        self.fill = fill
+
+    def __mul__(self, factor: float) -> "Unknown":
+        low, high = sorted((self.low * factor, self.high * factor))
+        fill = self.fill
+        return Unknown(low, high, lambda figures: fill(figures) * factor)
+
+    __rmul__ = __mul__
+
+    def __eq__(self, other: object) -> bool:
+        if other is None:
+            return False
+        if type(other) not in (int, float, bool) or self.low <= other <= self.high:  # type: ignore[operator]
+            raise UnknownError
+        return False
+
+    def __ne__(self, other: object) -> bool:
+        return not self == other
+
+    def __lt__(self, other: float) -> bool:
+        if self.low < other <= self.high:
+            raise UnknownError
+        return self.high < other
+
+    def __le__(self, other: float) -> bool:
+        if self.low <= other < self.high:
+            raise UnknownError
+        return self.high <= other
+
+    def __gt__(self, other: float) -> bool:
+        return not self <= other
+
+    def __ge__(self, other: float) -> bool:
+        return not self < other
+
+    @property  # type: ignore[misc]
+    def __class__(self) -> Any:
+        """Not even its type is told: `isinstance` asks for this."""
+        raise UnknownError
+
+    __hash__: Any = _refuse
+    __str__ = __repr__ = __format__ = __bool__ = __getattr__ = _refuse
+    __int__ = __float__ = __index__ = __neg__ = __abs__ = __round__ = _refuse
+    __add__ = __radd__ = __sub__ = __rsub__ = __truediv__ = __rtruediv__ = _refuse
+
+
+@dataclass(frozen=True, slots=True)
+class UnknownFigure(Figure):
+    """A figure without a second reading of which only the range is known."""
+
+    said: str = ""
+    """one of the figures that it may be"""
+    place: int = 0
+    """among the figures of its text"""
+
+    @property
+    def whole(self) -> Any:
+        if "." in self.said:
+            raise UnknownError
+        value: Any = self.value
+        fill = value.fill
+        return Unknown(value.low, value.high, lambda figures: int(fill(figures)))
+
+
+class UnknownText:
+    """A name with figures in it that are not known, and more than these. It can be handed on."""
+
+    __slots__ = ("fill",)
+    __class__ = Unknown.__class__
+
+    def __init__(self, fill: Fill) -> None:
+        self.fill = fill
+
+    def __bool__(self) -> bool:
+        return True
+
+    def __eq__(self, other: object) -> bool:
+        if other is None or other == "":
+            return False
+        raise UnknownError
+
+    __hash__: Any = _refuse
+    __str__ = __repr__ = __format__ = __getattr__ = __len__ = __contains__ = __iter__ = _refuse
+    __getitem__ = __lt__ = __le__ = __gt__ = __ge__ = __add__ = __radd__ = _refuse
+
+
+def unknown_text(said: str, figures: Sequence[tuple[int, UnknownFigure]]) -> UnknownText:
+    """A text with other figures at these places."""
+    parts: list[str] = []
+    start = 0
+    for at, figure in figures:
+        parts.append(said[start:at])
+        start = at + len(figure.said)
+    parts.append(said[start:])
+    places = [figure.place for _, figure in figures]
+
+    def fill(figures: Sequence[str]) -> str:
+        found = [parts[0]]
+        for place, part in zip(places, parts[1:], strict=True):
+            found += (figures[place], part)
+        return "".join(found)
+
+    return UnknownText(fill)
+
+
+def unknown_figure(said: str, place: int) -> UnknownFigure:
+    """Any figure with as many digits before its point, if it has one, as `said` has."""
+    digits = len(said.partition(".")[0])
+    low, high = 10.0 ** (digits - 1), 10.0**digits
+    if said[0] == "0":
+        low, high = 0.001, 1.0
+    value: Any = Unknown(low, high, lambda figures: float(figures[place]))
+    return UnknownFigure(value, said=said, place=place)

@@ -1,1 +1,0 @@
-"""From text to syntax tree: noise is healed, lines become sentences, sentences are parsed."""

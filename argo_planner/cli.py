@@ -12,7 +12,7 @@ from argo_compiler.base.errors import ArgoError
 from argo_compiler.base.garbage_collector import enable_garbage_collector
 from argo_compiler.base.version import __version__
 from argo_planner.lazy_group import LazyCommand, LazyGroup
-from argo_planner.terminal.output import guard_stdout_and_stderr
+from argo_planner.terminal.output import EXIT_INCOMPLETE, guard_stdout_and_stderr
 from argo_planner.terminal.signals import SignalWatch, ignore_signals, raise_on_signals
 from argo_planner.terminal.verbosity import set_verbosity
 
@@ -158,11 +158,11 @@ def argo(
 
 
 def main() -> None:
-    """Run the command; an ArgoError becomes one message and exit status 2."""
+    """Run the command; an ArgoError becomes one message and exit status 2, or 3 for a draft."""
     output = guard_stdout_and_stderr()
     try:
         status = _carry_out()
-        if output.failure is not None and status in {0, 1, 2}:
+        if output.failure is not None and status in {0, 1, 2, EXIT_INCOMPLETE}:
             status = _status_without_output(output.failure, status)
         raise SystemExit(status)
     finally:
@@ -193,6 +193,11 @@ def _report_error(error: BaseException) -> int:
     """Print an ArgoError and return the exit status; raise other errors again."""
     if isinstance(error, SystemExit) and isinstance(error.code, int):
         return error.code
+    if isinstance(error, ArgoError) and error.code == "incomplete":
+        from argo_planner.terminal.draft_display import incomplete_text
+
+        print(incomplete_text(error), file=sys.stderr)  # type: ignore[arg-type]
+        return EXIT_INCOMPLETE
     if isinstance(error, ArgoError):
         from argo_planner.terminal.words import error_text
 
@@ -215,10 +220,10 @@ def _status_without_output(failure: OSError, status: int) -> int:
         status: the exit status that the command has without this failure
 
     Returns:
-        141 if the reader has closed the pipe and `status` is not 2; else 2.
+        141 if the reader has closed the pipe and `status` is less than 2; 2 or 3 if it is that.
     """
     if failure.errno == errno.EPIPE:  # the reader has closed the pipe, so needs no message
-        return 2 if status == 2 else 141
+        return status if status >= 2 else 141
     print(f"argo: the output can't be written: {failure.strerror}", file=sys.stderr)
     return 2
 

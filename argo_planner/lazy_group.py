@@ -30,7 +30,7 @@ class _Command(TyperCommand):
             if word[:2] != "--" and any(f"-{word}" in option.opts for option in self.params):
                 raise Invalid(f"there is no option {word}; did you mean -{word}?")
         try:
-            return super().parse_args(ctx, args)
+            return super().parse_args(ctx, self._with_joined_values(args))
         except typer.BadParameter as error:
             from pydantic import ValidationError
 
@@ -39,6 +39,24 @@ class _Command(TyperCommand):
             if isinstance(error.__cause__, ValidationError):
                 error.message = error_message(error.__cause__.errors(include_url=False)[0], ())
             raise
+
+    def _with_joined_values(self, args: Sequence[str]) -> list[str]:
+        """Return the arguments with the two words of `--say LINE TEXT` in one.
+
+        The library lets no option with two words be given more than once.
+        """
+        double = {opt for option in self.params if _has_two_words(option) for opt in option.opts}
+        joined: list[str] = []
+        rest = list(args)
+        while rest:
+            joined.append(rest.pop(0))
+            if joined[-1] in double and len(rest) > 1:
+                joined.append(f"{rest.pop(0)} {rest.pop(0)}")
+        return joined
+
+
+def _has_two_words(option: Any) -> bool:
+    return " " in (option.metavar or "")
 
 
 @dataclass(frozen=True)

@@ -17,10 +17,11 @@ from argo_compiler.base.errors import ArgoError
 from argo_compiler.files.mission_file import read_mission
 from argo_compiler.hfsm import Executor, lower
 from argo_compiler.il import Mission
-from argo_compiler.script import format_script, import_script, read_script
+from argo_compiler.script import format_script, read_script
 from tests.argo_compiler.script.conftest import CATALOG
 from tests.campaigns.hostile import MEMORY_BYTES, Json, condition, measure, mission, transition
 from tests.conftest import examples
+from tests.whole_scripts import import_whole
 
 pytestmark = pytest.mark.long
 
@@ -34,7 +35,7 @@ def everything(mission: Mission) -> Mission:
     executor.start(0.0)
     executor.progress()
     analyse(mission, CATALOG)
-    return import_script(format_script(mission, CATALOG), CATALOG).mission
+    return import_whole(format_script(mission, CATALOG), CATALOG).mission
 
 
 def read_within_limits(path: Path, answers: Connection) -> None:
@@ -44,7 +45,7 @@ def read_within_limits(path: Path, answers: Connection) -> None:
         if path.suffix == ".json":
             everything(read_mission(path))
         else:
-            everything(import_script(read_script(str(path)), CATALOG).mission)
+            everything(import_whole(read_script(str(path)), CATALOG).mission)
         answers.send("mission")
     except ArgoError as error:
         answers.send(f"refused {str(error)[-400:]}")

@@ -4,6 +4,7 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
+from argo_compiler.base.model import Model
 from argo_compiler.diagnostics.codes.code import Severity
 from argo_compiler.diagnostics.diagnostic import Diagnostic, count
 
@@ -11,8 +12,13 @@ VERSION = 1
 """version of this format"""
 
 
-def to_json(diagnostics: Sequence[Diagnostic], source_name: str) -> str:
-    """Return the diagnostics and their numbers by severity as JSON text."""
+def to_json(
+    diagnostics: Sequence[Diagnostic], source_name: str, left: Sequence[Model] | None = None
+) -> str:
+    """Return the diagnostics and their numbers by severity as JSON text.
+
+    `left` are the lines of a draft that are left to decide on; None for what is no draft.
+    """
     data = {
         "version": VERSION,
         "source": source_name,
@@ -21,6 +27,8 @@ def to_json(diagnostics: Sequence[Diagnostic], source_name: str) -> str:
         "notes": count(diagnostics, Severity.NOTE),
         "diagnostics": [_entry(diagnostic) for diagnostic in diagnostics],
     }
+    if left is not None:
+        data["left"] = [line.model_dump(mode="json") for line in left]
     return json.dumps(data, indent=2, ensure_ascii=False)
 
 

@@ -5,27 +5,55 @@ from typing import TYPE_CHECKING
 from argo_compiler.base.lazy_names import lazy_names
 
 __all__ = [
+    "Act",
+    "Draft",
+    "DraftLine",
+    "IncompleteDraft",
+    "LineDecision",
+    "LineState",
     "Resolved",
     "decode_script",
+    "draft_text",
     "format_script",
     "import_script",
     "parse",
+    "read_decisions",
     "read_script",
     "resolve_script",
 ]
 
 if TYPE_CHECKING:
     from argo_compiler.script.documents.reading import decode_script, read_script
+    from argo_compiler.script.drafts.draft import (
+        Act,
+        Draft,
+        DraftLine,
+        IncompleteDraft,
+        LineDecision,
+        LineState,
+    )
+    from argo_compiler.script.drafts.draft_file import draft_text, read_decisions
+    from argo_compiler.script.drafts.making import import_script
     from argo_compiler.script.parsing.parser import parse
-    from argo_compiler.script.resolve.importing import Resolved, import_script, resolve_script
+    from argo_compiler.script.resolve.importing import Resolved, resolve_script
     from argo_compiler.script.write.protocol import format_script
 else:
     __getattr__, __dir__ = lazy_names(
         __name__,
         {
-            "resolve.importing": ["Resolved", "import_script", "resolve_script"],
-            "parsing.parser": ["parse"],
             "documents.reading": ["decode_script", "read_script"],
+            "drafts.draft": [
+                "Act",
+                "Draft",
+                "DraftLine",
+                "IncompleteDraft",
+                "LineDecision",
+                "LineState",
+            ],
+            "drafts.draft_file": ["draft_text", "read_decisions"],
+            "drafts.making": ["import_script"],
+            "parsing.parser": ["parse"],
+            "resolve.importing": ["Resolved", "resolve_script"],
             "write.protocol": ["format_script"],
         },
     )

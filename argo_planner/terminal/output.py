@@ -13,6 +13,10 @@ if TYPE_CHECKING:
     from typing_extensions import Buffer
 
 
+EXIT_INCOMPLETE = 3
+"""exit status for a script with lines to confirm or to answer"""
+
+
 class Output(io.FileIO):
     """Stream that drops data after its first failure. Holds that failure."""
 

@@ -1,6 +1,8 @@
 """Check of a mission without running it."""
 
+from collections.abc import Sequence
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 from argo_compiler.analysis import Travel, analyse
 from argo_compiler.base.catalog import Catalog
@@ -29,6 +31,11 @@ from argo_planner.use_cases.importing import (
     require_no_areas,
 )
 
+if TYPE_CHECKING:
+    from argo_compiler.script import DraftLine
+
+INCOMPLETE = "incomplete"
+"""code of the error of a draft with lines that are left to decide on"""
 MAX_POSES = 1_000
 """highest number of poses between which a check plans paths; each takes some milliseconds"""
 
@@ -63,12 +70,15 @@ def check_source(
 
     Raises:
         Invalid: Areas are given for a mission, which has its own.
+        IncompleteDraft: The script has lines to confirm or to answer.
     """
     if guess_source_kind(upload) is not SourceKind.SCRIPT:
         require_no_areas(upload.name, start_area, end_area)
     try:
         loaded = load_unchecked_mission(upload, catalog, start_area, end_area, site)
     except ArgoError as error:
+        if error.code == INCOMPLETE:
+            raise
         return error_diagnostics(error)
     found = check(loaded.mission, catalog)
     if not has_errors(found):
@@ -113,12 +123,18 @@ def error_diagnostics(error: ArgoError) -> tuple[Diagnostic, ...]:
 
 
 def format_diagnostics(
-    diagnostics: tuple[Diagnostic, ...], source_name: str, format: Format
+    diagnostics: tuple[Diagnostic, ...],
+    source_name: str,
+    format: Format,
+    left: "Sequence[DraftLine] | None" = None,
 ) -> str:
-    """Return the diagnostics as text for people, or as JSON or SARIF."""
+    """Return the diagnostics as text for people, or as JSON or SARIF.
+
+    JSON has the lines of an incomplete draft that are `left` to decide on as well.
+    """
     match format:
         case Format.JSON:
-            return to_json(diagnostics, source_name)
+            return to_json(diagnostics, source_name, left)
         case Format.SARIF:
             return to_sarif(diagnostics, source_name)
         case Format.TEXT:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.errors import Invalid, Remedy
@@ -29,6 +30,9 @@ from argo_compiler.ros.recognition import is_bag_content
 from argo_compiler.script.documents.source import Source as Script
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.site_warnings import above_own_speed_warnings, with_seeing_poses
+
+if TYPE_CHECKING:
+    from argo_compiler.script import Draft, LineDecision
 
 _log = logging.getLogger(__name__)
 
@@ -67,6 +71,10 @@ class Upload:
     content: bytes | Mapping[str, bytes] | Path
     """content of a file, or of the files of a rosbag2 folder by name; a Path is a bag on this
     machine, which may be larger than the memory"""
+    decisions: tuple["LineDecision", ...] = ()
+    """of a script: what a person has decided on for its lines"""
+    draft: "Draft | None" = None
+    """of a script: its draft with these decisions, if it has been read already"""
 
 
 @dataclass(frozen=True)
@@ -146,7 +154,7 @@ def load_unchecked_mission(
             file = decode_mission(upload.content, name)
             return LoadedMission(file.mission, file.diagnostics_with_positions(file.changes), file)
         case SourceKind.SCRIPT:
-            return _load_script(upload.content, name, catalog, start_area, end_area)
+            return _load_script(upload, catalog, start_area, end_area)
 
 
 def _beginning(upload: Upload, size: int) -> bytes:
@@ -196,24 +204,55 @@ def _load_isar(
 
 
 def _load_script(
-    content: bytes, name: str, catalog: Catalog, start_area: int | None, end_area: int | None
+    upload: Upload, catalog: Catalog, start_area: int | None, end_area: int | None
 ) -> LoadedMission:
-    with collector_held():
-        from argo_compiler.script import decode_script, import_script
-
-    text = decode_script(content, name)
-    try:
-        resolved = import_script(
-            text, catalog, source_name=name, start_area=start_area, end_area=end_area
+    draft = upload.draft or load_draft(upload, catalog, start_area, end_area)
+    name = upload.name
+    if (
+        draft.mission is None
+        and Path(name).suffix.lower() in _TABLES
+        and _NO_TASK in {d.code for d in draft.diagnostics}
+    ):
+        raise Invalid(
+            f"{name} is no mission, but a table (CSV): write its rows as steps, such as "
+            "`Check checkpoint 4`"
         )
-    except DiagnosticError as error:
-        if Path(name).suffix.lower() in _TABLES and _NO_TASK in {d.code for d in error.diagnostics}:
-            raise Invalid(
-                f"{name} is no mission, but a table (CSV): write its rows as steps, such as "
-                "`Check checkpoint 4`"
-            ) from None
-        raise
-    return LoadedMission(resolved.mission, resolved.diagnostics, Script(text, name))
+    mission = draft.require_mission()
+    return LoadedMission(mission, draft.diagnostics, Script(_text_of(upload), name))
+
+
+def load_draft(
+    upload: Upload,
+    catalog: Catalog,
+    start_area: int | None = None,
+    end_area: int | None = None,
+    decisions: tuple["LineDecision", ...] | None = None,
+) -> "Draft":
+    """Read the draft of a script; `decisions` replace those of the upload.
+
+    Raises:
+        ArgoError: The upload is no script: not text, empty, or too long.
+    """
+    assert isinstance(upload.content, bytes), "a script is one file"
+    require_no_foreign_file(upload.name, upload.content)
+    with collector_held():
+        from argo_compiler.script import import_script
+
+    return import_script(
+        _text_of(upload),
+        catalog,
+        source_name=upload.name,
+        start_area=start_area,
+        end_area=end_area,
+        decisions=upload.decisions if decisions is None else decisions,
+    )
+
+
+def _text_of(upload: Upload) -> str:
+    from argo_compiler.script import decode_script
+
+    assert isinstance(upload.content, bytes), "a script is one file"
+    return decode_script(upload.content, upload.name)
 
 
 def import_mission(

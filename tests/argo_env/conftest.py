@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import argo_env.world.world
-from argo_compiler.script import import_script, read_script
+from argo_compiler.script import read_script
 from argo_env.files import resources
 from argo_env.navigation import Navigator
 from argo_env.planning import open_site
@@ -14,6 +14,7 @@ from argo_env.site import load_site
 from argo_env.site.urdf import to_urdf
 from argo_env.world.pybullet_client import pybullet
 from tests import yard as the_yard
+from tests.whole_scripts import import_whole
 from tests.yard import Watching, opened, simulated
 
 _WITH_PYBULLET = {"client", "umad_world", "simulated_world", "sheet_run", "protocol_record"}
@@ -158,7 +159,7 @@ def shipped(catalog):
 
     def imported(name, **areas):
         path = resources.scenarios_folder() / "umad" / "missions" / name
-        return import_script(read_script(path), catalog, **areas)
+        return import_whole(read_script(path), catalog, **areas)
 
     return imported
 

@@ -7,6 +7,7 @@ import pytest
 
 from argo_compiler.base.errors import ArgoError
 from argo_compiler.diagnostics import has_errors
+from argo_compiler.script import IncompleteDraft
 from argo_planner.terminal.files import read_upload
 from argo_planner.use_cases.checking import check_source
 from tests.argo_planner.conftest import argo
@@ -17,7 +18,10 @@ MISSIONS = Path(__file__).parents[2] / "scenarios" / "umad" / "missions"
 def found(catalog, tmp_path: Path, name: str, text: str, **areas):
     path = tmp_path / name
     path.write_text(text, encoding="utf-8")
-    return check_source(read_upload(path), catalog, **areas)
+    try:
+        return check_source(read_upload(path), catalog, **areas)
+    except IncompleteDraft as error:
+        return error.diagnostics
 
 
 def places(findings):

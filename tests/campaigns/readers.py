@@ -142,12 +142,12 @@ def texts(*patterns: str) -> tuple[bytes, ...]:
 
 @cache
 def mission() -> Mission:
-    from argo_compiler.script import import_script
     from argo_env.planning.opening import open_site
+    from tests.whole_scripts import import_whole
 
     [script] = texts("scenarios/umad/missions/mission_1.txt")
     catalog = open_site("umad").catalog
-    return import_script(script.decode(), catalog, start_area=1, end_area=1).mission
+    return import_whole(script.decode(), catalog, start_area=1, end_area=1).mission
 
 
 @cache

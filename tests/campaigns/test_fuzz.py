@@ -20,13 +20,13 @@ from hypothesis import given, note, settings
 from hypothesis import strategies as st
 
 from argo_compiler.base.errors import ArgoError
-from argo_compiler.script import import_script
 from tests.argo_compiler.script.conftest import CATALOG
 from tests.campaigns.fuzz.laws import try_sentence
 from tests.campaigns.fuzz.mutating import Composer, Mutator, Restructurer
 from tests.campaigns.fuzz.sentences import english_generator
 from tests.campaigns.fuzz.trying import try_mission, try_script
 from tests.conftest import examples
+from tests.whole_scripts import import_whole
 
 ROOT = Path(__file__).parents[2]
 MEMORY_BYTES = 4_000_000_000
@@ -49,7 +49,7 @@ def missions(texts: Sequence[bytes]) -> list[bytes]:
     files = []
     for text in texts:
         try:
-            mission = import_script(text.decode(), CATALOG, start_area=1, end_area=2).mission
+            mission = import_whole(text.decode(), CATALOG, start_area=1, end_area=2).mission
         except ArgoError:
             continue
         files.append(mission.model_dump_json(exclude_defaults=True).encode())

@@ -374,6 +374,9 @@ def contents(folder: Path) -> dict[str, bytes | None]:
     }
 
 
+INCOMPLETE = {"letter.txt", "ninety-nine.txt", "mismatch.txt", "step9.txt", "clock.txt"}
+"""scripts with a line that has to be answered"""
+
 # Without PyBullet, most runs are refused for that reason first.
 LINES = [
     pytest.param(line, marks=pytest.mark.physics)
@@ -391,7 +394,7 @@ def test_wrong_commands_name_their_error_and_change_no_file(argo, folder: Path, 
         re.sub(r"\s+", " ", re.sub("[│╭╮╰╯─]", " ", text))
         for text in (result.stderr, result.stdout)
     )
-    assert result.returncode == 2, error + output
+    assert result.returncode == (3 if INCOMPLETE & {*shlex.split(line)} else 2), error + output
     assert "Traceback" not in error + output
     assert IN_ERRORS[line] in error if line in IN_ERRORS else IN_OUTPUT[line] in error + output
     assert contents(folder) == before

@@ -65,6 +65,14 @@ class Source:
         start, end = self._bounds[number - 1]
         return ScriptText(self.text[start:end], range(start, end), self)
 
+    def line_at(self, offset: int) -> int:
+        """The number of the line in which a character stands, from 1."""
+        return bisect_right(self._starts, offset) or 1
+
+    def offset_at(self, line: int, column: int) -> int:
+        """The offset of a character by its line and column, from 1."""
+        return self._starts[line - 1] + column - 1
+
     def span(self, start: int, end: int) -> Span:
         """The span of the characters `start` to `end`, cut at the end of its first line."""
         line = bisect_right(self._starts, start) or 1
@@ -83,6 +91,23 @@ class ScriptText:
 
     def __getitem__(self, part: slice) -> "ScriptText":
         return ScriptText(self.content[part], self.offsets[part], self.source)
+
+    @property
+    def first(self) -> int:
+        """The least of the offsets in the source; -1 for an empty text."""
+        offsets = self.offsets
+        return -1 if not offsets else offsets[0] if type(offsets) is range else min(offsets)
+
+    @property
+    def last(self) -> int:
+        """The greatest of the offsets in the source; -1 for an empty text."""
+        offsets = self.offsets
+        return -1 if not offsets else offsets[-1] if type(offsets) is range else max(offsets)
+
+    def replaced(self, content: str) -> "ScriptText":
+        """Return another text that stands for this one, all of it at the place of this one."""
+        first, last = self.first, self.last
+        return ScriptText(content, [*[first] * (len(content) - 1), last], self.source)
 
     def strip(self) -> "ScriptText":
         content = self.content

@@ -7,7 +7,7 @@ mission as a whole what fields say as well: `In any order, please.`
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from argo_compiler.base.listing import listed
 from argo_compiler.il import Mode, Order
@@ -43,6 +43,15 @@ _JOINTS = frozenset(["NEXT", "JOINT", "AND_NOUN", "AND_AMOUNT", "AND_TEST", "AND
 _INTRODUCTION = re.compile(
     r"(?:WORD )?(?:TO )?(?:MEASURE )?(?:ALL |THEM )?KIND (?:ANY|THIS)_ORDER "
 )
+
+
+class Field(NamedTuple):
+    """A label with its value, and what stands behind them in the line."""
+
+    name: str
+    label: ScriptText
+    value: ScriptText
+    rest: ScriptText
 
 
 @dataclass
@@ -118,22 +127,38 @@ class ScriptFields:
 
     # ---- lines
 
-    def read(self, text: ScriptText) -> ScriptText:
-        """Reads the fields that a line begins with, perhaps several: `Start: area 2, end: area 1.`
-        What is left is the rest of the line, which may have sentences."""
-        while (label := self.prose.label.match(text.content)) is not None:
-            name = label.lastgroup
-            assert name is not None
-            value = text[label.end() :].strip()
-            if name == "steps":
-                self.lists = True
-                return value
-            end = self._end(name, value.content)
-            rest = value[end:].strip()
-            ends = _SEPARATORS if name in _PROSE_FIELDS else f"{_SEPARATORS}."
-            said = value[: len(value.content[:end].rstrip(ends))]
-            self._value(name, said, text[: label.end()])
-            text = rest[len(rest.content) - len(rest.content.lstrip(f"{_SEPARATORS}.")) :]
+    def next(self, text: ScriptText) -> Field | None:
+        """Return the field that a line begins with; a line may have several: `Start: area 2, end:
+        area 1.`, or sentences behind it."""
+        label = self.prose.label.match(text.content)
+        if label is None:
+            return None
+        name = label.lastgroup
+        assert name is not None
+        value = text[label.end() :].strip()
+        if name == "steps":
+            return Field(name, text[: label.end()], value[:0], value)
+        end = self._end(name, value.content)
+        rest = value[end:].strip()
+        ends = _SEPARATORS if name in _PROSE_FIELDS else f"{_SEPARATORS}."
+        said = value[: len(value.content[:end].rstrip(ends))]
+        rest = rest[len(rest.content) - len(rest.content.lstrip(f"{_SEPARATORS}.")) :]
+        return Field(name, text[: label.end()], said, rest)
+
+    def read(self, field: Field) -> None:
+        """Take what a field says into the header."""
+        if field.name == "steps":
+            self.lists = True
+        else:
+            self._value(field.name, field.value, field.label)
+
+    def read_all(self, text: ScriptText) -> ScriptText:
+        """Read the fields that a line begins with, and return the rest of the line."""
+        while (field := self.next(text)) is not None:
+            self.read(field)
+            text = field.rest
+            if field.name == "steps":
+                break
         return text
 
     def behind(self, text: ScriptText) -> tuple[ScriptText, ScriptText] | None:

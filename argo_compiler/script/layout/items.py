@@ -35,6 +35,8 @@ class LineItem:
     """whether its last line stands over one with a mark"""
     floors: Sequence[FloorName] = ()
     """where what it names is, as the heading over it says"""
+    own: ScriptText | None = None
+    """its text as it stands in its lines, where `text` has words of the line over the list too"""
 
     def __post_init__(self) -> None:
         self.over = self.line.heading

@@ -51,8 +51,8 @@ class Lists:
     """Tells the items of lists what the lines over them say."""
 
     understanding: Understanding
-    note: Callable[[ScriptText, str], None]
-    """says that a text has no effect"""
+    record: Callable[[ScriptText, str], None]
+    """records a line over a list: its text, and what it is taken for, if it has no effect"""
 
     def told(self, items: Iterable[LineItem]) -> Iterator[LineItem]:
         """Return the items, of which each says by itself what is meant."""
@@ -113,10 +113,12 @@ class Lists:
             listed = after is not None and after.line.mark is not LineMark.NONE
             found = self._floors(item) if heading or listed else ()
             if found and item.items:
+                self.record(item.text, "")
                 _place(item.items, found)
                 item.text = item.text[:0]
                 floors = ()
             elif found:
+                self.record(item.text, "")
                 floors, chapter = found, marked  # `# Second floor` stands over all to the next one
                 continue
             elif (item.line.heading and (marked or not chapter)) or not (marked or chapter):
@@ -144,10 +146,10 @@ class Lists:
         for item in items:
             if head is not None and self._is_label(item.text):
                 over = self._without(over, head)
-                item.text = join([head.said, item.text])
+                _put_before(head, item)
             elif head is not None and head.listing and item.line.mark is not LineMark.NONE:
                 if over is not None:
-                    self.note(head.text, "a heading")
+                    self.record(head.text, "a heading")
                 over = self._without(over, head)
             else:
                 head = None
@@ -157,7 +159,7 @@ class Lists:
             if head is None:
                 head = self._head(item.text)
                 if head is not None and item.items and self._is_label(item.items[0].text):
-                    self._put_before(head, item)
+                    self._join_first(head, item)
                     head = None
                 elif head is not None:
                     over = item
@@ -173,14 +175,14 @@ class Lists:
         item.text = item.text[: len(item.text.content) - len(head.text.content)].strip()
         return item if item.text.content else None
 
-    def _put_before(self, head: _Head, item: LineItem) -> None:
+    def _join_first(self, head: _Head, item: LineItem) -> None:
         """Puts the sentence before the items that lie within its own one."""
         first, *others = item.items
         start = item.text[: len(item.text.content) - len(head.text.content)]
         item.text = join([*([start] if start.content else []), head.said, first.text])
         for other in others:
             if self._is_label(other.text):
-                other.text = join([head.said, other.text])
+                _put_before(head, other)
         item.items = [*first.items, *others]
 
     def _head(self, text: ScriptText) -> _Head | None:
@@ -202,6 +204,11 @@ class Lists:
 
     def _is_label(self, text: ScriptText) -> bool:
         return {*self.understanding.types(text)[:1]} <= _LABELS
+
+
+def _put_before(head: _Head, item: LineItem) -> None:
+    item.own = item.text
+    item.text = join([head.said, item.text])
 
 
 def _list_of(items: Sequence[LineItem], start: int) -> list[LineItem]:

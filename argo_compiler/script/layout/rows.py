@@ -1,4 +1,4 @@
-"""Tables: a heading for each column, then a step in each row.
+"""ScriptTables: a heading for each column, then a step in each row.
 
 Columns are cut by bars, tabs, semicolons or commas, or by blanks under the headings. A row becomes
 the sentence that says the same: `3. checkpoint #2 (liquid level gauge 1) with priority 3`.
@@ -6,7 +6,7 @@ the sentence that says the same: `3. checkpoint #2 (liquid level gauge 1) with p
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from argo_compiler.base.listing import listed
 from argo_compiler.script.documents.source import Diagnostics, ScriptText, Source, quotes
@@ -47,13 +47,22 @@ class _Heading:
     """which of the numbers in it is the most important; None: that is not said"""
 
 
-def tables(
-    source: Source, understanding: Understanding, diagnostics: Diagnostics
-) -> dict[int, ScriptText]:
-    """What the lines of tables become, by their numbers."""
-    found: dict[int, ScriptText] = {}
+@dataclass(frozen=True)
+class ScriptTables:
+    """The tables of a script."""
+
+    rows: dict[int, ScriptText] = field(default_factory=dict)
+    """by the number of a line, what it becomes; nothing for headings and rules"""
+    headings: list[ScriptText] = field(default_factory=list)
+    """the lines of headings"""
+
+
+def tables(source: Source, understanding: Understanding, diagnostics: Diagnostics) -> ScriptTables:
+    """Read the tables of a script."""
+    all_ = ScriptTables()
+    found = all_.rows
     if not any(cut in source.text for cut in _CUTS):
-        return found
+        return all_
     rows = _Rows(understanding, diagnostics)
     headings: list[_Heading] | None = None
     cut = ""
@@ -67,6 +76,7 @@ def tables(
                 headings = rows.headings(text, cut)
                 if headings is not None:
                     found[number] = text[:0]
+                    all_.headings.append(text.strip())
                     rows.begin(headings, cut, _below(source, number, cut))
         elif len(found) > _MOST_ROWS:
             message = f"tables have more than {_MOST_ROWS} rows; the rest is not read"
@@ -77,7 +87,7 @@ def tables(
             found[number] = source.line_text(number)[:0]
         else:
             found[number] = rows.sentence(source.line_text(number), headings, cut)
-    return found
+    return all_
 
 
 def _below(source: Source, number: int, cut: str) -> Iterator[ScriptText]:

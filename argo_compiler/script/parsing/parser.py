@@ -1,9 +1,10 @@
 """Script text to syntax tree."""
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from types import MappingProxyType
 
 from argo_compiler.base.garbage_collector import collector_held
 from argo_compiler.diagnostics import DiagnosticError
@@ -11,7 +12,7 @@ from argo_compiler.script.documents.healing import MOST_ERRORS, heal
 from argo_compiler.script.documents.source import Diagnostics, ScriptText, Source
 from argo_compiler.script.layout.asides import Asides
 from argo_compiler.script.layout.cells import Cells
-from argo_compiler.script.layout.fields import ScriptFields
+from argo_compiler.script.layout.fields import Field, ScriptFields
 from argo_compiler.script.layout.items import LineItem, LineSense, items_of
 from argo_compiler.script.layout.lines import LineMark, lines_of, sentences
 from argo_compiler.script.layout.lists import Lists, on_floors
@@ -21,7 +22,7 @@ from argo_compiler.script.parsing.sentence_reading import SentenceReader
 from argo_compiler.script.sentences.doubts import PlacingCheck, ask_of_dots
 from argo_compiler.script.sentences.tree.nouns import Labelled
 from argo_compiler.script.sentences.tree.orders import Measure, Sentence, Start
-from argo_compiler.script.sentences.tree.script import Said, Script, ScriptStep, Unread
+from argo_compiler.script.sentences.tree.script import Piece, Said, Script, ScriptStep, Unread
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.language import Language
 from argo_compiler.script.sentences.words.lexicon import Lexicon
@@ -30,6 +31,7 @@ from argo_compiler.script.sentences.words.unknown import UnknownError, UnknownFi
 MAX_LINES = 120_000
 """of a script; one with more is refused unread"""
 
+BY_HAND = "set aside by a person"
 _EDITS = ("ADD", "DELETE", "REPLACE", "MOVE")
 
 
@@ -39,11 +41,14 @@ def parse(
     places: Collection[str] = (),
     source_name: str = "script",
     names: Collection[str] = (),
+    decided: Mapping[int, Sequence[str]] = MappingProxyType({}),
 ) -> Script:
     """The syntax tree of the script, with all that was found on the way in its `diagnostics`.
 
-    `places` and `names` are those of the site's places and checkpoints. Raises DiagnosticError for
-    what is no script at all.
+    `places` and `names` are those of the site's places and checkpoints. `decided` has the sentences
+    that a person has decided on for pieces of the script, none for one that is set aside; its keys
+    are the offsets at which these pieces begin in the text. Raises DiagnosticError for what is no
+    script at all.
     """
     source = Source(text, source_name)
     _require_size(source)
@@ -55,7 +60,8 @@ def parse(
     fields = ScriptFields(understanding, diagnostics)
     reader = SentenceReader(understanding, asides, fields, diagnostics)
     known = repeats(language.lexicon, words)
-    return _Parser(understanding, asides, fields, diagnostics, reader, known).script()
+    parser = _Parser(understanding, asides, fields, diagnostics, reader, known, decided=decided)
+    return parser.script()
 
 
 def _require_size(source: Source) -> None:
@@ -108,17 +114,24 @@ class _Parser:
     """whether a letter has come to its end"""
     stopped: bool = False
     """whether there are too many errors"""
+    decided: Mapping[int, Sequence[str]] = field(default_factory=dict)
+    """sentences that a person has decided on for pieces, none for one that is set aside; by the
+    offset in the source at which a piece begins"""
+    pieces: list[Piece] = field(default_factory=list)
 
     def script(self) -> Script:
         source = self.diagnostics.source
         language = self.understanding.language
-        rows = tables(source, self.understanding, self.diagnostics)
-        healed = heal(source, _vocabulary(self.understanding, source.text), rows)
+        found = tables(source, self.understanding, self.diagnostics)
+        self.pieces += [Piece(text, "column headings") for text in found.headings]
+        healed = heal(source, _vocabulary(self.understanding, source.text), found.rows)
+        unreadable = (source.line_text(number).strip() for number in healed.unreadable)
+        self.pieces += [Piece(text) for text in unreadable]
         self.diagnostics.extend(healed.diagnostics)
         texts = Cells(self.fields, self.understanding).joined(healed.lines)
         sense = LineSense(self.understanding, self.asides, self.fields)
         items = items_of(lines_of(texts), sense, language.words)
-        lists = Lists(self.understanding, self.reader.note)
+        lists = Lists(self.understanding, self._record)
         steps = list(self._steps(lists.told(items)))
         PlacingCheck(self.diagnostics).steps(steps)
         _ask_of_title(steps, self.diagnostics)
@@ -130,6 +143,7 @@ class _Parser:
             source_text=source.text,
             header=self.fields.header,
             steps=(*first, *steps, *last),
+            pieces=tuple(sorted(self.pieces, key=lambda piece: piece.text.first)),
             diagnostics=self.diagnostics.by_place(),
         )
 
@@ -150,7 +164,11 @@ class _Parser:
                 yield step
 
     def _step(self, item: LineItem) -> ScriptStep | None:
-        known = self.repeats.said(item.text) if self._is_plain(item) else None
+        known = None
+        if not self.decided and self._is_plain(item):
+            known = self.repeats.said(item.text)
+            if known is not None:
+                self.pieces += map(Piece, sentences(item.text))
         said = on_floors(self._said(item) if known is None else known, item.floors)
         inner = tuple(self._steps(item.items))
         if not said and not inner and item.line.number is None:
@@ -163,12 +181,10 @@ class _Parser:
         """What an item says; kept, if it says so wherever it stands."""
         before = len(self.diagnostics.entries)
         plain = self._is_plain(item)  # now: what is said first hangs on being first
-        text = self._without_letter(item)
+        said, text = self._without_letter(item)
         text = self.fields.relabelled(text)
-        if self.fields.is_field(text):
-            self.reader.begun = True
-            text = self.fields.read(text)
-        said: list[Said] = []
+        fields, text = self._fields(text, item)
+        said += fields
         remark = False
         parts = sentences(text)
         if not self.asides.is_remark(text.content):
@@ -178,18 +194,61 @@ class _Parser:
             after = remark and not self.understanding.fits(sentence)
             remark = after or self.asides.is_remark(sentence.content)
             if remark:
-                said += self.reader.remark(sentence)
+                said += self._piece(sentence, item, self.reader.remark)
                 continue
-            if self.fields.is_field(sentence):
-                sentence = self.fields.read(sentence)
+            fields, sentence = self._fields(sentence, item)
+            said += fields
             if sentence.content:
-                said += self.reader.read(sentence, item)
-        whole = text is item.text and not self.fields.is_field(text)
-        whole = whole and len(said) == len(parts) and len(self.diagnostics.entries) == before
+                said += self._piece(sentence, item, lambda s: self.reader.read(s, item))
+        whole = text is item.text and len(said) == len(parts)
+        whole = whole and len(self.diagnostics.entries) == before
         plain = plain and whole and not self.understanding.unknown and self._is_plain(item)
         if plain and not any(isinstance(s, Unread) for s in said):
             self.repeats.keep(text, said, lambda text, unknown: self._again(item, text, unknown))
         return said
+
+    def _piece(
+        self, text: ScriptText, item: LineItem, read: Callable[[ScriptText], list[Said]]
+    ) -> list[Said]:
+        """Read a piece of the script, or the sentences that a person has decided on for it."""
+        own = _own_part(text, item)
+        decided = self.decided.get(own.first) if self.decided else None
+        if decided is not None:
+            self.pieces.append(Piece(own, "" if decided else BY_HAND))
+            return [said for sentence in decided for said in self._decided(sentence, own)]
+        self.reader.noted = None
+        said = read(text)
+        aside = ""
+        if not said and self.reader.noted is not None:
+            noted, what = self.reader.noted
+            whole = (noted.first, noted.last) == (text.first, text.last)
+            aside = what if whole else ""
+        self.pieces.append(Piece(own, aside))
+        return said
+
+    def _record(self, text: ScriptText, aside: str) -> None:
+        """Record a piece that is no step."""
+        self.pieces.append(Piece(text, aside))
+        if aside:
+            self.reader.note(text, aside)
+
+    def _decided(self, sentence: str, place: ScriptText) -> list[Said]:
+        """Read a sentence that stands for a piece of the script."""
+        text = self.fields.read_all(place.replaced(sentence))
+        return [said for part in sentences(text) for said in self.reader.read_decided(part)]
+
+    def _fields(self, text: ScriptText, item: LineItem) -> tuple[list[Said], ScriptText]:
+        """Read the fields that a text begins with; return what is decided on for them instead, and
+        the rest of the text."""
+        said: list[Said] = []
+        while (field := self.fields.next(text)) is not None:
+            self.reader.begun = True
+            end = len(text.content) - len(field.rest.content)
+            said += self._piece(text[:end].strip(), item, _reader_of(self.fields, field))
+            text = field.rest
+            if field.name == "steps":
+                break
+        return said, text
 
     def _again(
         self, item: LineItem, text: ScriptText, unknown: Mapping[int, UnknownFigure]
@@ -214,24 +273,49 @@ class _Parser:
         over = item.line.heading or item.text.content.endswith(":")
         return self.reader.ordered and not self.closed and not over
 
-    def _without_letter(self, item: LineItem) -> ScriptText:
-        """The text of an item without what makes a letter of it."""
+    def _without_letter(self, item: LineItem) -> tuple[list[Said], ScriptText]:
+        """Read what makes a letter of an item; return what is decided on for it instead, and the
+        rest of the text."""
         text = item.text
         signed = self.closed and item.line.mark in (LineMark.NONE, LineMark.LETTER)  # `T. Kunz`
         if signed and self.asides.is_signature(text):
-            self.reader.note(text, "the end of a letter")
-            return text[:0]
+            return self._aside(text, item, "the end of a letter"), text[:0]
         if item.line.mark is not LineMark.NONE:
-            return text
+            return [], text
         greeting = self.asides.greeting(text)
         if greeting:
-            self.reader.note(text[:greeting].strip(), "a greeting")
-            return text[greeting:].strip()
+            said = self._aside(text[:greeting].strip(), item, "a greeting")
+            return said, text[greeting:].strip()
         if self.asides.closing(text):
             self.closed = True
-            self.reader.note(text, "the end of a letter")
-            return text[:0]
+            return self._aside(text, item, "the end of a letter"), text[:0]
+        return [], text
+
+    def _aside(self, text: ScriptText, item: LineItem, what: str) -> list[Said]:
+        """Note that a piece has no effect."""
+
+        def note(text: ScriptText) -> list[Said]:
+            self.reader.note(text, what)
+            return []
+
+        return self._piece(text, item, note)
+
+
+def _own_part(text: ScriptText, item: LineItem) -> ScriptText:
+    """Return the part of a text that stands in the item's own lines."""
+    if item.own is None:
         return text
+    first, last = item.own.first, item.own.last
+    inside = [i for i, offset in enumerate(text.offsets) if first <= offset <= last]
+    return text[inside[0] : inside[-1] + 1] if inside else text
+
+
+def _reader_of(fields: ScriptFields, field: Field) -> Callable[[ScriptText], list[Said]]:
+    def read(_: ScriptText) -> list[Said]:
+        fields.read(field)
+        return []
+
+    return read
 
 
 def _step_of(sentence: Sentence) -> ScriptStep:

@@ -42,12 +42,15 @@ class SentenceReader:
     """whether anything but a title has been read"""
     listed: str = ""
     """`Pressure gauges`, if that is what was read last"""
+    noted: tuple[ScriptText, str] | None = None
+    """the text last taken to be without effect, and what it is taken for"""
 
     def note(self, text: ScriptText, what: str) -> None:
         """Says that a text has no effect."""
         said = text.content if len(text.content) <= 60 else f"{text.content[:57]}..."
         message = f"`{said}` is taken for {what} and has no effect"
         self.diagnostics.note("no-effect", message, text.span())
+        self.noted = text, what
 
     def remark(self, text: ScriptText) -> list[Said]:
         """Says that a remark has no effect; a warning, where it tells what is to be done. What it
@@ -64,6 +67,7 @@ class SentenceReader:
             message = f"`{text.content}` is taken for a remark: the command in it has no effect"
             hint = "write it as a step if the robot has to do it"
             self.diagnostics.warning("remark", message, text.span(), hint)
+            self.noted = text, "a remark"
         else:
             self.note(text, "a remark")
         return []
@@ -127,6 +131,16 @@ class SentenceReader:
             self.diagnostics.error("stray-clause", message, text.span(), hint)
             return [Unread(span=text.span())]
         return [node]
+
+    def read_decided(self, text: ScriptText) -> list[Said]:
+        """Read a sentence that a person has decided on: it has no title, and no slips."""
+        if self.fields.whole_mission(text):
+            return []
+        reading = self.understanding.read(text)
+        if isinstance(reading, StumbleError):
+            self.understanding.not_understood(text, reading)
+            return [Unread(span=text.span())]
+        return [self._node(text, reading)]
 
     def _announced(self, text: ScriptText, node: Said) -> list[Said]:
         """What a line over steps of their own says besides `do the following:`."""
@@ -238,7 +252,7 @@ class SentenceReader:
         else:
             self.note(title.head, "a heading")
         if title.fields is not None:
-            rest = self.fields.read(title.fields)
+            rest = self.fields.read_all(title.fields)
             return self.read(rest, item) if rest.content else []
         said: list[Said] = []
         for part in title.parts:
@@ -251,6 +265,7 @@ class SentenceReader:
         """Takes a text for the title; with a warning, where something may be asked for in it."""
         header = self.fields.header
         header.title = Text(span=title.span(), text=title.content)
+        self.noted = title, "the title"
         header.format_title = self.asides.is_explicit_title(title)
         if asked:
             message = f"`{title.content}` is taken for the title, and adds no task"

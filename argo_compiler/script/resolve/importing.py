@@ -1,4 +1,4 @@
-"""Syntax tree to mission, and the whole way from text to mission in one call."""
+"""Syntax tree to mission."""
 
 from contextlib import suppress
 from functools import cache
@@ -9,7 +9,6 @@ from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError
 from argo_compiler.il import Mission, Mode
 from argo_compiler.script.documents.source import Diagnostics, RefusedError, Source
-from argo_compiler.script.parsing.parser import parse
 from argo_compiler.script.resolve.assembly import assemble
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.lookup import Lookup
@@ -42,21 +41,6 @@ def resolve_script(
     except RefusedError:
         raise DiagnosticError(script.source_name, diagnostics.by_place()) from None
     return Resolved(mission=mission, diagnostics=diagnostics.by_place())
-
-
-@collector_held()
-def import_script(
-    text: str,
-    catalog: Catalog,
-    *,
-    source_name: str = "script",
-    start_area: int | None = None,
-    end_area: int | None = None,
-) -> Resolved:
-    """The mission of the script `text`; raises what `parse` and `resolve_script` raise."""
-    places = [place.name for place in catalog.places]
-    names = [checkpoint.name for checkpoint in catalog.checkpoints]
-    return resolve_script(parse(text, places, source_name, names), catalog, start_area, end_area)
 
 
 def _mission(

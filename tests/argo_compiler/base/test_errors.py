@@ -20,6 +20,7 @@ from argo_compiler.base.limited_process import LimitExceeded
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity, Span
 from argo_compiler.editing import EditConflict, EditError, EditInvalid, EditNotFound
 from argo_compiler.files.loading import FileError, FileProblem, MissingFile, UnreadableFile
+from argo_compiler.script import Draft, IncompleteDraft
 from argo_env.recording.output import UnwritableRecording
 from argo_planner.service.core.refusals import (
     ChangedSince,
@@ -51,6 +52,7 @@ MADE = [
     ),
     argo_env.closing.CopyRefused("not this one", about="it"),
     DiagnosticError("a.txt", FINDINGS),
+    IncompleteDraft(Draft("a.txt", (), None, FINDINGS)),
     *(kind(FINDINGS) for kind in (EditError, EditNotFound, EditInvalid, EditConflict)),
     *(kind(*FILE) for kind in (FileError, MissingFile, UnreadableFile)),
     LimitExceeded("takes longer than 60 s to read"),

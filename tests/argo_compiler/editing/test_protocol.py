@@ -18,11 +18,12 @@ from argo_compiler.editing import (
     wrap_tasks,
 )
 from argo_compiler.il import Action, EventKind, Group, Mission, Reaction, Response, Task, Transition
-from argo_compiler.script import format_script, import_script
+from argo_compiler.script import format_script
 from tests.argo_compiler.script.conftest import make_catalog
 from tests.conftest import examples
 from tests.mission_writing import unplaced
 from tests.missions_sound import sound_missions
+from tests.whole_scripts import import_whole
 
 CATALOG = make_catalog()
 EDITS = 50
@@ -226,13 +227,13 @@ def edit_both(mission, seed):
         script = format_script(with_own_names(mission), CATALOG)
     except DiagnosticError:  # a script can't express what has no effect
         reject()
-    base = import_script(script, CATALOG).mission
+    base = import_whole(script, CATALOG).mission
     assert comparable(base) == comparable(with_own_names(mission))
     editor = Editor(base, random.Random(seed))
     for _ in range(EDITS):
         editor.step()
     text = "\n".join([script.rstrip("\n"), *editor.lines])
-    assert comparable(import_script(text, CATALOG).mission) == comparable(editor.mission)
+    assert comparable(import_whole(text, CATALOG).mission) == comparable(editor.mission)
 
 
 @pytest.mark.long

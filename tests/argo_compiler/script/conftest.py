@@ -18,8 +18,8 @@ from argo_compiler.base.catalog import (
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
 from argo_compiler.il import Mission
-from argo_compiler.script import Resolved, import_script
 from tests.mission_writing import unplaced
+from tests.whole_scripts import Whole, import_whole
 
 NAMES = {
     1: ["pressure gauge 1", "liquid level gauge 1", "pressure gauge 2", "valve R25"],
@@ -71,7 +71,7 @@ CATALOG = make_catalog()
 def findings(text: str, catalog: Catalog, **areas: int) -> tuple[Diagnostic, ...]:
     """Return the diagnostics of a script, be it a mission or refused."""
     try:
-        result: Resolved | DiagnosticError = import_script(text, catalog, **areas)
+        result: Whole | DiagnosticError = import_whole(text, catalog, **areas)
     except DiagnosticError as error:
         result = error
     return result.diagnostics
@@ -80,7 +80,7 @@ def findings(text: str, catalog: Catalog, **areas: int) -> tuple[Diagnostic, ...
 def refusals(text: str, catalog: Catalog) -> list[Diagnostic]:
     """Return the errors for which a script is refused."""
     with pytest.raises(DiagnosticError) as caught:
-        import_script(text, catalog)
+        import_whole(text, catalog)
     return [d for d in caught.value.diagnostics if d.severity is Severity.ERROR]
 
 
@@ -98,7 +98,7 @@ def measured_in(mission: Mission) -> list[str]:
 
 
 def measured(text: str, catalog: Catalog) -> list[str]:
-    return measured_in(import_script(text, catalog).mission)
+    return measured_in(import_whole(text, catalog).mission)
 
 
 Pairs = list[tuple[str, str]]
@@ -112,7 +112,7 @@ def filled(frames: dict[tuple[str, str], Pairs]) -> Pairs:
 @pytest.fixture(scope="session")
 def meaning_of() -> Callable[[str], object]:
     """What a script means: its mission, whatever its words and places."""
-    return lambda text: unplaced(import_script(text, CATALOG).mission)
+    return lambda text: unplaced(import_whole(text, CATALOG).mission)
 
 
 @pytest.fixture(scope="session")

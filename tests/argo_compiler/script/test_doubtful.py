@@ -5,8 +5,9 @@ import pytest
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.diagnostics import Severity
 from argo_compiler.il import Mission
-from argo_compiler.script import format_script, import_script
+from argo_compiler.script import format_script
 from tests.argo_compiler.script.conftest import measured, refusals
+from tests.whole_scripts import import_whole
 
 _ENGLISH = "1. Start in starting area 1.\n"
 _GERMAN = "1. Start in Startbereich 1.\n"
@@ -16,7 +17,7 @@ _ZWEI = "2. Prüfe #1.\n3. Prüfe #4.\n"
 
 def read(text: str, catalog: Catalog) -> tuple[Mission, set[str]]:
     """The mission, and the codes of what was warned of."""
-    result = import_script(text, catalog)
+    result = import_whole(text, catalog)
     warned = {d.code for d in result.diagnostics if d.severity is Severity.WARNING}
     return result.mission, warned
 

@@ -5,15 +5,15 @@ import pytest
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Mission, Mode, Order
-from argo_compiler.script import import_script
 from tests.argo_compiler.script.conftest import findings
+from tests.whole_scripts import import_whole
 
 STEPS = "1. Check #4\n"
 START = "Start: area 1\n"
 
 
 def mission(header: str, catalog: Catalog) -> Mission:
-    return import_script(header + "\n" + STEPS, catalog).mission
+    return import_whole(header + "\n" + STEPS, catalog).mission
 
 
 def faults(text: str, catalog: Catalog) -> list[Diagnostic]:
@@ -142,5 +142,5 @@ def test_a_misspelt_label_is_a_warning(catalog: Catalog) -> None:
 def test_docks_that_are_chosen_later_are_asked_for(catalog: Catalog) -> None:
     text = f"The docks are chosen on the day.\n{STEPS}"
     assert [d.code for d in faults(text, catalog)] == ["script.area-choice"] * 2
-    found = import_script(text, catalog, start_area=1, end_area=2).mission
+    found = import_whole(text, catalog, start_area=1, end_area=2).mission
     assert (found.start_area, found.end_area) == (1, 2)

@@ -24,19 +24,20 @@ from argo_compiler.il import (
     TimeWindow,
     WaitRule,
 )
-from argo_compiler.script import format_script, import_script
+from argo_compiler.script import format_script
 from argo_compiler.script.write.reading import read_back
 from tests.argo_compiler.hfsm.random_missions import missions as tangled_missions
 from tests.conftest import examples
 from tests.mission_writing import above, drive, measure, unplaced, way
 from tests.missions_sound import sound_missions
+from tests.whole_scripts import import_whole
 from tests.yard import in_order
 
 HERE = Pose(x=1, y=2, z=0)
 
 
 def read(text: str, catalog: Catalog) -> Mission:
-    return unplaced(import_script(text, catalog).mission)
+    return unplaced(import_whole(text, catalog).mission)
 
 
 def assert_kept(mission: Mission, catalog: Catalog) -> str:
@@ -148,14 +149,14 @@ def test_names_of_ones_own_beside_the_usual_ones(catalog: Catalog) -> None:
 def test_scripts_are_kept(missions: Path, catalog: Catalog) -> None:
     for path in sorted(missions.glob("*.txt")):
         areas = {"start_area": 1, "end_area": 2} if path.name.startswith("mission") else {}
-        assert_kept(import_script(path.read_text(), catalog, **areas).mission, catalog)
+        assert_kept(import_whole(path.read_text(), catalog, **areas).mission, catalog)
 
 
 def test_originals_are_kept(originals: Path, catalog: Catalog) -> None:
     sheet = (originals / "mission_1.txt").read_text()
     protocol = (originals / "protocol_2.txt").read_text()
-    assert_kept(import_script(sheet, catalog, start_area=1, end_area=2).mission, catalog)
-    assert_kept(import_script(protocol, catalog).mission, catalog)
+    assert_kept(import_whole(sheet, catalog, start_area=1, end_area=2).mission, catalog)
+    assert_kept(import_whole(protocol, catalog).mission, catalog)
 
 
 def test_long_texts_and_many_ways_are_broken_into_lines(catalog: Catalog) -> None:
@@ -259,7 +260,7 @@ SAMPLES = [line for block in BLOCKS for line in block.splitlines()]
 def test_every_exact_form_of_the_reference_is_kept(line: str, catalog: Catalog) -> None:
     steps = "Start area: none\n\n1. Check checkpoint #1.\n2. Check checkpoint #4.\n3. "
     text = f"{steps}Check checkpoint #8.\n\n{line}." if _is_apart(line) else f"{steps}{line}."
-    mission = import_script(text.replace("..", "."), catalog).mission
+    mission = import_whole(text.replace("..", "."), catalog).mission
     assert_kept(mission.model_copy(update={"dock": HERE}), catalog)
 
 

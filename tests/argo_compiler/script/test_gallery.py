@@ -11,12 +11,12 @@ import pytest
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.diagnostics import DiagnosticError, Severity
-from argo_compiler.script import import_script
 from argo_compiler.script.write.reading import read_back
 from argo_env.navigation import Navigator
 from argo_env.planning.catalog import make_catalog
 from argo_env.robot.spec import load_robot
 from argo_env.site import load_site
+from tests.whole_scripts import import_whole
 
 PAGE = Path(__file__).parents[3] / "docs" / "script.md"
 START = "Start in starting area 1."
@@ -65,7 +65,7 @@ def site() -> Catalog:
 def reading(*lines: str) -> list[str]:
     """What a script becomes: the lines of `argo explain`, each with its marks behind it."""
     start = f"1. {START}" if lines[0].startswith("2.") else START
-    result = import_script("\n".join([start, *lines]), site())
+    result = import_whole("\n".join([start, *lines]), site())
     found = read_back(result.mission, site(), result.diagnostics)
     said: list[str] = []
     for entry in found.entries:
@@ -131,5 +131,5 @@ def test_the_example_is_said_back_as_the_page_has_it() -> None:
     page = PAGE.read_text(encoding="utf-8")
     (script,) = re.findall(r"```script\n(.*?)```", page, re.DOTALL)
     said = re.findall(r"```explained\n(.*?)```", page, re.DOTALL)
-    result = import_script(script, site())
+    result = import_whole(script, site())
     assert [read_back(result.mission, site(), result.diagnostics).text] == said

@@ -6,8 +6,8 @@ import pytest
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.il import EventKind
-from argo_compiler.script import import_script
 from tests.argo_compiler.script.conftest import filled, measured, refusals
+from tests.whole_scripts import import_whole
 
 PAIRS = [
     ("Prüfe Kontrollpunkt 3.", "Check checkpoint 3."),
@@ -572,7 +572,7 @@ def test_an_english_sentence_in_a_german_script(catalog: Catalog) -> None:
 
 def test_labels_may_be_english_in_a_german_script(catalog: Catalog) -> None:
     text = "Maximum duration: 20 min\nStart: Startbereich 1\nEnd: Startbereich 2\n"
-    mission = import_script(text + "1. Kontrollpunkt 3 prüfen", catalog).mission
+    mission = import_whole(text + "1. Kontrollpunkt 3 prüfen", catalog).mission
     assert (mission.max_duration, mission.start_area, mission.end_area) == (1200, 1, 2)
 
 
@@ -633,7 +633,7 @@ EVENTS = {
 @pytest.mark.parametrize(("event", "said"), EVENTS.items())
 def test_events(event: EventKind, said: str, catalog: Catalog) -> None:
     text = f"Starte in Startbereich 1.\nPrüfe Kontrollpunkt 3.\nWenn {said}, halte an."
-    (reaction,) = import_script(text, catalog).mission.reactions
+    (reaction,) = import_whole(text, catalog).mission.reactions
     assert reaction.event is event
 
 

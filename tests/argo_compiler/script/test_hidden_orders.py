@@ -6,8 +6,8 @@ import pytest
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.diagnostics import DiagnosticError, Severity
 from argo_compiler.il import EventKind, Order
-from argo_compiler.script import import_script
 from tests.argo_compiler.script.conftest import measured
+from tests.whole_scripts import import_whole
 
 START = "Start in starting area 1. Check #1"
 
@@ -36,7 +36,7 @@ START = "Start in starting area 1. Check #1"
 )
 def test_it_is_asked_about(text: str, catalog: Catalog) -> None:
     with pytest.raises(DiagnosticError):
-        import_script(text, catalog)
+        import_whole(text, catalog)
 
 
 @pytest.mark.parametrize(
@@ -49,7 +49,7 @@ def test_it_is_asked_about(text: str, catalog: Catalog) -> None:
     ],
 )
 def test_a_remark_that_asks_for_something_is_a_warning(remark: str, catalog: Catalog) -> None:
-    found = import_script(f"{START}.\n{remark}", catalog).diagnostics
+    found = import_whole(f"{START}.\n{remark}", catalog).diagnostics
     assert [d.code for d in found if d.severity is Severity.WARNING] == ["script.remark"]
 
 
@@ -65,14 +65,14 @@ def test_a_remark_that_asks_for_something_is_a_warning(remark: str, catalog: Cat
     ],
 )
 def test_what_asks_for_nothing_is_a_note(text: str, catalog: Catalog) -> None:
-    resolved = import_script(text, catalog)
+    resolved = import_whole(text, catalog)
     assert {d.severity for d in resolved.diagnostics} == {Severity.NOTE}
     assert measured(text, catalog) == ["1"]
 
 
 def test_a_number_is_never_put_right(catalog: Catalog) -> None:
     with pytest.raises(DiagnosticError, match="seven"):
-        import_script(f"{START}.\nCheck checkpoint sevn", catalog)
+        import_whole(f"{START}.\nCheck checkpoint sevn", catalog)
 
 
 @pytest.mark.parametrize(
@@ -95,22 +95,22 @@ def test_orders_as_people_say_them(text: str, checkpoints: list[str], catalog: C
 
 def test_an_inverted_condition_is_a_reaction(catalog: Catalog) -> None:
     text = f"{START}. Should the platform alarm sound, the robot goes home. Check #4."
-    mission = import_script(text, catalog).mission
+    mission = import_whole(text, catalog).mission
     assert [reaction.event for reaction in mission.reactions] == [EventKind.PLATFORM_ALARM]
 
 
 def test_several_fields_stand_behind_a_sentence(catalog: Catalog) -> None:
     text = "Start and end in starting area 2. Order: any. Maximum duration: 15 min.\nCheck #1"
-    mission = import_script(text, catalog).mission
+    mission = import_whole(text, catalog).mission
     assert (mission.end_area, mission.order, mission.max_duration) == (2, Order.ANY, 900.0)
 
 
 def test_what_stands_in_brackets_is_said_of_the_task(catalog: Catalog) -> None:
-    mission = import_script(f"{START} (priority 3). Check #4 (at 0.2 m/s).", catalog).mission
+    mission = import_whole(f"{START} (priority 3). Check #4 (at 0.2 m/s).", catalog).mission
     first, second = (task for task in mission.tasks if task.object_id is not None)
     assert (first.priority, second.velocity) == (3, 0.2)
 
 
 def test_nothing_is_repeated_before_anything_is_planned(catalog: Catalog) -> None:
     with pytest.raises(DiagnosticError, match="there is nothing before this to repeat"):
-        import_script(f"Repeat everything twice. {START}.", catalog)
+        import_whole(f"Repeat everything twice. {START}.", catalog)

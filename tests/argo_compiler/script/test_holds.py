@@ -4,7 +4,7 @@ import pytest
 
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.il import Afterwards, EventKind, Response
-from argo_compiler.script import import_script
+from tests.whole_scripts import import_whole
 
 RESUME, END, WAIT = Afterwards.RESUME, Afterwards.END, Afterwards.WAIT
 CLEAR = "until the all-clear"
@@ -12,7 +12,7 @@ CLEAR = "until the all-clear"
 
 def read(catalog, said):
     lines = ["Start in starting area 1.", f"If a gas leak is detected, {said}.", "Check #4."]
-    (reaction,) = import_script("\n".join(lines), catalog).mission.reactions
+    (reaction,) = import_whole("\n".join(lines), catalog).mission.reactions
     return reaction
 
 
@@ -67,7 +67,7 @@ CHARGED = EventKind.BATTERY_CHARGED
 )
 def test_recharging_is_done_in_the_dock_unless_the_script_names_a_place(catalog, said, response):
     text = f"1. Start in starting area 1.\n2. Check #4.\nIf the battery is low, {said}."
-    (found,) = import_script(text, catalog).mission.reactions
+    (found,) = import_whole(text, catalog).mission.reactions
     assert (found.response, found.until) == (response, CHARGED)
 
 
@@ -107,7 +107,7 @@ def test_a_charge_and_a_time_of_charging(catalog, said, charge, time, limit):
         else ("Start in starting area 1.", "Check #4.")
     )
     text = "\n".join([start, low, check])
-    mission = import_script(text, catalog).mission
+    mission = import_whole(text, catalog).mission
     (found,) = mission.reactions
     assert (found.response, found.until, found.afterwards) == (Response.RETURN, CHARGED, RESUME)
     assert (found.charge_to, found.charge_for, found.hold_limit) == (charge, time, limit)
@@ -127,7 +127,7 @@ def test_a_charge_and_a_time_of_charging(catalog, said, charge, time, limit):
 def test_a_step_that_charges_in_the_dock(catalog, said, charge, time):
     steps = ["Check #4.", "Go home.", f"{said}.", "Check #1.", "Go home."]
     text = "\n".join(["Start in starting area 1.", *steps])
-    mission = import_script(text, catalog).mission
+    mission = import_whole(text, catalog).mission
     (rule,) = (task.wait for task in mission.tasks if task.wait)
     assert (rule.event, rule.charge_to, rule.charge_for) == (CHARGED, charge, time)
 
@@ -146,7 +146,7 @@ def test_a_step_that_charges_in_the_dock(catalog, said, charge, time):
 def test_a_charge_that_can_not_be_is_an_error(catalog, said, code):
     lines = ["Start in starting area 1.", f"If the battery is low, return, {said} and resume."]
     with pytest.raises(DiagnosticError) as error:
-        import_script("\n".join([*lines, "Check #4."]), catalog)
+        import_whole("\n".join([*lines, "Check #4."]), catalog)
     assert {d.code for d in error.value.diagnostics} == {f"script.{code}"}
 
 

@@ -16,8 +16,9 @@ from argo_compiler.il import (
     Order,
     Response,
 )
-from argo_compiler.script import import_script, parse
+from argo_compiler.script import parse
 from tests.argo_compiler.script.conftest import findings
+from tests.whole_scripts import import_whole
 
 PLAN = """\
 Mission Protocol #9
@@ -34,7 +35,7 @@ EXAMPLES = re.findall(
 
 
 def planned(line: str, catalog: Catalog) -> Mission:
-    result = import_script(f"{PLAN}5. {line}\n", catalog)
+    result = import_whole(f"{PLAN}5. {line}\n", catalog)
     assert result.diagnostics == ()
     return result.mission
 
@@ -54,7 +55,7 @@ def test_every_line_of_the_reference_is_understood(line: str, catalog: Catalog) 
 
 def test_the_sheet_of_the_reference(catalog: Catalog) -> None:
     (sheet,) = (block for kind, block in EXAMPLES if kind == "sheet")
-    mission = import_script(sheet, catalog, start_area=1, end_area=2).mission
+    mission = import_whole(sheet, catalog, start_area=1, end_area=2).mission
     assert [t.object_id for t in mission.tasks] == [None, "1", "4", "8", "6", "6", "14", None]
 
 
@@ -180,7 +181,7 @@ def test_ways_to_go_on(said: str, ways: dict[str, list[tuple[str, int]]], catalo
         "Mission Protocol\n1. Set a starting point in starting area 1\n2. Check checkpoint #1\n"
         f"3. Check checkpoint #8; {said}.\n4. Go to the front of the site\n"
     )
-    mission = import_script(text, catalog).mission
+    mission = import_whole(text, catalog).mission
     for name, expected in ways.items():
         task = mission.task(name)
         assert task is not None
@@ -264,7 +265,7 @@ def test_places(said: str, pose: Pose, catalog: Catalog) -> None:
 def test_a_speed_belongs_to_the_way_to_a_task(
     line: str, speeds: list[float | None], catalog: Catalog
 ) -> None:
-    mission = import_script(f"{PLAN}5. {line}\n", catalog).mission
+    mission = import_whole(f"{PLAN}5. {line}\n", catalog).mission
     assert [t.velocity for t in mission.tasks][:4] == [None] * 4
     assert [t.velocity for t in mission.tasks][4:] == speeds
 
@@ -290,7 +291,7 @@ def test_a_speed_at_which_nothing_is_left_is_said(catalog: Catalog) -> None:
     ],
 )
 def test_repetitions(line: str, group: tuple[object, ...], catalog: Catalog) -> None:
-    result = import_script(f"{PLAN}5. {line}\n", catalog)
+    result = import_whole(f"{PLAN}5. {line}\n", catalog)
     assert {d.code for d in result.diagnostics} <= {"script.repeated-there"}
     (g,) = result.mission.groups
     assert group == (g.name, g.start, g.end, g.max_repeat_count, g.max_repeat_duration, g.stop)
@@ -300,7 +301,7 @@ def test_rounds_lie_in_rounds(catalog: Catalog) -> None:
     text = (
         PLAN + "5. Patrol floor 2 twice\n6. Repeat steps 4 to 5 twice\n7. Repeat steps 2 to 5 twice"
     )
-    mission = import_script(text, catalog).mission
+    mission = import_whole(text, catalog).mission
     outer = "Repeat 2 to 5"
     assert [g.name for g in mission.groups] == [
         f"{outer}/Repeat 4 to 5/Patrol floor 2",
@@ -408,7 +409,7 @@ def test_the_header(catalog: Catalog) -> None:
         'Designation: "a \\u002a \\"b\\""\nAnomaly specification: anything\n   unusual\n'
         "End area: 2\nCurrent: step 1\nStart area: 1\n1. Check #1\n"
     )
-    mission = import_script(text, catalog).mission
+    mission = import_whole(text, catalog).mission
     assert (mission.mode, mission.order, mission.max_duration) == ("supervisory", Order.ANY, 1200)
     assert mission.designation == 'a * "b"'
     assert mission.anomaly_specification == "anything unusual"
@@ -425,7 +426,7 @@ def test_a_statement_goes_on_in_the_next_line(catalog: Catalog) -> None:
         "2. Check checkpoints #1,\n#4 and\n   #8. Then go to the front\n   of the site.\n"
         "   If the value of checkpoint #8 is above 5, go to step 2.\n"
     )
-    mission = import_script(text, catalog).mission
+    mission = import_whole(text, catalog).mission
     names = [t.name for t in mission.tasks]
     assert names == ["START", "MEASURE 1", "MEASURE 4", "MEASURE 8", "WAYPOINT 1"]
     assert mission.tasks[-1].transitions[0].target == "MEASURE 1"
@@ -522,7 +523,7 @@ def test_a_speed_that_other_ways_share_is_said(lines: str, catalog: Catalog) -> 
 @pytest.mark.parametrize("start", ["Start in starting area 1", "Set the start in starting area 1"])
 def test_ways_to_say_where_it_starts(start: str, catalog: Catalog) -> None:
     text = f"Mission Protocol\n1. {start}\n2. Check #1\n3. Return to the dock in starting area 1\n"
-    mission = import_script(text, catalog).mission
+    mission = import_whole(text, catalog).mission
     assert [task.name for task in mission.tasks] == ["START", "MEASURE 1", "DOCK"]
 
 
@@ -545,7 +546,7 @@ def test_what_is_wrong_in_a_header(line: str, code: str, catalog: Catalog) -> No
 
 def test_an_unknown_label_names_the_known_ones(catalog: Catalog) -> None:
     with pytest.raises(DiagnosticError, match=r"there is no field `Battery`(?s:.*)`Mode:`"):
-        import_script(PLAN + "Battery: full", catalog)
+        import_whole(PLAN + "Battery: full", catalog)
 
 
 @pytest.mark.parametrize(
@@ -557,9 +558,9 @@ def test_places_that_are_written_alike_are_asked_about(
     poses = (Pose(x=-1, y=4, z=0), Pose(x=-2, y=4, z=0))
     places = tuple(Place(name=n, pose=p) for n, p in zip(names, poses, strict=True))
     catalog = catalog.model_copy(update={"places": (*catalog.places, *places)})
-    assert import_script(PLAN, catalog).diagnostics == ()
+    assert import_whole(PLAN, catalog).diagnostics == ()
     with pytest.raises(DiagnosticError) as raised:
-        import_script(f"{PLAN}5. Go to the {names[1]}\n", catalog)
+        import_whole(f"{PLAN}5. Go to the {names[1]}\n", catalog)
     (found,) = raised.value.diagnostics
     assert found.code == "script.ambiguous-place"
     assert found.span is not None

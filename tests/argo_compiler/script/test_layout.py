@@ -5,8 +5,9 @@ import pytest
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.diagnostics import Severity
 from argo_compiler.il import Order
-from argo_compiler.script import import_script, parse
+from argo_compiler.script import parse
 from tests.argo_compiler.script.conftest import findings, measured
+from tests.whole_scripts import import_whole
 
 START = "Start in starting area 1\n"
 
@@ -71,7 +72,7 @@ def test_what_a_table_says_of_its_steps(catalog: Catalog) -> None:
         "| Checkpoint | Priority | Optional | Speed |\n"
         "| #4 | high | no | 0.3 m/s |\n| #8 | low | yes | |"
     )
-    first, second = import_script(f"{START}\n{table}", catalog).mission.tasks[1:]
+    first, second = import_whole(f"{START}\n{table}", catalog).mission.tasks[1:]
     assert first.priority is not None
     assert second.priority is not None
     assert first.priority > second.priority
@@ -96,7 +97,7 @@ def test_numbers_of_priorities_count_as_the_heading_says(
     point, start = ("Prüfpunkt", "Starte in Startbereich 1.") if german else ("Checkpoint", START)
     rows = "\n".join(f"| #{k} | {n} |" for k, n in ((4, 2), (8, 1), (10, 3)))
     table = f"| {point} | {heading} |\n|---|---|\n{rows}"
-    tasks = import_script(f"{start}\n{table}", catalog).mission.tasks
+    tasks = import_whole(f"{start}\n{table}", catalog).mission.tasks
     assert [task.priority for task in tasks[1:]] == priorities
 
 
@@ -107,7 +108,7 @@ def test_numbers_of_priorities_are_asked_about_once(catalog: Catalog) -> None:
 
 def test_a_remark_in_a_table_may_say_something(catalog: Catalog) -> None:
     table = "Pos\tCP\tTag\tRemark\n1\t4\tvalve R25\ttwice\n2\t8\t\tonly if #4 is above 5 degrees"
-    mission = import_script(f"{START}\n{table}", catalog).mission
+    mission = import_whole(f"{START}\n{table}", catalog).mission
     first = mission.task("MEASURE 4")
     assert first is not None
     assert mission.groups[0].max_repeat_count == 2
@@ -161,7 +162,7 @@ def test_titles_and_headings_are_notes(catalog: Catalog) -> None:
     assert notes(text, catalog) == ["Weekly tour, unit A", "Safety rules:"]
     for title in ("Team Salamander, run 2", "Behaviour test 12"):
         assert notes(f"{title}\n\n{START}- check #4", catalog) == [title]
-    assert import_script(text, catalog).mission.designation == "Weekly tour, unit A"
+    assert import_whole(text, catalog).mission.designation == "Weekly tour, unit A"
 
 
 @pytest.mark.parametrize(
@@ -181,7 +182,7 @@ def test_a_title_swallows_no_instruction(title: str, catalog: Catalog) -> None:
 
 def test_a_title_may_say_something_of_the_mission(catalog: Catalog) -> None:
     text = "Evening round, start and end in starting area 2, in any order, at most 15 minutes\n- #4"
-    mission = import_script(text, catalog).mission
+    mission = import_whole(text, catalog).mission
     assert (mission.designation, mission.order) == ("Evening round", Order.ANY)
     assert (mission.max_duration, mission.start_area, mission.end_area) == (900, 2, 2)
 
@@ -216,7 +217,7 @@ def test_a_line_that_makes_no_sense_leaves_those_around_it_as_they_are(catalog: 
 def test_a_letter_among_digits_is_a_digit_with_a_warning(
     said: str, meant: str, catalog: Catalog
 ) -> None:
-    result = import_script(f"{START}Check {said}", catalog)
+    result = import_whole(f"{START}Check {said}", catalog)
     assert [t.object_id for t in result.mission.tasks][1:] == [meant]
     (warning,) = result.diagnostics
     assert warning.code == "script.respelled"

@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from argo_compiler.diagnostics import DiagnosticError
-from argo_compiler.script import import_script
 from tests.argo_compiler.script.conftest import CATALOG
 from tests.mission_writing import unplaced
+from tests.whole_scripts import import_whole
 
 Steps = list[str]
 
@@ -56,7 +56,7 @@ def changed(old: str, new: str) -> Callable[[Steps], str]:
 def mission(text: str) -> object:
     """The mission; None if there is an error."""
     try:
-        return unplaced(import_script(text, CATALOG).mission)
+        return unplaced(import_whole(text, CATALOG).mission)
     except DiagnosticError:
         return None
 

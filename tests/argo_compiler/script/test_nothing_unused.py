@@ -5,8 +5,8 @@ from itertools import product
 import pytest
 
 from argo_compiler.diagnostics import DiagnosticError
-from argo_compiler.script import import_script
 from tests.mission_writing import unplaced
+from tests.whole_scripts import import_whole
 
 ORDERS = {
     "measure": "Check checkpoint 4{}.",
@@ -123,7 +123,7 @@ def _planned(order, clause, catalog):
     if line != ".":
         lines.append(f"3. {line}")
     try:
-        resolved = import_script("\n".join(lines), catalog)
+        resolved = import_whole("\n".join(lines), catalog)
     except DiagnosticError as error:
         return None, {d.span for d in error.diagnostics}
     return unplaced(resolved.mission), {d.code for d in resolved.diagnostics}

@@ -7,19 +7,19 @@ import pytest
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.il import Mission
-from argo_compiler.script import import_script
 from argo_compiler.script.resolve.units import converted
+from tests.whole_scripts import import_whole
 
 START = "Start in starting area 1.\n"
 
 
 def imported(text: str, catalog: Catalog) -> Mission:
-    return import_script(START + text, catalog).mission
+    return import_whole(START + text, catalog).mission
 
 
 def messages(text: str, catalog: Catalog) -> str:
     with pytest.raises(DiagnosticError) as raised:
-        import_script(START + text, catalog)
+        import_whole(START + text, catalog)
     return "\n".join(f"{d.message} {d.hint}" for d in raised.value.diagnostics)
 
 
@@ -88,7 +88,7 @@ def test_lengths_of_time(said: str, seconds: float, catalog: Catalog) -> None:
     mission = imported(f"Wait for {said}, then check checkpoint 3.", catalog)
     assert wait_s(mission) == pytest.approx(seconds)
     text = f"Maximum mission total duration: {said}\n{START}Patrol floor 1 for {said}"
-    result = import_script(text, catalog)
+    result = import_whole(text, catalog)
     assert result.diagnostics == ()
     (group,) = result.mission.groups
     assert group.max_repeat_duration == result.mission.max_duration == pytest.approx(seconds)

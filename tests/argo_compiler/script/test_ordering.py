@@ -3,12 +3,12 @@
 import pytest
 
 from argo_compiler.il import EventKind, Order
-from argo_compiler.script import import_script
 from tests.argo_compiler.script.conftest import refusals
+from tests.whole_scripts import import_whole
 
 
 def read(catalog, *lines):
-    return import_script("\n".join(["Start in starting area 1.", *lines]), catalog)
+    return import_whole("\n".join(["Start in starting area 1.", *lines]), catalog)
 
 
 def refused(catalog, *lines):

@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from argo_compiler.base.catalog import Catalog, CheckpointKind
-from argo_compiler.script import import_script
 from tests.argo_compiler.script.conftest import findings
+from tests.whole_scripts import import_whole
 
 QUANTITY = {
     CheckpointKind.PRESSURE_GAUGE: "value on",
@@ -37,7 +37,7 @@ def sheet(catalog: Catalog, checkpoints: list[int]) -> str:
 
 
 def measured(text: str, catalog: Catalog) -> list[int]:
-    result = import_script(text, catalog)
+    result = import_whole(text, catalog)
     assert result.diagnostics == ()
     return [int(t.object_id) for t in result.mission.tasks if t.object_id]
 

@@ -6,8 +6,8 @@ from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.errors import Remedy
 from argo_compiler.diagnostics import Severity
 from argo_compiler.il import Action
-from argo_compiler.script import import_script
 from tests.argo_compiler.script.conftest import findings, measured, only
+from tests.whole_scripts import import_whole
 
 START = "Mission Protocol #9\n1. Set a starting point in starting area 1\n"
 
@@ -31,7 +31,7 @@ def steps(*lines: str) -> str:
     ],
 )
 def test_ways_to_ask_for_a_measurement(step: str, catalog: Catalog) -> None:
-    result = import_script(steps(step, "Done!"), catalog)
+    result = import_whole(steps(step, "Done!"), catalog)
     assert result.diagnostics == ()
     assert [t.name for t in result.mission.tasks] == ["START", "MEASURE 14"]
     assert result.mission.start_area == 1
@@ -51,7 +51,7 @@ def test_ways_to_ask_for_a_measurement(step: str, catalog: Catalog) -> None:
     ],
 )
 def test_patrols(step: str, floor: int, count: int, duration: float, catalog: Catalog) -> None:
-    result = import_script(steps(step), catalog)
+    result = import_whole(steps(step), catalog)
     assert result.diagnostics == ()
     (group,) = result.mission.groups
     assert group.name == f"Patrol floor {floor}"
@@ -62,7 +62,7 @@ def test_patrols(step: str, floor: int, count: int, duration: float, catalog: Ca
 
 def test_two_patrols_and_a_waypoint_have_names_of_their_own(catalog: Catalog) -> None:
     patrol = "Patrol the first floor twice"
-    mission = import_script(
+    mission = import_whole(
         steps(patrol, "Go to the front of the UMAD site", patrol), catalog
     ).mission
     assert [g.name for g in mission.groups] == ["Patrol floor 1", "Patrol floor 1 (2)"]
@@ -98,15 +98,15 @@ def test_a_waypoint_that_is_about_an_object_is_moved_and_deleted_like_any_other(
         'Move step "gate" after checkpoint #1',
         "Move checkpoint #8 before checkpoint #1",
     ]
-    moved = import_script("\n".join(lines), catalog).mission
+    moved = import_whole("\n".join(lines), catalog).mission
     assert [t.name for t in moved.tasks] == ["START", "MEASURE 8", "MEASURE 1", "gate"]
-    left = import_script("\n".join([*lines, 'Delete step "gate"']), catalog).mission
+    left = import_whole("\n".join([*lines, 'Delete step "gate"']), catalog).mission
     assert [t.name for t in left.tasks] == ["START", "MEASURE 8", "MEASURE 1"]
 
 
 def test_a_hint_is_kept_and_does_nothing(catalog: Catalog) -> None:
     text = steps("Check checkpoint #1") + "   Hint: at least 3 robots were here\n"
-    (note,) = import_script(text, catalog).diagnostics
+    (note,) = import_whole(text, catalog).diagnostics
     assert (note.code, note.severity) == ("script.no-effect", Severity.NOTE)
     assert note.span is not None
     assert (note.span.line, note.span.column, note.span.length) == (4, 4, 33)
@@ -117,39 +117,39 @@ def test_a_hint_is_kept_and_does_nothing(catalog: Catalog) -> None:
 
 def test_the_way_home(catalog: Catalog) -> None:
     text = steps("Check checkpoint #1", "Return to the docking station")
-    assert import_script(text, catalog).mission.end_area == 1  # where it starts
-    mission = import_script(text, catalog, end_area=2).mission
+    assert import_whole(text, catalog).mission.end_area == 1  # where it starts
+    mission = import_whole(text, catalog, end_area=2).mission
     assert [t.name for t in mission.tasks] == ["START", "MEASURE 1", "DOCK"]
     assert mission.tasks[-1].action is Action.WAYPOINT
     assert mission.end_area == 2
     named = steps("Check checkpoint #1", "Return to the docking station in starting area 2")
-    at_home = import_script(named, catalog).mission
+    at_home = import_whole(named, catalog).mission
     assert [(t.name, t.pose) for t in at_home.tasks] == [(t.name, t.pose) for t in mission.tasks]
     assert at_home.end_area == 2
     assert only(named, catalog, end_area=1) == ("script.area-conflict", 4, 18, 34)
 
 
 def test_a_dock_is_appended_where_the_option_asks_for_it(catalog: Catalog) -> None:
-    mission = import_script(steps("Check checkpoint #1"), catalog, end_area=1).mission
+    mission = import_whole(steps("Check checkpoint #1"), catalog, end_area=1).mission
     assert [t.name for t in mission.tasks] == ["START", "MEASURE 1", "DOCK"]
     assert mission.tasks[-1].source is None
 
 
 def test_driving_to_a_starting_area_is_not_docking(catalog: Catalog) -> None:
     text = steps("Drive to starting area 2", "Check checkpoint #1")
-    mission = import_script(text, catalog).mission
+    mission = import_whole(text, catalog).mission
     assert [t.name for t in mission.tasks] == ["START", "WAYPOINT 1", "MEASURE 1"]
     assert mission.end_area is None
 
 
 def test_the_start_option(catalog: Catalog) -> None:
     text = steps("Check checkpoint #1")
-    assert import_script(text, catalog, start_area=1).mission.start_area == 1
+    assert import_whole(text, catalog, start_area=1).mission.start_area == 1
     assert only(text, catalog, start_area=2) == ("script.area-conflict", 2, 4, 39)
     front = text.replace("in starting area 1", "in front of the site")
     assert only(front, catalog, start_area=1)[0] == "script.area-conflict"
     without = "Mission Protocol\n1. Check checkpoint #1"
-    assert import_script(without, catalog, start_area=2).mission.start_area == 2
+    assert import_whole(without, catalog, start_area=2).mission.start_area == 2
     (error,) = findings(without, catalog)
     assert error.code == "script.no-start"
     assert error.hint is not None
@@ -224,7 +224,7 @@ Mission Protocol #2
 2. Patrol the secnd floor in cirlces for 10 minuts
 3. Mesure chekpoint #14
 """
-    result = import_script(text, catalog)
+    result = import_whole(text, catalog)
     assert [(d.code, d.span.line, d.span.column) for d in result.diagnostics if d.span] == [
         ("script.respelled", 2, 10),
         ("script.respelled", 2, 28),

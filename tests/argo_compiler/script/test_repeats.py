@@ -7,11 +7,12 @@ from itertools import chain
 
 import pytest
 
-from argo_compiler.script import import_script, parse
+from argo_compiler.script import parse
 from argo_compiler.script.parsing.repeats import repeats
 from argo_compiler.script.sentences.tree.script import Script
 from tests.argo_compiler.script.conftest import CATALOG
 from tests.campaigns.fuzz.sentences import english_generator, text_of
+from tests.whole_scripts import import_whole
 
 PLACES = [place.name for place in CATALOG.places]
 LINES = [
@@ -36,7 +37,7 @@ def test_a_line_said_again_is_what_it_is_by_itself(line: str) -> None:
 
 def test_what_is_said_twice_points_at_both_places() -> None:
     lines = chain(["1. Start in starting area 1."], (f"{k}. Check #4 and #1." for k in (2, 3, 10)))
-    mission = import_script("\n".join(lines), CATALOG).mission
+    mission = import_whole("\n".join(lines), CATALOG).mission
     spans = [task.source for task in mission.tasks if task.source is not None]
     assert {(span.line, span.column) for span in spans} >= {(2, 4), (3, 4), (4, 5)}
 

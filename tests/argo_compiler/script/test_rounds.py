@@ -21,11 +21,11 @@ from argo_compiler.hfsm import (
     lower,
 )
 from argo_compiler.il import Action, EventKind, Mission
-from argo_compiler.script import import_script
 from argo_compiler.script.write.protocol import format_script
 from tests.argo_compiler.script.conftest import CATALOG
 from tests.argo_compiler.script.sentences import HORIZON, Interpreter, Writer, script, value
 from tests.conftest import examples
+from tests.whole_scripts import import_whole
 
 
 def carried_out(mission: Mission) -> list[tuple[float, object]]:
@@ -68,7 +68,7 @@ def test_what_is_carried_out_is_what_the_sentences_say() -> None:
         steps, rounds = Writer(seed).protocol()
         text = script(steps, rounds)
         try:
-            mission = import_script(text, CATALOG).mission
+            mission = import_whole(text, CATALOG).mission
         except DiagnosticError as error:
             met.update({d.code for d in error.diagnostics if d.severity == "error"})
             return
@@ -77,7 +77,7 @@ def test_what_is_carried_out_is_what_the_sentences_say() -> None:
         met["run"] += 1
         met["joined"] += any(t.name.startswith("end of") for t in mission.tasks)
         met["decided behind"] += any(t.name.startswith("after") for t in mission.tasks)
-        again = import_script(format_script(mission, CATALOG), CATALOG).mission
+        again = import_whole(format_script(mission, CATALOG), CATALOG).mission
         assert carried_out(again) == done, text
 
     compare()
@@ -89,7 +89,7 @@ def test_what_is_carried_out_is_what_the_sentences_say() -> None:
 
 
 def read(lines: str, catalog: Catalog) -> Mission:
-    return import_script(f"Mission Protocol\nStart area: 1\n{lines}", catalog).mission
+    return import_whole(f"Mission Protocol\nStart area: 1\n{lines}", catalog).mission
 
 
 @pytest.mark.rule("G10", "G14")

@@ -7,8 +7,8 @@ import pytest
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.il import Action
-from argo_compiler.script import import_script
 from tests.argo_compiler.script.conftest import filled
+from tests.whole_scripts import import_whole
 
 _ENGLISH = "Start in starting area 1.\n"
 _GERMAN = "Starte in Startbereich 1.\n"
@@ -328,7 +328,7 @@ def test_other_words_mean_the_same(
     ],
 )
 def test_titles(title: str, rest: str, catalog: Catalog) -> None:
-    mission = import_script(f"{title}\n\n{rest}", catalog).mission
+    mission = import_whole(f"{title}\n\n{rest}", catalog).mission
     assert mission.designation == title.removeprefix("# ")
 
 
@@ -353,13 +353,13 @@ def test_titles(title: str, rest: str, catalog: Catalog) -> None:
 )
 def test_what_does_not_fit_is_refused(text: str, said: str, catalog: Catalog) -> None:
     with pytest.raises(DiagnosticError, match=said):
-        import_script(_ENGLISH + text, catalog)
+        import_whole(_ENGLISH + text, catalog)
 
 
 @pytest.mark.parametrize("how", ["three times", "until it is below 1 bar, at most 3 times"])
 def test_pauses_are_between_rounds_only(how: str, catalog: Catalog) -> None:
     text = f"{_ENGLISH}Check #15 {how}. Wait 1 minute between two readings."
-    mission = import_script(text, catalog).mission
+    mission = import_whole(text, catalog).mission
     done = [t for t in mission.tasks if t.action is not Action.START]
     waits = [t.wait.duration for t in done if t.wait is not None and t.wait.duration]
     assert waits == [60]
@@ -368,7 +368,7 @@ def test_pauses_are_between_rounds_only(how: str, catalog: Catalog) -> None:
 
 def test_wait_longer_than_the_mission(catalog: Catalog) -> None:
     text = f"Maximum duration: 10 min\n{_ENGLISH}Check #1.\nWait for 15 minutes.\nCheck #1."
-    found = [d for d in import_script(text, catalog).diagnostics if "long-wait" in str(d)]
+    found = [d for d in import_whole(text, catalog).diagnostics if "long-wait" in str(d)]
     assert len(found) == 1
     assert found[0].span is not None
     assert found[0].span.line == 4
@@ -386,13 +386,13 @@ def test_wait_longer_than_the_mission(catalog: Catalog) -> None:
     ],
 )
 def test_fields_behind_a_title(line: str, title: str, catalog: Catalog) -> None:
-    mission = import_script(f"{line}\n\n#1.", catalog).mission
+    mission = import_whole(f"{line}\n\n#1.", catalog).mission
     assert (mission.designation, mission.start_area, mission.end_area) == (title, 1, 2)
 
 
 def test_orders_before_fields_are_no_title(catalog: Catalog) -> None:
     with pytest.raises(DiagnosticError):
-        import_script("Read the oil meter / start: area 1\n\nCheck #1.", catalog)
+        import_whole("Read the oil meter / start: area 1\n\nCheck #1.", catalog)
 
 
 @pytest.mark.parametrize(
@@ -405,7 +405,7 @@ def test_orders_before_fields_are_no_title(catalog: Catalog) -> None:
     ],
 )
 def test_a_stay_in_the_dock_is_followed_by_more(text: str, catalog: Catalog) -> None:
-    tasks = import_script(text, catalog).mission.tasks
+    tasks = import_whole(text, catalog).mission.tasks
     said = [t.action for t in tasks if t.action is not Action.START]
     back, stay, again = Action.WAYPOINT, Action.WAIT, Action.MEASURE
     assert said == [again, back, stay, again, back]
@@ -419,13 +419,13 @@ def test_column_that_says_what_is_needed(
     needed: str, optional: bool | None, catalog: Catalog
 ) -> None:
     text = f"{_ENGLISH}\n| Checkpoint | Needed |\n|---|---|\n| 4 | {needed} |\n"
-    (task,) = (t for t in import_script(text, catalog).mission.tasks if t.object_id)
+    (task,) = (t for t in import_whole(text, catalog).mission.tasks if t.object_id)
     assert bool(task.optional) is bool(optional)
 
 
 def test_who_stays_before_the_end_is_asked_how_long(catalog: Catalog) -> None:
     with pytest.raises(DiagnosticError) as error:
-        import_script(f"{_ENGLISH}Check #8.\nStay there.\nCheck #4.", catalog)
+        import_whole(f"{_ENGLISH}Check #8.\nStay there.\nCheck #4.", catalog)
     first = error.value.diagnostics[0]
     assert first.span is not None
     assert (first.span.line, first.code) == (3, "script.wait")
@@ -443,7 +443,7 @@ def test_who_stays_before_the_end_is_asked_how_long(catalog: Catalog) -> None:
 def test_what_stays_open_is_asked(text: str, code: str, said: str, catalog: Catalog) -> None:
     start = _GERMAN if "Prüfe" in text else _ENGLISH
     with pytest.raises(DiagnosticError) as error:
-        import_script(start + text, catalog)
+        import_whole(start + text, catalog)
     assert code in str(error.value)
     assert said in str(error.value)
 
@@ -453,5 +453,5 @@ def test_table_of_values_to_be_read(catalog: Catalog) -> None:
         "Start area:\t1\n\nNo.\tCheckpoint\tDescription\tTask\n1\t1\tpressure gauge 1\tread value\n"
     )
     text += "2\t4\tvalve R25\tread position\n"
-    mission = import_script(text, catalog).mission
+    mission = import_whole(text, catalog).mission
     assert [t.object_id for t in mission.tasks if t.object_id] == ["1", "4"]

@@ -8,10 +8,11 @@ from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.errors import Remedy
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
 from argo_compiler.il import Action, Group, Mission, Mode, Order, Stop, Transition
-from argo_compiler.script import Resolved, import_script, read_script
+from argo_compiler.script import read_script
+from tests.whole_scripts import Whole, import_whole
 
 
-def warnings(resolved: Resolved) -> list[Diagnostic]:
+def warnings(resolved: Whole) -> list[Diagnostic]:
     return [d for d in resolved.diagnostics if d.severity is not Severity.NOTE]
 
 
@@ -65,7 +66,7 @@ def assert_protocol_2(mission: Mission, catalog: Catalog) -> None:
 def test_original_sheet(originals: Path, catalog: Catalog) -> None:
     text = read_script(originals / "mission_1.txt")
     for end in (1, 2):
-        resolved = import_script(text, catalog, start_area=1, end_area=end)
+        resolved = import_whole(text, catalog, start_area=1, end_area=end)
         mission = resolved.mission
         assert_mission_1(mission, catalog, 1, end)
         assert mission.anomaly_specification.startswith("Default normal values")
@@ -81,7 +82,7 @@ def test_original_sheet(originals: Path, catalog: Catalog) -> None:
 
 def test_shipped_sheet(missions: Path, catalog: Catalog) -> None:
     text = read_script(missions / "mission_1.txt")
-    resolved = import_script(text, catalog, start_area=2, end_area=1)
+    resolved = import_whole(text, catalog, start_area=2, end_area=1)
     assert_mission_1(resolved.mission, catalog, 2, 1)
     assert {d.code for d in warnings(resolved)} == {"script.healed"}
     assert resolved.mission.anomaly_specification == (
@@ -94,7 +95,7 @@ def test_shipped_sheet(missions: Path, catalog: Catalog) -> None:
 @pytest.mark.parametrize("folder", ["originals", "missions"])
 def test_protocol(folder: str, catalog: Catalog, request: pytest.FixtureRequest) -> None:
     path = request.getfixturevalue(folder) / "protocol_2.txt"
-    resolved = import_script(read_script(path), catalog)
+    resolved = import_whole(read_script(path), catalog)
     assert warnings(resolved) == []
     assert_protocol_2(resolved.mission, catalog)
 
@@ -102,7 +103,7 @@ def test_protocol(folder: str, catalog: Catalog, request: pytest.FixtureRequest)
 def test_a_choice_left_open_needs_the_options(missions: Path, catalog: Catalog) -> None:
     text = read_script(missions / "mission_1.txt")
     with pytest.raises(DiagnosticError) as caught:
-        import_script(text, catalog, source_name="sheet")
+        import_whole(text, catalog, source_name="sheet")
     errors = [d for d in caught.value.diagnostics if d.severity is Severity.ERROR]
     assert [d.code for d in errors] == ["script.area-choice"] * 2
     assert [d.hint for d in errors] == ["choose area 1 or 2"] * 2

@@ -5,8 +5,8 @@ import pytest
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.diagnostics import Severity
 from argo_compiler.il import Mission, Mode, Order
-from argo_compiler.script import import_script
 from tests.argo_compiler.script.conftest import findings, only
+from tests.whole_scripts import import_whole
 
 HEADER = """\
 Mission's designation: Mission #7
@@ -21,14 +21,14 @@ SHEET = HEADER + ORDER + STEP
 
 
 def mission(text: str, catalog: Catalog) -> Mission:
-    return import_script(text, catalog).mission
+    return import_whole(text, catalog).mission
 
 
 def test_a_sheet_that_fixes_its_areas_needs_no_options(catalog: Catalog) -> None:
-    result = import_script(SHEET, catalog)
+    result = import_whole(SHEET, catalog)
     assert result.diagnostics == ()
     assert (result.mission.start_area, result.mission.end_area) == (1, 2)
-    assert import_script(SHEET, catalog, start_area=1, end_area=2) == result
+    assert import_whole(SHEET, catalog, start_area=1, end_area=2) == result
 
 
 def test_case_and_blanks_make_no_difference(catalog: Catalog) -> None:
@@ -56,7 +56,7 @@ def test_cells_gather_the_lines_around_their_label(catalog: Catalog) -> None:
         "\tThe robot waits\n"
         "Initial position:\tand is docked",
     )
-    result = import_script(text, catalog)
+    result = import_whole(text, catalog)
     assert result.diagnostics == ()
     assert result.mission.anomaly_specification == (
         "All that is unusual. This line ends, so it stays above."
@@ -84,7 +84,7 @@ def test_an_area_that_the_sheet_does_not_offer(catalog: Catalog) -> None:
     assert only(SHEET, catalog, end_area=1) == ("script.area-not-offered", 5, 47, 1)
     either = SHEET.replace('area" 1', 'area" 1 or 2')
     assert only(either, catalog, start_area=3) == ("script.area-not-offered", 4, 45, 1)
-    assert import_script(either, catalog, start_area=2).mission.start_area == 2
+    assert import_whole(either, catalog, start_area=2).mission.start_area == 2
 
 
 def test_an_or_that_leads_to_no_area(catalog: Catalog) -> None:
@@ -104,10 +104,10 @@ def test_a_sheet_without_areas_takes_any_that_the_options_name(catalog: Catalog)
     text = "\n".join(line for line in SHEET.split("\n") if "area" not in line)
     codes = [d.code for d in findings(text, catalog)]
     assert codes == ["script.no-start"]
-    result = import_script(text, catalog, start_area=2, end_area=1)
+    result = import_whole(text, catalog, start_area=2, end_area=1)
     assert (result.mission.start_area, result.mission.end_area) == (2, 1)
     assert result.diagnostics == ()
-    undocked = import_script(text, catalog, start_area=2)
+    undocked = import_whole(text, catalog, start_area=2)
     assert undocked.mission.end_area is None
     assert [t.name for t in undocked.mission.tasks] == ["START", "MEASURE 4"]
     assert undocked.diagnostics == ()
@@ -200,7 +200,7 @@ def test_a_sheet_without_checkpoints(catalog: Catalog) -> None:
 def test_a_misspelt_word_is_a_warning(right: str, wrong: str, catalog: Catalog) -> None:
     text = SHEET.replace("Checkpoint", "checkpoint")
     assert right in text
-    result = import_script(text.replace(right, wrong), catalog)
+    result = import_whole(text.replace(right, wrong), catalog)
     (warning,) = result.diagnostics
     assert warning.code == "script.respelled"
     assert warning.severity is Severity.WARNING

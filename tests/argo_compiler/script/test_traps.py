@@ -5,14 +5,14 @@ import pytest
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.diagnostics import DiagnosticError, Severity
 from argo_compiler.il import Afterwards, ConditionType, EventKind, Mission, OnFailure, Response
-from argo_compiler.script import import_script
 from tests.argo_compiler.script.conftest import measured_in, refusals
+from tests.whole_scripts import import_whole
 
 START = "Start in starting area 1.\n"
 
 
 def read(text: str, catalog: Catalog) -> Mission:
-    return import_script(f"{START}{text}", catalog).mission
+    return import_whole(f"{START}{text}", catalog).mission
 
 
 Bounds = list[tuple[str | None, ConditionType, object]]
@@ -380,7 +380,7 @@ def test_what_a_condition_is_asked_of(
 def test_a_step_that_is_skipped(skipped: str, way: str, catalog: Catalog) -> None:
     """Only where the condition holds; it goes on behind the step."""
     lines = f"2. Check #1\n3. If it is above 5, {skipped}\n4. Check #2\n5. Check #3\n6. Check #8"
-    first = import_script(f"1. Start in area 1\n{lines}", catalog).mission.task("MEASURE 1")
+    first = import_whole(f"1. Start in area 1\n{lines}", catalog).mission.task("MEASURE 1")
     assert first is not None
     assert [w.target for w in first.transitions] == [f"MEASURE {way}", "MEASURE 2"]
 
@@ -416,7 +416,7 @@ def test_an_end_that_is_only_for_a_failure(catalog: Catalog) -> None:
 
 
 def test_a_condition_with_its_other_case_stays_in_its_round(catalog: Catalog) -> None:
-    mission = import_script(
+    mission = import_whole(
         "1. Start in starting area 1.\n2. Check #1\n"
         "3. Check #4. If it is above 5, check #8, otherwise check #14.\n"
         "4. Repeat steps 2 to 3 twice",
@@ -430,7 +430,7 @@ def test_a_condition_with_its_other_case_stays_in_its_round(catalog: Catalog) ->
 
 
 def test_a_condition_behind_a_patrol_is_looked_at_after_it(catalog: Catalog) -> None:
-    mission = import_script(
+    mission = import_whole(
         "1. Start in starting area 1.\n2. Check #1\n"
         "3. Patrol the first floor for 10 minutes. If checkpoint #1 is above 4, check #8.\n"
         "4. Check #14",
@@ -493,7 +493,7 @@ def test_a_failure_is_that_of_the_task(when: str, catalog: Catalog) -> None:
 )
 def test_a_title_is_no_measurement(title: str, catalog: Catalog) -> None:
     steps = "1. Start in starting area 1.\n2. Check checkpoint #8."
-    found = import_script(f"{title}\n{steps}", catalog).mission
+    found = import_whole(f"{title}\n{steps}", catalog).mission
     assert measured_in(found) == ["8"]
 
 
@@ -510,7 +510,7 @@ def test_what_was_replaced_can_be_repeated(catalog: Catalog) -> None:
 
 
 def test_a_slip_with_several_spellings_of_one_word(catalog: Catalog) -> None:
-    found = import_script("Start in starting area 1.\nCheck presure guage 3.", catalog)
+    found = import_whole("Start in starting area 1.\nCheck presure guage 3.", catalog)
     assert measured_in(found.mission) == ["6"]
     assert [d.code for d in found.diagnostics if d.severity is Severity.WARNING] == [
         "script.respelled"
@@ -559,7 +559,7 @@ def test_what_is_done_in_an_event_is_one_thing(
 )
 def test_a_starting_area_by_itself_is_the_start(start: str, catalog: Catalog) -> None:
     check = "Prüfe Kontrollpunkt 4" if start.startswith("Startb") else "Check checkpoint 4"
-    mission = import_script(f"{start}\n- {check}\n", catalog).mission
+    mission = import_whole(f"{start}\n- {check}\n", catalog).mission
     assert mission.tasks[0].pose == catalog.areas[1].dock
     assert measured_in(mission) == ["4"]
 
@@ -712,24 +712,24 @@ def test_what_has_no_clear_place_or_meaning_is_asked_about(
 )
 def test_what_makes_no_sense_is_refused(text: str, catalog: Catalog) -> None:
     with pytest.raises(DiagnosticError):
-        import_script(text, catalog)
+        import_whole(text, catalog)
 
 
 @pytest.mark.parametrize("text", ["Check #1, report it.", "Check #1, then go on. Check #4."])
 def test_what_is_done_anyway_has_no_effect(text: str, catalog: Catalog) -> None:
-    found = import_script(f"{START}{text}", catalog).diagnostics
+    found = import_whole(f"{START}{text}", catalog).diagnostics
     assert [d.code for d in found] == ["script.no-effect"]
 
 
 def test_steps_that_are_repeated_apart_from_the_line_that_says_so(catalog: Catalog) -> None:
     text = "1. Start in starting area 1.\n2. Check #1.\n3. Check #4.\n4. Repeat step {}."
-    there = import_script(text.format("2 twice"), catalog)
+    there = import_whole(text.format("2 twice"), catalog)
     assert [d.code for d in there.diagnostics] == ["script.repeated-there"]
     assert measured_in(there.mission) == ["1", "4"]
-    assert measured_in(import_script(text.format("2 again"), catalog).mission) == ["1", "4", "1"]
-    assert not import_script(text.format("3 twice"), catalog).diagnostics
+    assert measured_in(import_whole(text.format("2 again"), catalog).mission) == ["1", "4", "1"]
+    assert not import_whole(text.format("3 twice"), catalog).diagnostics
     home = text.replace("3. Check #4", "3. Return to the docking station in starting area 1")
-    assert not import_script(home.format("2 twice"), catalog).diagnostics
+    assert not import_whole(home.format("2 twice"), catalog).diagnostics
 
 
 def test_what_comes_before_what_is_said_as_an_order(catalog: Catalog) -> None:
@@ -741,7 +741,7 @@ def test_what_comes_before_what_is_said_as_an_order(catalog: Catalog) -> None:
     "text", ["Check all level gauges on floors 1 and 4.", "On floors 1, 2 and 4, check #1 and #5."]
 )
 def test_a_floor_without_any_is_named(text: str, catalog: Catalog) -> None:
-    found = import_script(f"Start in area 1.\n{text}", catalog)
+    found = import_whole(f"Start in area 1.\n{text}", catalog)
     assert [d.code for d in found.diagnostics] == ["script.empty-floor"]
     assert "floor 4" in found.diagnostics[0].message
 
@@ -767,7 +767,7 @@ def test_what_fails_behind_a_case_that_asks_of_the_same(catalog: Catalog) -> Non
     ],
 )
 def test_what_is_odd_is_a_warning(text: str, code: str, named: str, catalog: Catalog) -> None:
-    (found,) = import_script(f"{START}{text}", catalog).diagnostics
+    (found,) = import_whole(f"{START}{text}", catalog).diagnostics
     assert (found.code, found.severity) == (f"script.{code}", Severity.WARNING)
     assert named in found.message
 
@@ -783,7 +783,7 @@ def test_what_is_odd_is_a_warning(text: str, code: str, named: str, catalog: Cat
     ],
 )
 def test_what_is_not_odd_is_none(text: str, catalog: Catalog) -> None:
-    assert not import_script(f"{START}{text}", catalog).diagnostics
+    assert not import_whole(f"{START}{text}", catalog).diagnostics
 
 
 @pytest.mark.parametrize(
@@ -791,7 +791,7 @@ def test_what_is_not_odd_is_none(text: str, catalog: Catalog) -> None:
 )
 def test_a_title_with_the_words_of_an_order_is_a_warning(title: str, catalog: Catalog) -> None:
     text = f"{title}\n\n1. Start in starting area 1.\n2. Check #1."
-    script = import_script(text, catalog, source_name="script")
+    script = import_whole(text, catalog, source_name="script")
     assert [t.name for t in script.mission.tasks][-1:] == ["MEASURE 1"]
     (warning,) = [d for d in script.diagnostics if d.severity is Severity.WARNING]
     assert "adds no task" in warning.message

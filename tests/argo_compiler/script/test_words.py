@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from argo_compiler.base.catalog import Catalog
-from argo_compiler.script import import_script
 from argo_compiler.script.reference import BEGIN, END, as_markdown
 from argo_compiler.script.sentences.words import loading
+from tests.whole_scripts import import_whole
 
 FOLDER = Path(loading.__file__).parent
 
@@ -104,7 +104,7 @@ def test_a_place_may_be_named_as_a_phrase_is(catalog: Catalog) -> None:
     place = catalog.places[0].model_copy(update={"name": "Control room"})
     named = catalog.model_copy(update={"places": (*catalog.places, place)})
     text = "Start in starting area 1. Go to the control room."
-    assert place.pose in [task.pose for task in import_script(text, named).mission.tasks]
+    assert place.pose in [task.pose for task in import_whole(text, named).mission.tasks]
 
 
 def test_the_page_on_scripts_has_all_that_can_be_said() -> None:

@@ -2,7 +2,6 @@
 
 import pytest
 
-from argo_compiler import import_script
 from argo_compiler.il import EventKind
 from argo_env import RunSpec, open_site, simulate
 from argo_env.evaluation.detection import false_alarms
@@ -11,6 +10,7 @@ from argo_env.faults.plant import GasLeakFault, PlatformAlarm
 from argo_env.report.html import page
 from argo_env.run.causes import explain_false_all_clear, false_all_clears
 from argo_env.run.record import Anomaly
+from tests.whole_scripts import import_whole
 
 MISSION = """Mission Protocol #1
 In case of a gas leak, go to starting area 1, wait until all clear for at most 1 min, and resume.
@@ -23,7 +23,7 @@ LEAK = GasLeakFault(at=60.0, place=(8.0, 6.0, 3.3), rate=0.02)
 
 def run_with_leak(script, seed, faults):
     site = open_site("umad")
-    mission = import_script(script, site.catalog, source_name="mission.txt").mission
+    mission = import_whole(script, site.catalog, source_name="mission.txt").mission
     return simulate(RunSpec(mission=mission, seed=seed, faults=faults), site)
 
 
@@ -53,7 +53,7 @@ def anomaly(t, kind, source):
 def quiet():
     """Return the spec and the record of a run by travel times, in which nothing is found."""
     site = open_site("umad")
-    mission = import_script(MISSION, site.catalog, source_name="mission.txt").mission
+    mission = import_whole(MISSION, site.catalog, source_name="mission.txt").mission
     values = {5: site.site.checkpoint(5).nominal.low}
     spec = RunSpec(mission=mission, drive="route", values=values)
     return spec, simulate(spec, site)

@@ -11,11 +11,11 @@ from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.hfsm import lower
 from argo_compiler.il import Action, Mission, Task
 from argo_compiler.isar import from_isar, to_isar
-from argo_compiler.script import import_script
 from argo_env.files.parts import Parts
 from argo_env.navigation import Navigator
 from argo_env.planning.catalog import load_catalog, make_catalog
 from argo_env.planning.inspection_views import inspection_views_by_object_id
+from tests.whole_scripts import import_whole
 from tests.yard import site_of
 
 
@@ -96,8 +96,8 @@ def test_floor_that_is_too_small_to_patrol(robot, tmp_path):
     begin = "Mission Protocol\n1. Set the starting point in starting area 1.\n"
     for sentence in ("2. Patrol floor 1.", "2. Go to floor 1."):
         with pytest.raises(DiagnosticError, match="floor 1 has no three places that the robot"):
-            import_script(begin + sentence, catalog, source_name="nook.txt")
-    import_script(begin + "2. Wait 5 s.", catalog, source_name="nook.txt")
+            import_whole(begin + sentence, catalog, source_name="nook.txt")
+    import_whole(begin + "2. Wait 5 s.", catalog, source_name="nook.txt")
 
 
 def test_views_are_places_that_the_robot_reads_from(shipped, navigator):

@@ -7,7 +7,6 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from argo_compiler import import_script
 from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import ByHand, Cancel, GiveBack, Occurred, Outcome, Pause, TakeOver
 from argo_compiler.il import (
@@ -33,6 +32,7 @@ from argo_env.run.verdict import VerdictCode, VerdictPart
 from argo_env.run.verdict_line import Ending
 from tests.conftest import examples
 from tests.mission_writing import reaction as react
+from tests.whole_scripts import import_whole
 from tests.yard import measure, mission, run, waypoint
 
 DOCK = Pose(x=1.05, y=1.05, z=0.02)
@@ -95,7 +95,7 @@ def test_a_reaction_that_asks_for_what_was_under_way_gives_nothing_up(
 def test_the_same_by_a_script_on_a_site(fault_inputs):
     site = open_site("umad")
     script = (fault_inputs / "low_home.txt").read_text("utf-8")
-    plan = import_script(script, site.catalog).mission
+    plan = import_whole(script, site.catalog).mission
     low = logged_events((60.0, Occurred(LOW)))
     spec = RunSpec(mission=plan, site=site.reference, drive="route", events=low)
     record = simulate(spec, site)

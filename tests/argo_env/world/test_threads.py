@@ -9,7 +9,6 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from argo_compiler.base.garbage_collector import collector_held
-from argo_compiler.script import import_script
 from argo_env.drives.tracked.body import TrackedBody
 from argo_env.planning.opening import open_site
 from argo_env.robot.pose import BodyPose
@@ -18,6 +17,7 @@ from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
 from argo_env.world.world import World, pybullet
 from tests.processes import run_python
+from tests.whole_scripts import import_whole
 from tests.yard import write_site
 
 pytestmark = pytest.mark.long
@@ -40,7 +40,7 @@ def run(file: str, k: int) -> RunRecord:
     opened = open_site(file)
     first, second, third = (1 + (k + part) % 3 for part in range(3))
     script = SCRIPT.format(k=k, first=first, second=second, third=third)
-    imported = import_script(script, opened.catalog)
+    imported = import_whole(script, opened.catalog)
     spec = RunSpec.model_validate(
         {
             "mission": imported.mission,

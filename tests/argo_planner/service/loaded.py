@@ -3,12 +3,12 @@
 Without it the processes behave alike but take longer: each loads modules late and computes paths.
 """
 
-from argo_compiler.script import import_script
 from argo_env.planning import open_site
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec
 from argo_planner.use_cases.reporting import report_files
 from tests.forking import draw_small_overviews, load_late_modules
+from tests.whole_scripts import import_whole
 
 SCRIPT = (
     "Mission Protocol #1\n1. Set the starting point in starting area 1.\n2. Check valve R18.\n"
@@ -18,6 +18,6 @@ SCRIPT = (
 draw_small_overviews()  # these tests do not check it
 load_late_modules()
 _site = open_site("umad").prepare()
-_mission = import_script(SCRIPT, _site.catalog).mission
+_mission = import_whole(SCRIPT, _site.catalog).mission
 _spec = RunSpec(mission=_mission, site=_site.reference, drive="route")
 report_files(simulate(_spec, _site), _site.site, _site.robot)

@@ -71,7 +71,7 @@ def test_a_script_becomes_a_mission_and_is_read_back(service: Served) -> None:
     both = [client.get(made.headers["location"]).json()["mission"] for made in (made, again)]
     assert [t["name"] for t in both[0]["tasks"]] == [t["name"] for t in both[1]["tasks"]]
     wrong = client.post("/api/imports", params={"filename": "x.txt"}, content="Check valve R99")
-    problem(wrong, 422, "invalid")
+    problem(wrong, 422, "incomplete")
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,6 @@ from pathlib import Path
 import pytest
 
 from argo_compiler.base.errors import Conflict, NotFound
-from argo_compiler.script import import_script
 from argo_env.planning.opening import OpenedSite
 from argo_env.run.log import Entry
 from argo_env.run.record import RunRecord
@@ -28,6 +27,7 @@ from argo_planner.service.runs.host import AfterRestart, RunHost
 from argo_planner.service.runs.requests import RunOrder
 from argo_planner.service.runs.state import RunMode, RunStatus
 from tests.argo_planner.service.served import waiting_messages
+from tests.whole_scripts import import_whole
 
 pytestmark = pytest.mark.anyio
 
@@ -42,7 +42,7 @@ def now() -> datetime:
 
 
 def order(site: OpenedSite, **other: object) -> RunOrder:
-    mission = import_script(SCRIPT, site.catalog).mission
+    mission = import_whole(SCRIPT, site.catalog).mission
     fields = {"drive": "route", "speed": None, "seed": 4} | other
     return RunOrder(
         plan="0" * 12, revision=3, name="Round", mission=mission, site=site.reference, **fields

@@ -12,10 +12,11 @@ from dataclasses import dataclass
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, has_errors
 from argo_compiler.il import Mission
-from argo_compiler.script import format_script, import_script
+from argo_compiler.script import format_script
 from tests.argo_compiler.script.conftest import CATALOG
 from tests.campaigns.fuzz.sentences import SentenceGenerator, Word, text_of
 from tests.mission_writing import unplaced
+from tests.whole_scripts import import_whole
 
 FRAME = """\
 Mission Protocol #1
@@ -63,7 +64,7 @@ def import_sentence(words: list[Word]) -> tuple[Outcome, Mission | None]:
     """
     text = FRAME.format(text_of(words))
     try:
-        resolved = import_script(text, CATALOG)
+        resolved = import_whole(text, CATALOG)
     except DiagnosticError as error:
         return Outcome(None, (str(error),)), None
     messages = tuple(f"{d.code} {d.message}" for d in resolved.diagnostics)
@@ -81,7 +82,7 @@ def try_sentence(
     if len(words) <= LONGEST:
         breaches += words_without_effect(words, outcome, generator, rng)
     if not has_errors(check(mission, CATALOG)):
-        again = import_script(format_script(mission, CATALOG), CATALOG).mission
+        again = import_whole(format_script(mission, CATALOG), CATALOG).mission
         if unplaced(again) != outcome.mission:
             breaches.append(Breach("the mission that is read back is another one", text_of(words)))
     return "mission", breaches

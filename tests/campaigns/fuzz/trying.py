@@ -25,9 +25,10 @@ from argo_compiler.hfsm import (
     lower,
 )
 from argo_compiler.il import Action, EventKind, Mission, Task
-from argo_compiler.script import decode_script, format_script, import_script
+from argo_compiler.script import decode_script, format_script
 from tests.argo_compiler.script.conftest import CATALOG
 from tests.mission_writing import unplaced
+from tests.whole_scripts import import_whole
 
 STEPS = 30
 """number of events that the machine of a mission handles"""
@@ -39,12 +40,12 @@ def try_script(data: bytes, rng: random.Random) -> str:
     try:
         text = decode_script(data, "fuzz")
         area = rng.choice((None, 1, 2))
-        mission = import_script(text, CATALOG, start_area=area, end_area=area).mission
+        mission = import_whole(text, CATALOG, start_area=area, end_area=area).mission
     except ArgoError:
         return "refused"
     run(mission, rng)
     if not has_errors(check(mission, CATALOG)):
-        again = import_script(format_script(mission, CATALOG), CATALOG).mission
+        again = import_whole(format_script(mission, CATALOG), CATALOG).mission
         assert unplaced(again) == unplaced(mission), "formatting changes the mission"
     return "mission"
 

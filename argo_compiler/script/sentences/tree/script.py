@@ -1,9 +1,11 @@
 """A script as a whole."""
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Mode, Order
+from argo_compiler.script.documents.source import ScriptText
 from argo_compiler.script.sentences.tree.node import Node, node
 from argo_compiler.script.sentences.tree.orders import Fact, Sentence
 from argo_compiler.script.sentences.tree.places import Coordinates, Steps
@@ -49,6 +51,15 @@ class ScriptStep(Node):
     steps: "tuple[ScriptStep, ...]" = ()
 
 
+class Piece(NamedTuple):
+    """A sentence, a field, a row or a remark of a script, and whether it has an effect."""
+
+    text: ScriptText
+    """as it is read; its offsets tell which part of the source it is"""
+    aside: str = ""
+    """for a piece without effect: what it is taken for, such as `a greeting`"""
+
+
 @dataclass(kw_only=True)
 class ScriptHeader:
     """What is said of the mission as a whole. None: nothing is. Mutable: it grows line by line."""
@@ -85,4 +96,6 @@ class Script:
     source_text: str
     header: ScriptHeader = field(default_factory=ScriptHeader)
     steps: tuple[ScriptStep, ...] = ()
+    pieces: tuple[Piece, ...] = ()
+    """all text of the script in the order in which it is read, but for blank lines and rules"""
     diagnostics: tuple[Diagnostic, ...] = ()

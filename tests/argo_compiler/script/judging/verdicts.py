@@ -16,10 +16,10 @@ from argo_compiler.base.errors import ArgoError
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
 from argo_compiler.il import Mission
-from argo_compiler.script import import_script
 from tests.argo_compiler.script.judging.driving import Drive
 from tests.argo_compiler.script.judging.requirements import compare_header, compare_requirements
 from tests.argo_compiler.script.judging.traces import compare
+from tests.whole_scripts import import_whole
 
 KEYS = {
     "persona", "features", "verdict", "line", "mentions", "or_warn", "header", "traces",
@@ -165,7 +165,7 @@ def front_end(
     """Imports a script, checks it and analyses its paths."""
     lines = text.splitlines()
     try:
-        resolved = import_script(text, catalog, source_name="script", **options)
+        resolved = import_whole(text, catalog, source_name="script", **options)
     except DiagnosticError as error:
         return None, [_finding(d, lines) for d in error.diagnostics]
     except ArgoError as error:

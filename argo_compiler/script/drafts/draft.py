@@ -1,0 +1,250 @@
+"""The draft of a mission: what each piece of a script becomes, and what is left to decide."""
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cached_property
+
+from argo_compiler.base.errors import Invalid
+from argo_compiler.base.listing import listed
+from argo_compiler.base.model import Model
+from argo_compiler.diagnostics import Diagnostic, DiagnosticError
+from argo_compiler.il import Mission
+
+_Acts = dict[int, tuple["Act | None", tuple[str, ...]]]
+"""by the identity of a line: what a person does with it, and the sentences that it becomes"""
+
+
+class LineState(StrEnum):
+    """What is known of a line of a draft."""
+
+    UNDERSTOOD = "understood"
+    PROPOSED = "proposed"
+    """read by way of an assumption; it counts only when a person has confirmed it"""
+    SET_ASIDE = "set aside"
+    """without effect"""
+    OPEN = "open"
+    """not understood, or with more than one meaning"""
+
+
+class Act(StrEnum):
+    """What a person has done with a line."""
+
+    CONFIRMED = "confirmed"
+    SAID = "said"
+    SET_ASIDE = "set aside"
+
+
+class LineDecision(Model):
+    """What a person has decided on for a line of a script.
+
+    A line is found again by its text. A confirmation counts only while the proposal is the same.
+    """
+
+    text: str
+    """of the line, with single blanks"""
+    act: Act
+    sentences: tuple[str, ...] = ()
+    """what it becomes; none for a line that is set aside"""
+    occurrence: int = 1
+    """which of the lines with this text it is, from 1"""
+    occurrences: int = 1
+    """how many lines had this text"""
+
+
+class DraftLine(Model):
+    """A sentence, a field, a row or a remark of a script, and what it becomes.
+
+    It may be a part of a line of the file, or go over several.
+    """
+
+    line: int
+    """number of its first line in the file, from 1"""
+    last_line: int
+    part: int = 1
+    """which of the pieces that begin in this line it is, from 1"""
+    parts: int = 1
+    """how many pieces begin in this line"""
+    text: str
+    """as in the file, with single blanks"""
+    state: LineState
+    sentences: tuple[str, ...] = ()
+    """what it becomes, if that is proposed or decided, as sentences that Argo understands"""
+    unused: tuple[str, ...] = ()
+    """words of the line that the proposal does not use"""
+    reason: str = ""
+    """why it is set aside or open"""
+    hint: str = ""
+    """what a person can do about it"""
+    choices: tuple[tuple[str, ...], ...] = ()
+    """for an open line, what it may become; no sentences: it is set aside"""
+    act: Act | None = None
+    """what a person has done with it"""
+
+    @property
+    def label(self) -> str:
+        """The number by which a person names it: `7`, or `7.2` for the second piece of line 7."""
+        return f"{self.line}.{self.part}" if self.parts > 1 else str(self.line)
+
+    @property
+    def is_left(self) -> bool:
+        """Whether something is left to decide on."""
+        return self.state in (LineState.PROPOSED, LineState.OPEN)
+
+
+@dataclass(frozen=True)
+class Draft:
+    """A script that was read, line by line, and its mission once nothing is left to decide."""
+
+    source_name: str
+    lines: tuple[DraftLine, ...]
+    mission: Mission | None
+    """None as long as a line is open or not confirmed, or the mission as a whole has an error"""
+    diagnostics: tuple[Diagnostic, ...] = ()
+    """all messages, by position; one for each open line is an error"""
+
+    @cached_property
+    def left(self) -> tuple[DraftLine, ...]:
+        """The lines that are proposed or open."""
+        return tuple(line for line in self.lines if line.is_left)
+
+    @cached_property
+    def decisions(self) -> tuple[LineDecision, ...]:
+        """What a person has decided on."""
+        return decisions_of((line.text, line.act, line.sentences) for line in self.lines)
+
+    def require_mission(self) -> Mission:
+        """Return the mission.
+
+        Raises:
+            IncompleteDraft: There are lines to confirm or to answer.
+            DiagnosticError: The mission as a whole has an error, or an option does not fit it.
+        """
+        if self.mission is not None:
+            return self.mission
+        if self.left:
+            raise IncompleteDraft(self)
+        raise DiagnosticError(self.source_name, self.diagnostics)
+
+    # ---- decisions
+
+    def confirm(self, labels: Iterable[str] | None = None) -> tuple[LineDecision, ...]:
+        """Return the decisions with these proposed lines confirmed; None: all proposed lines.
+
+        Raises Invalid if one of the lines is open, or there is no such line.
+        """
+        proposed = LineState.PROPOSED
+        if labels is None:
+            chosen = [line for line in self.lines if line.state is proposed]
+        else:
+            chosen = [line for label in labels for line in self._to_confirm(label)]
+        return self._with({id(one): (Act.CONFIRMED, one.sentences) for one in chosen})
+
+    def _to_confirm(self, label: str) -> Sequence[DraftLine]:
+        found = self._named(label)
+        opened = [line for line in found if line.state is LineState.OPEN]
+        if opened:
+            line = opened[0]
+            raise Invalid(
+                f"line {line.label} of {self.source_name} is open, and has nothing to confirm: "
+                f"choose what it means, say it in other words, or set it aside"
+            )
+        return [line for line in found if line.state is LineState.PROPOSED]
+
+    def set_aside(self, labels: Iterable[str]) -> tuple[LineDecision, ...]:
+        """Return the decisions with these lines set aside. Of a line with several pieces those
+        are meant that are open or proposed, or all if none is."""
+        chosen = [line for label in labels for line in self._named(label)]
+        return self._with({id(one): (Act.SET_ASIDE, ()) for one in chosen})
+
+    def say(self, label: str, sentences: Sequence[str]) -> tuple[LineDecision, ...]:
+        """Return the decisions with sentences said instead of a line, as `set_aside` names it."""
+        first, *others = self._named(label)
+        acts: _Acts
+        acts = {id(one): (Act.SET_ASIDE, ()) for one in others}
+        return self._with({id(first): (Act.SAID, tuple(sentences)), **acts})
+
+    def choose(self, label: str, number: int) -> tuple[LineDecision, ...]:
+        """Return the decisions with the choice of this number, from 1, taken for an open line."""
+        choosing = [line for line in self._named(label) if line.choices]
+        if len(choosing) != 1:
+            raise Invalid(
+                f"line {label} of {self.source_name} offers no choice: say what it means, or set "
+                "it aside"
+            )
+        (line,) = choosing
+        if not 1 <= number <= len(line.choices):
+            raise Invalid(
+                f"line {line.label} of {self.source_name} has {len(line.choices)} choices"
+            )
+        sentences = line.choices[number - 1]
+        return self._with({id(line): (Act.SAID if sentences else Act.SET_ASIDE, sentences)})
+
+    def undo(self, labels: Iterable[str]) -> tuple[LineDecision, ...]:
+        """Return the decisions without those on these lines."""
+        chosen = [line for label in labels for line in self._named(label, decided=True)]
+        return self._with({id(one): (None, ()) for one in chosen})
+
+    def _named(self, label: str, decided: bool = False) -> Sequence[DraftLine]:
+        """Return the lines that a label such as `7` or `7.2` means."""
+        number, _, part = label.partition(".")
+        at = [line for line in self.lines if line.label == label]
+        if not at and number.isdecimal() and not part:
+            wanted = int(number)
+            at = [line for line in self.lines if line.line == wanted]
+            at = at or [one for one in self.lines if one.line <= wanted <= one.last_line]
+        if not at:
+            raise Invalid(f"{self.source_name} has no line {label} with text")
+        if decided:
+            return at
+        return [line for line in at if line.is_left] or at
+
+    def _with(self, acts: _Acts) -> tuple[LineDecision, ...]:
+        """Return the decisions, with others for the lines with these identities."""
+        return decisions_of(
+            (line.text, *acts.get(id(line), (line.act, line.sentences))) for line in self.lines
+        )
+
+
+def decisions_of(
+    lines: Iterable[tuple[str, Act | None, tuple[str, ...]]],
+) -> tuple[LineDecision, ...]:
+    """Return the decisions on the lines of a script, given by text, act and sentences."""
+    all_ = tuple(lines)
+    total = Counter(text for text, _, _ in all_)
+    met: Counter[str] = Counter()
+    found: list[LineDecision] = []
+    for text, act, sentences in all_:
+        met[text] += 1
+        if act is not None:
+            said = () if act is Act.SET_ASIDE else sentences
+            found.append(
+                LineDecision(
+                    text=text,
+                    act=act,
+                    sentences=said,
+                    occurrence=met[text],
+                    occurrences=total[text],
+                )
+            )
+    return tuple(found)
+
+
+class IncompleteDraft(DiagnosticError):
+    """Raised where a mission is asked for, and its draft has lines left to decide on."""
+
+    code = "incomplete"
+
+    def __init__(self, draft: Draft) -> None:
+        super().__init__(draft.source_name, draft.diagnostics)
+        self.draft = draft
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return type(self), (self.draft,), vars(self)
+
+    def __str__(self) -> str:
+        proposed = sum(line.state is LineState.PROPOSED for line in self.draft.left)
+        counts = ((proposed, "confirm"), (len(self.draft.left) - proposed, "answer"))
+        parts = [f"{n} line{'s' if n > 1 else ''} to {what}" for n, what in counts if n]
+        return f"{self.draft.source_name} is not complete: {listed(parts)}"

@@ -1,0 +1,161 @@
+"""Script text to draft: the script is read, and what is left is proposed or asked about."""
+
+from bisect import bisect_right
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.garbage_collector import collector_held
+from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
+from argo_compiler.il import Mission
+from argo_compiler.script.drafts.draft import Draft, DraftLine, LineDecision, LineState
+from argo_compiler.script.parsing.parser import parse
+from argo_compiler.script.resolve.importing import resolve_script
+from argo_compiler.script.sentences.tree.script import Piece
+
+_OF_OPTIONS = frozenset(["script.area-choice", "script.area-conflict", "script.area-not-offered"])
+"""codes of errors that another option resolves, and no change of the line"""
+
+
+@dataclass(frozen=True)
+class _Reading:
+    """A script that was read with some decisions."""
+
+    pieces: tuple[Piece, ...]
+    mission: Mission | None
+    diagnostics: tuple[Diagnostic, ...]
+
+
+@collector_held()
+def import_script(
+    text: str,
+    catalog: Catalog,
+    *,
+    source_name: str = "script",
+    start_area: int | None = None,
+    end_area: int | None = None,
+    decisions: Iterable[LineDecision] = (),
+) -> Draft:
+    """Return the draft of a script; its mission is None as long as something is left to decide.
+
+    Args:
+        text: the script
+        catalog: names and places of the site
+        source_name: name of the script in messages
+        start_area: starting area, for a script that names none
+        end_area: area to end in, likewise
+        decisions: what a person has decided on for lines of the script; decisions on lines that it
+            does not have, or that have another proposal now, have no effect
+
+    Raises:
+        DiagnosticError: The text is no script: it is empty or too long.
+    """
+    areas = (start_area, end_area)
+    reading = _read(text, catalog, source_name, areas, {})
+    acts = _match(tuple(decisions), reading.pieces)
+    if acts:
+        decided = {start: decision.sentences for start, decision in acts.items()}
+        reading = _read(text, catalog, source_name, areas, decided)
+    return Draft(
+        source_name=source_name,
+        lines=_lines(reading, acts),
+        mission=reading.mission,
+        diagnostics=reading.diagnostics,
+    )
+
+
+def _read(
+    text: str,
+    catalog: Catalog,
+    source_name: str,
+    areas: tuple[int | None, int | None],
+    decided: Mapping[int, Sequence[str]],
+) -> _Reading:
+    places = [place.name for place in catalog.places]
+    names = [checkpoint.name for checkpoint in catalog.checkpoints]
+    script = parse(text, places, source_name, names, decided)
+    try:
+        resolved = resolve_script(script, catalog, *areas)
+    except DiagnosticError as error:
+        return _Reading(script.pieces, None, error.diagnostics)
+    return _Reading(script.pieces, resolved.mission, resolved.diagnostics)
+
+
+def _match(decisions: Sequence[LineDecision], pieces: Sequence[Piece]) -> dict[int, LineDecision]:
+    """Return the decisions by the offsets at which their pieces begin.
+
+    Of several lines with one text each needs its own decision: if their number has changed, these
+    decisions have no effect.
+    """
+    if not decisions:
+        return {}
+    by_line = {(decision.text, decision.occurrence): decision for decision in decisions}
+    texts = [text_of(piece) for piece in pieces]
+    total = Counter(texts)
+    met: Counter[str] = Counter()
+    found: dict[int, LineDecision] = {}
+    for text, piece in zip(texts, pieces, strict=True):
+        met[text] += 1
+        decision = by_line.get((text, met[text]))
+        if decision is not None and decision.occurrences == total[text]:
+            found[piece.text.first] = decision
+    return found
+
+
+def text_of(piece: Piece) -> str:
+    """Return the part of the source that a piece was read from, with single blanks."""
+    text = piece.text
+    return " ".join(text.source.text[text.first : text.last + 1].split())
+
+
+def _lines(reading: _Reading, acts: Mapping[int, LineDecision]) -> tuple[DraftLine, ...]:
+    pieces = [piece for piece in reading.pieces if piece.text.content]
+    errors = _errors_by_piece(reading, pieces)
+    spans = [_lines_of(piece) for piece in pieces]
+    counts = Counter(first for first, _ in spans)
+    met: Counter[int] = Counter()
+    found: list[DraftLine] = []
+    for piece, (first, last) in zip(pieces, spans, strict=True):
+        met[first] += 1
+        decision = acts.get(piece.text.first)
+        error = errors.get(piece.text.first)
+        state = LineState.SET_ASIDE if piece.aside else LineState.UNDERSTOOD
+        found.append(
+            DraftLine(
+                line=first,
+                last_line=last,
+                part=met[first],
+                parts=counts[first],
+                text=text_of(piece),
+                state=state if error is None else LineState.OPEN,
+                sentences=() if decision is None else decision.sentences,
+                reason=piece.aside if error is None else error.message,
+                hint="" if error is None else error.hint or "",
+                act=None if decision is None else decision.act,
+            )
+        )
+    return tuple(found)
+
+
+def _lines_of(piece: Piece) -> tuple[int, int]:
+    """Return the numbers of a piece's first and last line."""
+    text, source = piece.text, piece.text.source
+    return source.line_at(text.first), source.line_at(text.last)
+
+
+def _errors_by_piece(reading: _Reading, pieces: Sequence[Piece]) -> dict[int, Diagnostic]:
+    """Return the first error in each piece that has one, by the offset at which it begins."""
+    starts = [piece.text.first for piece in pieces]
+    found: dict[int, Diagnostic] = {}
+    for diagnostic in reading.diagnostics:
+        span = diagnostic.span
+        if diagnostic.severity is not Severity.ERROR or span is None or not pieces:
+            continue
+        if diagnostic.code in _OF_OPTIONS:
+            continue
+        offset = pieces[0].text.source.offset_at(span.line, span.column)
+        at = bisect_right(starts, offset) - 1
+        inside = (i for i in range(at, max(-1, at - 20), -1) if pieces[i].text.last >= offset)
+        found.setdefault(starts[next(inside, max(at, 0))], diagnostic)
+    return found

@@ -11,6 +11,7 @@ import argo_env
 from argo_compiler.diagnostics import json_format
 from argo_compiler.files import migration, route_problem_file
 from argo_compiler.hfsm import Hfsm
+from argo_compiler.script.drafts import draft_file
 from argo_env.recording import output
 from argo_env.run import journal
 from argo_env.run.record import RunRecord
@@ -21,6 +22,7 @@ from tests.source import trees
 PAGE = (ROOT / "docs" / "stability.md").read_text(encoding="utf-8")
 VERSIONS = {
     "mission (": migration.VERSION,
+    "[draft]": draft_file.VERSION,
     "state machine": Hfsm.model_fields["version"].default,
     "record of a run": RunRecord.model_fields["version"].default,
     "[journal]": journal.VERSION,

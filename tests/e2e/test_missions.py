@@ -1,4 +1,4 @@
-"""Whole missions with the command `argo` alone, from the text of a script to the report."""
+"""Resolved missions with the command `argo` alone, from the text of a script to the report."""
 
 import re
 from pathlib import Path

@@ -367,6 +367,10 @@ SCRIPT = {
     "script.self-move": error(
         "A step can't be placed before or after itself.", "Name another step."
     ),
+    "script.set-aside": warning(
+        "A line has no effect, as it names nothing that a mission has.",
+        "Write it as a step if the robot has to do something; otherwise no action is needed.",
+    ),
     "script.several-floors": error(
         "The robot is sent to several floors in one order.", "Write an order for each of them."
     ),

@@ -18,7 +18,9 @@ from collections.abc import Iterator
 from argo_compiler.base.errors import Invalid
 from argo_compiler.script.drafts.draft import Act, Draft, DraftLine, LineDecision, decisions_of
 
-_FIRST = "# draft, version 1"
+VERSION = 1
+"""version of this format"""
+_FIRST = f"# draft, version {VERSION}"
 _HEAD = re.compile(rf"{_FIRST}(?:: .*)?")
 _LINE = re.compile(r"\s*[0-9]+(?:\.[0-9]+)? \| (.*)")
 _KEYS = {Act.CONFIRMED: "confirmed", Act.SAID: "said", Act.SET_ASIDE: "set aside by hand"}

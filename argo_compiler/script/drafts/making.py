@@ -2,27 +2,42 @@
 
 from bisect import bisect_right
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.garbage_collector import collector_held
-from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
+from argo_compiler.diagnostics import (
+    Diagnostic,
+    DiagnosticError,
+    Severity,
+    by_position,
+    diagnostic_of,
+    with_excerpts,
+)
 from argo_compiler.il import Mission
-from argo_compiler.script.drafts.draft import Draft, DraftLine, LineDecision, LineState
+from argo_compiler.script.drafts.draft import Act, Draft, DraftLine, LineDecision, LineState
 from argo_compiler.script.parsing.parser import parse
+from argo_compiler.script.proposals.composing import Proposal
+from argo_compiler.script.proposals.proposing import propose
 from argo_compiler.script.resolve.importing import resolve_script
-from argo_compiler.script.sentences.tree.script import Piece
+from argo_compiler.script.sentences.tree.script import Piece, Script
 
 _OF_OPTIONS = frozenset(["script.area-choice", "script.area-conflict", "script.area-not-offered"])
 """codes of errors that another option resolves, and no change of the line"""
+_UNREAD = frozenset(["script.not-understood", "script.unfinished", "script.unknown-label"])
+"""codes of errors of a piece that the grammar does not take; others are questions"""
+
+
+_LONGEST_SHOWN = 60
+"""characters of a text that a message shows"""
 
 
 @dataclass(frozen=True)
 class _Reading:
     """A script that was read with some decisions."""
 
-    pieces: tuple[Piece, ...]
+    script: Script
     mission: Mission | None
     diagnostics: tuple[Diagnostic, ...]
 
@@ -53,15 +68,24 @@ def import_script(
     """
     areas = (start_area, end_area)
     reading = _read(text, catalog, source_name, areas, {})
-    acts = _match(tuple(decisions), reading.pieces)
-    if acts:
-        decided = {start: decision.sentences for start, decision in acts.items()}
-        reading = _read(text, catalog, source_name, areas, decided)
+    acts = _match(tuple(decisions), reading.script.pieces)
+    said = {at: act.sentences for at, act in acts.items() if act.act is not Act.CONFIRMED}
+    if said:
+        reading = _read(text, catalog, source_name, areas, said)
+    errors = _errors_by_piece(reading)
+    unread = {at for at, error in errors.items() if error.code in _UNREAD and at not in said}
+    proposals = propose(reading.script, unread, catalog)
+    proposed = {at: p.sentences for at, p in proposals.items() if p.sentences or p.aside}
+    if proposed:
+        reading = _read(text, catalog, source_name, areas, {**said, **proposed})
+        errors = _errors_by_piece(reading)
+    lines = tuple(_lines(reading, errors, acts, proposals))
+    left = any(line.is_left for line in lines)
     return Draft(
         source_name=source_name,
-        lines=_lines(reading, acts),
-        mission=reading.mission,
-        diagnostics=reading.diagnostics,
+        lines=lines,
+        mission=None if left else reading.mission,
+        diagnostics=by_position((*reading.diagnostics, *_asides(reading, proposals))),
     )
 
 
@@ -78,8 +102,8 @@ def _read(
     try:
         resolved = resolve_script(script, catalog, *areas)
     except DiagnosticError as error:
-        return _Reading(script.pieces, None, error.diagnostics)
-    return _Reading(script.pieces, resolved.mission, resolved.diagnostics)
+        return _Reading(script, None, error.diagnostics)
+    return _Reading(script, resolved.mission, resolved.diagnostics)
 
 
 def _match(decisions: Sequence[LineDecision], pieces: Sequence[Piece]) -> dict[int, LineDecision]:
@@ -109,33 +133,68 @@ def text_of(piece: Piece) -> str:
     return " ".join(text.source.text[text.first : text.last + 1].split())
 
 
-def _lines(reading: _Reading, acts: Mapping[int, LineDecision]) -> tuple[DraftLine, ...]:
-    pieces = [piece for piece in reading.pieces if piece.text.content]
-    errors = _errors_by_piece(reading, pieces)
+def _lines(
+    reading: _Reading,
+    errors: Mapping[int, Diagnostic],
+    acts: Mapping[int, LineDecision],
+    proposals: Mapping[int, Proposal],
+) -> Iterator[DraftLine]:
+    pieces = reading.script.pieces
     spans = [_lines_of(piece) for piece in pieces]
     counts = Counter(first for first, _ in spans)
     met: Counter[int] = Counter()
-    found: list[DraftLine] = []
     for piece, (first, last) in zip(pieces, spans, strict=True):
         met[first] += 1
-        decision = acts.get(piece.text.first)
-        error = errors.get(piece.text.first)
-        state = LineState.SET_ASIDE if piece.aside else LineState.UNDERSTOOD
-        found.append(
-            DraftLine(
-                line=first,
-                last_line=last,
-                part=met[first],
-                parts=counts[first],
-                text=text_of(piece),
-                state=state if error is None else LineState.OPEN,
-                sentences=() if decision is None else decision.sentences,
-                reason=piece.aside if error is None else error.message,
-                hint="" if error is None else error.hint or "",
-                act=None if decision is None else decision.act,
-            )
+        at = piece.text.first
+        line = DraftLine(
+            line=first,
+            last_line=last,
+            part=met[first],
+            parts=counts[first],
+            text=text_of(piece),
+            state=LineState.SET_ASIDE if piece.aside else LineState.UNDERSTOOD,
+            reason=piece.aside,
         )
-    return tuple(found)
+        yield line.model_copy(update=_known(acts.get(at), proposals.get(at), errors.get(at)))
+
+
+def _known(
+    decision: LineDecision | None, proposal: Proposal | None, error: Diagnostic | None
+) -> dict[str, object]:
+    """Return what is known of a line besides its text."""
+    found: dict[str, object] = {}
+    confirmed = False
+    if proposal is not None:
+        state = LineState.PROPOSED if proposal.sentences else LineState.SET_ASIDE
+        found = {"state": state, "sentences": proposal.sentences, "unused": proposal.unused}
+        found |= {"reason": proposal.aside, "choices": proposal.choices}
+        confirmed = decision is not None and decision.sentences == proposal.sentences != ()
+    if decision is not None and (confirmed or decision.act is not Act.CONFIRMED):
+        aside = decision.act is Act.SET_ASIDE
+        found = {"state": LineState.SET_ASIDE if aside else LineState.UNDERSTOOD}
+        found |= {"act": decision.act, "sentences": decision.sentences}
+    if error is not None:
+        found |= {"state": LineState.OPEN, "reason": error.message, "hint": error.hint or ""}
+    return found
+
+
+def _asides(reading: _Reading, proposals: Mapping[int, Proposal]) -> tuple[Diagnostic, ...]:
+    """Return the warnings for the pieces that proposals set aside."""
+    found = [
+        diagnostic_of(
+            "script.set-aside",
+            f"`{_shown(text_of(piece))}` is set aside: it is {proposals[piece.text.first].aside}",
+            "write it as a step if the robot has to do something",
+            span=piece.text.span(),
+        )
+        for piece in reading.script.pieces
+        if piece.text.first in proposals and proposals[piece.text.first].aside
+    ]
+    return with_excerpts(found, reading.script.source_text.split("\n"))
+
+
+def _shown(text: str) -> str:
+    return text if len(text) <= _LONGEST_SHOWN else f"{text[: _LONGEST_SHOWN - 3]}..."
 
 
 def _lines_of(piece: Piece) -> tuple[int, int]:
@@ -144,8 +203,9 @@ def _lines_of(piece: Piece) -> tuple[int, int]:
     return source.line_at(text.first), source.line_at(text.last)
 
 
-def _errors_by_piece(reading: _Reading, pieces: Sequence[Piece]) -> dict[int, Diagnostic]:
+def _errors_by_piece(reading: _Reading) -> dict[int, Diagnostic]:
     """Return the first error in each piece that has one, by the offset at which it begins."""
+    pieces = reading.script.pieces
     starts = [piece.text.first for piece in pieces]
     found: dict[int, Diagnostic] = {}
     for diagnostic in reading.diagnostics:

@@ -14,7 +14,7 @@ from argo_compiler.script.sentences.grammar.parser import StumbleError
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.lexicon import Lexicon, expand
 from argo_compiler.script.sentences.words.loading import pattern
-from argo_compiler.script.sentences.words.prose import Prose, begins, either
+from argo_compiler.script.sentences.words.prose import Prose, begins, cue_pattern, either
 from argo_compiler.script.sentences.words.word import VERBS, Word
 
 _MANNERS = frozenset(
@@ -49,6 +49,11 @@ _FURTHER = frozenset(
 """words of these types are in no reason; `which hang on floor 2` says which are meant"""
 _MOST_REASONS = 3
 """in a sentence"""
+_COUNTED = frozenset(
+    ["TIMES", "MORE", "DURATION", "QUANTITY", "MOST_TIME", "MOST_TIMES", "FLOOR_NAME", "BOTH"]
+)
+_FLOORS = frozenset([("FLOOR", "NUMBER"), ("ORDINAL", "FLOOR"), ("AREA", "NUMBER")])
+"""types of words, side by side, that name a floor or an area"""
 _LONGEST_TITLE = 14
 """words"""
 _LONGEST_OCCASION = 10
@@ -130,7 +135,31 @@ class Asides:
         words = text.content.lower().rstrip(":").split()
         if text.content.endswith(":") and {*words} <= _phrases_of(self.prose.around_reactions):
             return True  # `To be obeyed all the time:`
-        return len(words) <= _LONGEST_TITLE and not self.asks(text, counted=True)
+        short = len(words) <= _LONGEST_TITLE
+        if not short or self.asks(text, counted=True):
+            return False
+        return not self.names_tasks(text) or self._is_headline(text)
+
+    def _is_headline(self, text: ScriptText) -> bool:
+        """Whether a text that names a checkpoint or a floor is no more than a headline: `Leak test
+        at pressure gauge 2`. It has no verb, and nothing that leaves out or takes back."""
+        content = text.content
+        if content.endswith(".") or "IS" in self.understanding.types(text):
+            return False
+        cues = self.prose.cues
+        spoken = ("forbidding", "past", "leave_out", "stating", "correction")
+        return all(cue_pattern(name, cues[name]).search(content) is None for name in spoken)
+
+    def names_tasks(self, text: ScriptText) -> bool:
+        """Whether a text names a checkpoint, a floor, an area, a time or a count."""
+        types = self.understanding.types(text)
+        if self.is_explicit_title(text):
+            return False
+        return (
+            any(a == "KIND" and b in _LABELS for a, b in pairwise(types))
+            or not _COUNTED.isdisjoint(types)
+            or any(pair in _FLOORS for pair in pairwise(types))
+        )
 
     def stands_for_title(self, text: ScriptText) -> bool:
         """Whether a line over numbered steps, which makes no sense as an order, is a title though

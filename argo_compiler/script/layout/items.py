@@ -42,6 +42,11 @@ class LineItem:
         self.over = self.line.heading
 
     @property
+    def last_line(self) -> str:
+        """The last of its lines."""
+        return (self.parts[-1] if self.parts else self.text).content
+
+    @property
     def last(self) -> ScriptText:
         """The last sentence."""
         if self.tail is None:
@@ -73,6 +78,8 @@ _LONGEST_SENTENCE = 2000
 _END = 200
 """characters at the end of a longer one that are looked at"""
 _MOST_KNOWN = 1024
+_WRAPPED = 45
+"""characters of a line that may go on in the next one, as it was broken for its length"""
 _LONGEST_STRANGE = 300
 """characters; lines that make no sense are put together up to here"""
 _DEEPEST = 20
@@ -266,7 +273,13 @@ def _are_one(item: LineItem, line: ScriptLine, sense: LineSense) -> bool:
         return True
     if sense.is_complete(rest) or len(last.content) > _LONGEST_STRANGE:
         return False
-    return not whole or sense.is_fragment(rest, indented)
+    if not whole:
+        return (
+            indented
+            or last.content.endswith("-")
+            or (below.content[:1].islower() and len(item.last_line) >= _WRAPPED)
+        )
+    return sense.is_fragment(rest, indented)
 
 
 def _ends_in_number(item: LineItem, line: ScriptLine, sense: LineSense) -> bool:

@@ -203,6 +203,7 @@ class _Parser:
         whole = text is item.text and len(said) == len(parts)
         whole = whole and len(self.diagnostics.entries) == before
         plain = plain and whole and not self.understanding.unknown and self._is_plain(item)
+        plain = plain and not self.decided  # else it may not be what the text itself says
         if plain and not any(isinstance(s, Unread) for s in said):
             self.repeats.keep(text, said, lambda text, unknown: self._again(item, text, unknown))
         return said

@@ -210,7 +210,8 @@ class SentenceReader:
             return _Title(titled[0], fields=titled[1])
         alone = text.content == item.text.content
         over = first and alone and item.line.heading and self.asides.stands_for_title(text)
-        if over or self.asides.is_title(text):
+        named = not first and self.asides.names_tasks(text)
+        if over or (self.asides.is_title(text) and not named):
             return _Title(text)
         if not first or "," not in text.content:
             return None
@@ -243,7 +244,8 @@ class SentenceReader:
         """Keeps a title, and reads what stands behind it."""
         self.begun = True
         if first:
-            self._entitle(title.head, asked=not self.asides.is_title(title.head))
+            doubtful = not self.asides.is_title(title.head) or self.asides.names_tasks(title.head)
+            self._entitle(title.head, asked=doubtful)
         elif self.asides.sets_aside(title.head):
             message = f"`{title.head.content}` can mean that the lines below it are not tasks, "
             message += "or not always"

@@ -18,8 +18,9 @@ from argo_compiler.base.catalog import (
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
 from argo_compiler.il import Mission
+from argo_compiler.script import Resolved
 from tests.mission_writing import unplaced
-from tests.whole_scripts import Whole, import_whole
+from tests.whole_scripts import import_whole
 
 NAMES = {
     1: ["pressure gauge 1", "liquid level gauge 1", "pressure gauge 2", "valve R25"],
@@ -71,7 +72,7 @@ CATALOG = make_catalog()
 def findings(text: str, catalog: Catalog, **areas: int) -> tuple[Diagnostic, ...]:
     """Return the diagnostics of a script, be it a mission or refused."""
     try:
-        result: Whole | DiagnosticError = import_whole(text, catalog, **areas)
+        result: Resolved | DiagnosticError = import_whole(text, catalog, **areas)
     except DiagnosticError as error:
         result = error
     return result.diagnostics

@@ -57,7 +57,7 @@ def test_a_remark_that_asks_for_something_is_a_warning(remark: str, catalog: Cat
     "text",
     [
         f"Wear gloves\n{START}.",
-        f"Round of the first floor\n{START}.",
+        f"Round of the plant\n{START}.",
         f"{START} (after lunch).",
         f"{START}, because valve R25 was repaired.",
         f"{START}.\nNote: checkpoint 5 is broken",

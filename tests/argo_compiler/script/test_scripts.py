@@ -8,11 +8,11 @@ from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.errors import Remedy
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
 from argo_compiler.il import Action, Group, Mission, Mode, Order, Stop, Transition
-from argo_compiler.script import read_script
-from tests.whole_scripts import Whole, import_whole
+from argo_compiler.script import Resolved, read_script
+from tests.whole_scripts import import_whole
 
 
-def warnings(resolved: Whole) -> list[Diagnostic]:
+def warnings(resolved: Resolved) -> list[Diagnostic]:
     return [d for d in resolved.diagnostics if d.severity is not Severity.NOTE]
 
 

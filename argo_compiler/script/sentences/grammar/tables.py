@@ -24,7 +24,7 @@ from argo_compiler.base.saved_tables import (
     write_tables,
 )
 
-STARTS = ["sentence", "location"]
+STARTS = ["sentence", "location", "nouns"]
 _NAME = "sentence"
 
 _Row = dict[int, tuple[int, Any]]

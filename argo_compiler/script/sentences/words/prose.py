@@ -60,6 +60,8 @@ class Prose:
     no: str
     say: Mapping[str, str]
     """words that a table's columns stand for"""
+    cues: Mapping[str, str]
+    """words by which a line is proposed that the grammar does not take, by what they show"""
     samples: Mapping[str, str]
     """a sentence for each verb"""
     kinds: Mapping[str, str]
@@ -168,3 +170,9 @@ def _first_letters(text: str, at: int = 0) -> str:
 
 def _beginning(phrases: list[str]) -> re.Pattern[str]:
     return re.compile(rf"(?:{either('|'.join(phrases))})(?![\w-])", re.IGNORECASE)
+
+
+@cache
+def cue_pattern(name: str, phrases: str) -> re.Pattern[str]:
+    """Return the pattern of the phrases of a cue."""
+    return re.compile(rf"(?<![\w-])(?P<{name}>{either(phrases)})(?![\w-])", re.IGNORECASE)

@@ -208,17 +208,24 @@ def _load_script(
 ) -> LoadedMission:
     draft = upload.draft or load_draft(upload, catalog, start_area, end_area)
     name = upload.name
-    if (
-        draft.mission is None
-        and Path(name).suffix.lower() in _TABLES
-        and _NO_TASK in {d.code for d in draft.diagnostics}
-    ):
+    table = Path(name).suffix.lower() in _TABLES
+    if table and draft.mission is None and not _has_steps(draft):
         raise Invalid(
             f"{name} is no mission, but a table (CSV): write its rows as steps, such as "
             "`Check checkpoint 4`"
         )
     mission = draft.require_mission()
     return LoadedMission(mission, draft.diagnostics, Script(_text_of(upload), name))
+
+
+def _has_steps(draft: "Draft") -> bool:
+    """Whether a line of a draft is, or may be, something that the robot does."""
+    from argo_compiler.script import LineState
+
+    steps = (LineState.UNDERSTOOD, LineState.PROPOSED)
+    return _NO_TASK not in {d.code for d in draft.diagnostics} and any(
+        line.state in steps for line in draft.lines
+    )
 
 
 def load_draft(

@@ -92,7 +92,7 @@ class Composer:
         found: list[CheckpointInfo] = []
         for mention in mentions:
             assert isinstance(mention.value, Nouns)
-            found += resolver.all(mention.value)
+            found += [c for c in resolver.all(mention.value) if c not in found[-1:]]
         return found
 
     def _leave_out(self, found: Mentions) -> tuple[str, ...] | None:
@@ -113,7 +113,7 @@ class Composer:
         named = found.of("checkpoints")
         if not named or not found.only(*_CHECKING, "MORE", "again", "OF", "VALUE"):
             return None
-        if _verb_before(found, named[0]):
+        if _verb_before(found, named[-1]):
             return None
         with suppress(RefusedError):
             checkpoints = self.checkpoints(named)
@@ -209,9 +209,9 @@ def _wait(found: Mentions) -> tuple[str, ...] | None:
     return None
 
 
-def _verb_before(found: Mentions, first: Mention) -> bool:
+def _verb_before(found: Mentions, last: Mention) -> bool:
     """Whether an unknown word stands where the verb of an order does: `paint valve R25`."""
-    before = [word for word in found.unknown if word.end <= first.start]
+    before = [word for word in found.unknown if word.end <= last.start]
     return bool(before) and not found.has("MEASURE", "BE_MEASURED")
 
 

@@ -50,8 +50,6 @@ _RECORDING = re.compile(rb"\x89MCAP0.{11,16}\x04\x00\x00\x00argo", re.DOTALL)
 
 _TABLES = (".csv", ".tsv")
 """suffixes of tables; some have steps in their cells, and are read as scripts"""
-_NO_TASK = "script.nothing-to-do"
-"""code of the error of a script without any task"""
 
 
 class SourceKind(StrEnum):
@@ -219,13 +217,12 @@ def _load_script(
 
 
 def _has_steps(draft: "Draft") -> bool:
-    """Whether a line of a draft is, or may be, something that the robot does."""
+    """Return True if lines of a table are, or may be, what the robot does."""
     from argo_compiler.script import LineState
+    from argo_compiler.script.layout.rows import COLUMN_HEADINGS
 
     steps = (LineState.UNDERSTOOD, LineState.PROPOSED)
-    return _NO_TASK not in {d.code for d in draft.diagnostics} and any(
-        line.state in steps for line in draft.lines
-    )
+    return any(line.state in steps or line.reason == COLUMN_HEADINGS for line in draft.lines)
 
 
 def load_draft(

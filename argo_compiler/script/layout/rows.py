@@ -15,6 +15,8 @@ from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.lexicon import expand
 from argo_compiler.script.sentences.words.prose import Prose
 
+COLUMN_HEADINGS = "column headings"
+"""what the line of a table's headings is taken for"""
 _RULE = re.compile(r"[\s|:=+-]*-[\s|:=+-]*")
 _NUMBER = re.compile(r"[0-9]{1,6}")
 _MOST_COLUMNS = 12

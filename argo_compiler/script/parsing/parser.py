@@ -16,7 +16,7 @@ from argo_compiler.script.layout.fields import Field, ScriptFields
 from argo_compiler.script.layout.items import LineItem, LineSense, items_of
 from argo_compiler.script.layout.lines import LineMark, lines_of, sentences
 from argo_compiler.script.layout.lists import Lists, on_floors
-from argo_compiler.script.layout.rows import tables
+from argo_compiler.script.layout.rows import COLUMN_HEADINGS, tables
 from argo_compiler.script.parsing.repeats import Repeats, repeats
 from argo_compiler.script.parsing.sentence_reading import SentenceReader
 from argo_compiler.script.sentences.doubts import PlacingCheck, ask_of_dots
@@ -123,7 +123,7 @@ class _Parser:
         source = self.diagnostics.source
         language = self.understanding.language
         found = tables(source, self.understanding, self.diagnostics)
-        self.pieces += [Piece(text, "column headings") for text in found.headings]
+        self.pieces += [Piece(text, COLUMN_HEADINGS) for text in found.headings]
         healed = heal(source, _vocabulary(self.understanding, source.text), found.rows)
         unreadable = (source.line_text(number).strip() for number in healed.unreadable)
         self.pieces += [Piece(text) for text in unreadable]

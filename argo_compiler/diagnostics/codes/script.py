@@ -367,6 +367,14 @@ SCRIPT = {
     "script.self-move": error(
         "A step can't be placed before or after itself.", "Name another step."
     ),
+    "script.row": error(
+        "It is not decided what a row of a sheet asks for.",
+        "Confirm what is proposed for it, or say it as a sentence.",
+    ),
+    "script.other-range": warning(
+        "A normal range or position in the script is not that of the site; the site's counts.",
+        "Correct the script, or the site.",
+    ),
     "script.set-aside": warning(
         "A line has no effect, as it names nothing that a mission has.",
         "Write it as a step if the robot has to do something; otherwise no action is needed.",

@@ -18,14 +18,16 @@ from argo_compiler.diagnostics import (
 from argo_compiler.il import Mission
 from argo_compiler.script.drafts.draft import Act, Draft, DraftLine, LineDecision, LineState
 from argo_compiler.script.parsing.parser import parse
+from argo_compiler.script.parsing.script import Piece, Script
 from argo_compiler.script.proposals.composing import Proposal
 from argo_compiler.script.proposals.proposing import propose
 from argo_compiler.script.resolve.importing import resolve_script
-from argo_compiler.script.sentences.tree.script import Piece, Script
 
 _OF_OPTIONS = frozenset(["script.area-choice", "script.area-conflict", "script.area-not-offered"])
 """codes of errors that another option resolves, and no change of the line"""
-_UNREAD = frozenset(["script.not-understood", "script.unfinished", "script.unknown-label"])
+_UNREAD = frozenset(
+    ["script.not-understood", "script.unfinished", "script.unknown-label", "script.row"]
+)
 """codes of errors of a piece that the grammar does not take; others are questions"""
 
 

@@ -94,6 +94,11 @@ def lines_of(texts: Sequence[ScriptText]) -> Iterator[ScriptLine]:
         yield above
 
 
+def unmarked(text: ScriptText) -> ScriptText:
+    """Return a line without its number, letter or bullet."""
+    return _marked(text.strip(), 0).text
+
+
 def _unquoted(texts: Sequence[ScriptText]) -> Iterator[ScriptText]:
     """The lines of a letter without its marks. A single line with one is taken as it is: in it the
     sign may say that a value is greater."""

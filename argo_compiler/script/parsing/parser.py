@@ -13,16 +13,18 @@ from argo_compiler.script.documents.source import Diagnostics, ScriptText, Sourc
 from argo_compiler.script.layout.asides import Asides
 from argo_compiler.script.layout.cells import Cells
 from argo_compiler.script.layout.fields import Field, ScriptFields
+from argo_compiler.script.layout.forms import ROW, FormRow, forms
 from argo_compiler.script.layout.items import LineItem, LineSense, items_of
-from argo_compiler.script.layout.lines import LineMark, lines_of, sentences
+from argo_compiler.script.layout.lines import LineMark, lines_of, sentences, unmarked
 from argo_compiler.script.layout.lists import Lists, on_floors
 from argo_compiler.script.layout.rows import COLUMN_HEADINGS, tables
 from argo_compiler.script.parsing.repeats import Repeats, repeats
+from argo_compiler.script.parsing.script import Piece, Script
 from argo_compiler.script.parsing.sentence_reading import SentenceReader
 from argo_compiler.script.sentences.doubts import PlacingCheck, ask_of_dots
 from argo_compiler.script.sentences.tree.nouns import Labelled
 from argo_compiler.script.sentences.tree.orders import Measure, Sentence, Start
-from argo_compiler.script.sentences.tree.script import Piece, Said, Script, ScriptStep, Unread
+from argo_compiler.script.sentences.tree.script import Said, ScriptStep, Unread
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.language import Language
 from argo_compiler.script.sentences.words.lexicon import Lexicon
@@ -118,13 +120,19 @@ class _Parser:
     """sentences that a person has decided on for pieces, none for one that is set aside; by the
     offset in the source at which a piece begins"""
     pieces: list[Piece] = field(default_factory=list)
+    forms: Mapping[int, FormRow] = field(default_factory=dict)
+    """the rows of sheets, by the numbers of their lines"""
 
     def script(self) -> Script:
         source = self.diagnostics.source
         language = self.understanding.language
         found = tables(source, self.understanding, self.diagnostics)
         self.pieces += [Piece(text, COLUMN_HEADINGS) for text in found.headings]
-        healed = heal(source, _vocabulary(self.understanding, source.text), found.rows)
+        sheet = forms(source, found.rows, language.prose, self._is_plain_line)
+        self.forms = sheet.rows
+        rows = {number: _as_row(source.line_text(number)) for number in self.forms}
+        words = _vocabulary(self.understanding, source.text)
+        healed = heal(source, words, {**found.rows, **sheet.texts, **rows})
         unreadable = (source.line_text(number).strip() for number in healed.unreadable)
         self.pieces += [Piece(text) for text in unreadable]
         self.diagnostics.extend(healed.diagnostics)
@@ -144,6 +152,7 @@ class _Parser:
             header=self.fields.header,
             steps=(*first, *steps, *last),
             pieces=tuple(sorted(self.pieces, key=lambda piece: piece.text.first)),
+            rows={row.place.first: row for row in self.forms.values()},
             diagnostics=self.diagnostics.by_place(),
         )
 
@@ -179,6 +188,8 @@ class _Parser:
 
     def _said(self, item: LineItem) -> list[Said]:
         """What an item says; kept, if it says so wherever it stands."""
+        if item.text.content == ROW:
+            return self._row(item)
         before = len(self.diagnostics.entries)
         plain = self._is_plain(item)  # now: what is said first hangs on being first
         said, text = self._without_letter(item)
@@ -207,6 +218,24 @@ class _Parser:
         if plain and not any(isinstance(s, Unread) for s in said):
             self.repeats.keep(text, said, lambda text, unknown: self._again(item, text, unknown))
         return said
+
+    def _is_plain_line(self, line: ScriptText) -> bool:
+        """Whether a line makes sense without columns: as sentences, or as a field."""
+        text = unmarked(line)
+        if self.fields.is_field(text):
+            return True
+        return bool(text.content) and all(map(self.understanding.fits, sentences(text)))
+
+    def _row(self, item: LineItem) -> list[Said]:
+        """Read a row of a sheet: only what is decided on for it, as it is no sentence."""
+        row = self.forms[item.text.source.line_at(item.text.first)]
+
+        def ask(text: ScriptText) -> list[Said]:
+            message = "it is not decided what this row asks for"
+            self.diagnostics.error("row", message, text.span(), "say it as a sentence")
+            return [Unread(span=text.span())]
+
+        return self._piece(row.place, item, ask)
 
     def _piece(
         self, text: ScriptText, item: LineItem, read: Callable[[ScriptText], list[Said]]
@@ -300,6 +329,11 @@ class _Parser:
             return []
 
         return self._piece(text, item, note)
+
+
+def _as_row(line: ScriptText) -> ScriptText:
+    """Return the text that stands for a row of a sheet among the lines."""
+    return line.strip().replaced(f"- {ROW}")
 
 
 def _own_part(text: ScriptText, item: LineItem) -> ScriptText:

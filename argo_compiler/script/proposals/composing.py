@@ -43,6 +43,12 @@ class Proposal:
     """why the text has no effect"""
     choices: tuple[tuple[str, ...], ...] = ()
     """for an open text: what it may become"""
+    doubt: str = ""
+    """for an open text: what is not clear"""
+    differences: tuple[str, ...] = ()
+    """what the text says otherwise than the site"""
+    certain: bool = False
+    """whether every word of it is used, so that nobody has to confirm it"""
 
 
 class Composer:
@@ -127,6 +133,11 @@ class Composer:
             self.measured(checkpoints)
             return (f"Check {checkpoint_words(checkpoints)}{often}.",)
         return None
+
+    def floors(self, floors: Sequence[FloorName]) -> set[int]:
+        """Return the numbers of floors. Raises RefusedError if one is not on the site."""
+        diagnostics = Diagnostics(self.understanding.diagnostics.source)
+        return {*Lookup(self.catalog, diagnostics, None, None).numbers(floors)}
 
     def _choices(self, found: Mentions) -> tuple[tuple[str, ...], ...]:
         """Return what an open text may become: its checkpoints are read, or they are not."""

@@ -6,10 +6,12 @@ from contextlib import suppress
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.script.documents.source import Diagnostics, RefusedError, Source
+from argo_compiler.script.parsing.script import Piece, Script
 from argo_compiler.script.proposals.composing import Composer, Proposal
 from argo_compiler.script.proposals.mentions import Mention
+from argo_compiler.script.proposals.rows import propose_row
 from argo_compiler.script.sentences.tree.orders import Measure, Sentence
-from argo_compiler.script.sentences.tree.script import Piece, Script, ScriptStep
+from argo_compiler.script.sentences.tree.script import ScriptStep
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.language import Language
 
@@ -32,7 +34,10 @@ def propose(script: Script, unread: Collection[int], catalog: Catalog) -> dict[i
     for piece in pieces:
         start = piece.text.first
         if start in unread and len(found) < MAX_PROPOSED:
-            found[start] = composer.propose(piece.text)
+            row = script.rows.get(start)
+            found[start] = (
+                composer.propose(piece.text) if row is None else propose_row(row, composer)
+            )
         for mention in measured.get(start, ()):
             with suppress(RefusedError):
                 composer.measured(composer.checkpoints([mention]))

@@ -9,6 +9,7 @@ from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError
 from argo_compiler.il import Mission, Mode
 from argo_compiler.script.documents.source import Diagnostics, RefusedError, Source
+from argo_compiler.script.parsing.script import Script
 from argo_compiler.script.resolve.assembly import assemble
 from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.lookup import Lookup
@@ -17,7 +18,7 @@ from argo_compiler.script.resolve.planning import Planner
 from argo_compiler.script.resolve.program import Do, ProgramNode, all_nodes, depth
 from argo_compiler.script.resolve.starting import Starting, area_choices
 from argo_compiler.script.sentences.tree.places import Steps
-from argo_compiler.script.sentences.tree.script import Script, ScriptHeader
+from argo_compiler.script.sentences.tree.script import ScriptHeader
 
 _DEEPEST = 100
 

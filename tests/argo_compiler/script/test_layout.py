@@ -36,7 +36,7 @@ def notes(text: str, catalog: Catalog) -> list[str]:
         "* Check #4\n* Check #8",
         "+ Check #4\n+ Check #8",
         "• Check #4\n– Check #8",
-        "- [ ] Check #4\n- [x] Check #8",
+        "- [ ] Check #4\n- [ ] Check #8",
         "1. Check #4, 2. Check #8",
         "1. Check #4\n   a) Check #8",
         "Tasks:\n1. Check #4\n2. Check #8",

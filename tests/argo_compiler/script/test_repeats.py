@@ -9,7 +9,7 @@ import pytest
 
 from argo_compiler.script import parse
 from argo_compiler.script.parsing.repeats import repeats
-from argo_compiler.script.sentences.tree.script import Script
+from argo_compiler.script.parsing.script import Script
 from tests.argo_compiler.script.conftest import CATALOG
 from tests.campaigns.fuzz.sentences import english_generator, text_of
 from tests.whole_scripts import import_whole

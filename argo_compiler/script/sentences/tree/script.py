@@ -1,11 +1,8 @@
-"""A script as a whole."""
+"""Steps and header of a script."""
 
-from dataclasses import dataclass, field
-from typing import NamedTuple
+from dataclasses import dataclass
 
-from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Mode, Order
-from argo_compiler.script.documents.source import ScriptText
 from argo_compiler.script.sentences.tree.node import Node, node
 from argo_compiler.script.sentences.tree.orders import Fact, Sentence
 from argo_compiler.script.sentences.tree.places import Coordinates, Steps
@@ -51,15 +48,6 @@ class ScriptStep(Node):
     steps: "tuple[ScriptStep, ...]" = ()
 
 
-class Piece(NamedTuple):
-    """A sentence, a field, a row or a remark of a script, and whether it has an effect."""
-
-    text: ScriptText
-    """as it is read; its offsets tell which part of the source it is"""
-    aside: str = ""
-    """for a piece without effect: what it is taken for, such as `a greeting`"""
-
-
 @dataclass(kw_only=True)
 class ScriptHeader:
     """What is said of the mission as a whole. None: nothing is. Mutable: it grows line by line."""
@@ -86,16 +74,3 @@ class ScriptHeader:
     dock: Coordinates | None = None
     current: Steps | None = None
     left_out: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, kw_only=True)
-class Script:
-    """What a script says."""
-
-    source_name: str
-    source_text: str
-    header: ScriptHeader = field(default_factory=ScriptHeader)
-    steps: tuple[ScriptStep, ...] = ()
-    pieces: tuple[Piece, ...] = ()
-    """all text of the script in the order in which it is read, but for blank lines and rules"""
-    diagnostics: tuple[Diagnostic, ...] = ()

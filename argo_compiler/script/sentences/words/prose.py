@@ -20,6 +20,10 @@ class Prose:
     """words around a starting area that say no more than that it is one"""
     columns: Mapping[str, str]
     """the headings of a table's columns, by what they hold"""
+    roles: Mapping[str, str]
+    """the headings of the columns of sheets that people fill in, by what they hold"""
+    form: Mapping[str, str]
+    """words of such sheets: for furniture, positions of valves, and what is left out"""
     ranks: Mapping[str, str]
     """words for a priority, by the number that they stand for"""
     highest: str
@@ -109,6 +113,15 @@ class Prose:
     def _columns(self) -> dict[str, str]:
         columns = reversed(list(self.columns.items()))  # of two alike the first counts
         return {said: name for name, text in columns for said in expand(text)}
+
+    def role(self, heading: str) -> str | None:
+        """What the column of a sheet with this heading holds."""
+        return self._roles.get(" ".join(heading.lower().strip(" .:*_").split()))
+
+    @cached_property
+    def _roles(self) -> dict[str, str]:
+        roles = reversed(list(self.roles.items()))
+        return {said.strip(" ."): name for name, text in roles for said in expand(text)}
 
     def rank(self, said: str) -> str | None:
         """The priority that a word such as `high` stands for."""

@@ -1,0 +1,234 @@
+"""Rows of sheets that people fill in: tables with columns of any heading, checklists, labels with
+dots behind them.
+
+What a row asks for is not decided here, as that needs the site's names. A row is cut into cells,
+and each cell has a role, by the heading of its column or by what it contains.
+"""
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+from argo_compiler.script.documents.source import ScriptText, Source, join
+from argo_compiler.script.sentences.words.prose import Prose
+
+ROW = "\ue001"
+"""the text of a row where sentences are read"""
+
+
+class Role(StrEnum):
+    """What a cell of a row contains."""
+
+    NUMBER = "number"
+    """of the row or of the item"""
+    CHECKPOINT = "checkpoint"
+    """the number of a checkpoint, perhaps without a word"""
+    NAME = "name"
+    ACTION = "action"
+    FLOOR = "floor"
+    KIND = "kind"
+    UNIT = "unit"
+    LOW = "low"
+    HIGH = "high"
+    NORMAL = "normal"
+    """the normal range, or the position that a valve must have"""
+    FILL = "fill"
+    """to be filled in by a person"""
+    REPORT = "report"
+    """what is reported, such as `pressure in bar`"""
+    POINTS = "points"
+    REMARK = "remark"
+    WINDOW = "window"
+    """minutes from and to which it is done"""
+    OTHER = "other"
+    """unknown: told by its content"""
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A cell of a row."""
+
+    role: Role
+    text: ScriptText
+    heading: str = ""
+
+
+@dataclass(frozen=True)
+class FormRow:
+    """A row of a sheet, cut into its cells."""
+
+    place: ScriptText
+    """the whole line"""
+    cells: tuple[Cell, ...]
+    box: str | None = None
+    """what stands in the box before it: a blank, `x`, `-`; None: there is no box"""
+    is_heading: bool = False
+    """whether it has the headings of the columns"""
+
+
+_BLANK = re.compile(r"_{2,}|\.{4,}|…{2,}|[□☐]|\[\s*\]")
+_BOX = re.compile(r"\s*(?:[-*•]\s+)?(?:\[([ xX*✓v~-]?)\]|([□☐☑☒✓✔✗✘]))\s*")
+_TICKED = {"☑": "x", "☒": "x", "✓": "x", "✔": "x", "✗": "-", "✘": "-", "□": " ", "☐": " "}
+_BOXED = re.compile(rf"^{_BOX.pattern}")
+_OPEN_BOX = re.compile(r"\s*(?:[-*•]\s+)?(?:\[\s?\]|[□☐])")
+_STRUCK = re.compile(r"^\s*(?:[-*•]\s+)?~~.*~~\s*$")
+_LEADER = re.compile(r"\s*(?:\.{3,}|…+)\s*")
+_CUTS = {
+    "|": re.compile(r"\|"),
+    "\t": re.compile(r"\t+"),
+    ";": re.compile(";"),
+    "  ": re.compile(r"\s{2,}|\t"),
+}
+_RULE = re.compile(r"[\s|:=+-]*-[\s|:=+-]*")
+_SENTENCE = re.compile(r"[a-zäöüß)][.!?]\s{2,}[A-ZÄÖÜ]")
+_LONGEST = 2000
+"""characters of a row"""
+_MOST_CELLS = 16
+_MOST_ROWS = 10_000
+
+
+@dataclass(frozen=True)
+class Forms:
+    """The rows of sheets in a script, by the numbers of their lines."""
+
+    rows: Mapping[int, FormRow]
+    texts: Mapping[int, ScriptText]
+    """lines that say what a field says: `Start: starting area 2`; empty for a line that goes on
+    from the one above"""
+
+
+def forms(
+    source: Source,
+    taken: Mapping[int, ScriptText],
+    prose: Prose,
+    is_plain: Callable[[ScriptText], bool],
+) -> Forms:
+    """Return the rows of sheets in a script; lines that are `taken` are none, and neither are those
+    that `is_plain` tells to make sense without columns."""
+    rows: dict[int, FormRow] = {}
+    texts: dict[int, ScriptText] = {}
+    for group, cut in _groups(source, taken):
+        cells = [_cells(source.line_text(number), cut) for number in group]
+        headings = _headings(cells[0], prose)
+        if headings is None and cut == "\t":
+            continue  # text recognition cuts words by tabs
+        for number, found in zip(group, cells, strict=True):
+            line = source.line_text(number)
+            if _RULE.fullmatch(line.content):
+                texts[number] = line[:0]
+            elif headings is not None and number == group[0]:
+                rows[number] = FormRow(line.strip(), tuple(found), is_heading=True)
+            elif headings is None and (field := _field(found, prose)) is not None:
+                texts[number] = field
+            elif headings is not None or not is_plain(line):
+                rows[number] = _row(line, _with_roles(found, headings, cut))
+    for number in range(1, len(source.lines) + 1):
+        line = source.line_text(number)
+        content = line.content
+        known = number in rows or number in texts or number in taken
+        if known or len(content) > _LONGEST or len(rows) > _MOST_ROWS:
+            continue
+        marked = any(pattern.search(content) for pattern in (_BLANK, _BOXED, _STRUCK))
+        if marked and not (_OPEN_BOX.match(content) and is_plain(line)):
+            rows[number] = _row(line, _cells(line, "  "))
+    return Forms(rows, texts)
+
+
+def _field(cells: Sequence[Cell], prose: Prose) -> ScriptText | None:
+    """Return two cells as a field, `Start: starting area 2`, if the first is a field's label."""
+    if len(cells) != 2 or not all(cell.text.content for cell in cells):
+        return None
+    label, value = (cell.text for cell in cells)
+    known = prose.label.fullmatch(f"{label.content.rstrip(' :')}:")
+    if known is None:
+        return None
+    colon = ScriptText(": ", [label.last, value.first], label.source)
+    return join([label[: len(label.content.rstrip(" :"))], colon, value], "")
+
+
+def _row(line: ScriptText, cells: Sequence[Cell]) -> FormRow:
+    box = _BOX.match(line.content)
+    mark: str | None = None
+    if box is not None:
+        mark = (
+            _TICKED.get(box[2] or "", (box[1] or " ").lower())
+            if box[2]
+            else (box[1] or " ").lower()
+        )
+        first = cells[0].text
+        inner = _BOX.match(first.content)
+        rest = first[inner.end() :].strip() if inner is not None else first
+        cells = [Cell(cells[0].role, rest, cells[0].heading), *cells[1:]]
+    elif _STRUCK.fullmatch(line.content):
+        mark = "-"
+    return FormRow(line.strip(), tuple(c for c in cells if c.text.content), mark)
+
+
+def _groups(source: Source, taken: Mapping[int, ScriptText]) -> Iterator[tuple[list[int], str]]:
+    """Yield the numbers of lines, one below the other, that are cut into cells alike."""
+    group: list[int] = []
+    cut = ""
+    for number in range(1, len(source.lines) + 2):
+        line = source.lines[number - 1] if number <= len(source.lines) else ""
+        here = "" if number in taken else _cut_of(line)
+        if group and (here == cut or (cut == "|" and _RULE.fullmatch(line) and line.strip())):
+            group.append(number)
+            continue
+        if len(group) > 1:
+            yield group, cut
+        group, cut = ([number], here) if here else ([], "")
+
+
+def _cut_of(line: str) -> str:
+    inner = line.strip()
+    if not inner or len(line) > _LONGEST or _SENTENCE.search(inner) or '"' in inner:
+        return ""
+    if "|" in inner.strip("|"):
+        return "|"
+    if "\t" in inner:
+        return "\t"
+    if inner.count(";") >= 1 and not inner.endswith((".", "!", "?")) and "; " not in inner:
+        return ";"
+    if _LEADER.search(inner) and re.match(r"[^\W\d].*?\s*\.{4,}\s*\S", inner):
+        return "."
+    return "  " if re.search(r"\S\s{2,}\S", inner) else ""
+
+
+def _cells(line: ScriptText, cut: str) -> list[Cell]:
+    """Return the cells of a line, each with blanks stripped; empty ones as well."""
+    content = line.content
+    start, end = len(content) - len(content.lstrip()), len(content.rstrip())
+    if cut == "|":
+        start += content[start:end].startswith("|")
+        end -= content[start:end].endswith("|")
+    pattern = _LEADER if cut == "." else _CUTS[cut]
+    cells: list[Cell] = []
+    at = start
+    for found in pattern.finditer(content, start, end):
+        if len(cells) >= _MOST_CELLS:
+            break
+        cells.append(Cell(Role.OTHER, line[at : found.start()].strip()))
+        at = found.end()
+    cells.append(Cell(Role.OTHER, line[at:end].strip()))
+    return cells
+
+
+def _headings(cells: Sequence[Cell], prose: Prose) -> list[Role] | None:
+    """Return the roles of columns by their headings, if a line has such."""
+    texts = [cell.text.content for cell in cells]
+    said = [text for text in texts if text]
+    roles = [prose.role(text) for text in texts]
+    known = sum(role is not None for role in roles)
+    if len(said) < 2 or known < 2 or 2 * known < len(said):
+        return None
+    return [Role(role) if role is not None else Role.OTHER for role in roles]
+
+
+def _with_roles(cells: Sequence[Cell], headings: Sequence[Role] | None, cut: str) -> list[Cell]:
+    if headings is None or (cut == "  " and len(cells) != len(headings)):
+        return list(cells)
+    return [
+        Cell(headings[i] if i < len(headings) else Role.OTHER, cell.text)
+        for i, cell in enumerate(cells)
+    ]

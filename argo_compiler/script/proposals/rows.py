@@ -1,0 +1,260 @@
+"""What a row of a sheet asks for: that the checkpoint which it names is read.
+
+Each cell is compared with what the site knows of the checkpoint. A row whose cells all agree with
+it is understood; one with words that say more is proposed; ticks, dashes and `N/A` are asked about.
+"""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+
+from argo_compiler.base.catalog import CheckpointInfo, CheckpointKind
+from argo_compiler.script.documents.source import RefusedError, ScriptText
+from argo_compiler.script.layout.forms import Cell, FormRow, Role
+from argo_compiler.script.proposals.composing import Composer, Proposal
+from argo_compiler.script.proposals.mentions import checkpoint_words, mentions_in
+from argo_compiler.script.sentences.tree.places import FloorName
+from argo_compiler.script.sentences.words.prose import cue_pattern
+
+_FILL = re.compile(r"_{2,}|\.{3,}|…+|[□☐]|\[\s*\]|\(\s*y\s*/\s*n\s*\)|/", re.IGNORECASE)
+_RANGE = re.compile(
+    r"(?P<low>\d+(?:[.,]\d+)?)\s*(?:-|–|—|to|bis|\.\.)\s*(?P<high>\d+(?:[.,]\d+)?)\s*(?P<unit>[^\d\s]\S*)?"
+)
+_NUMBER = re.compile(r"\d+(?:\.\d+)*\.?")
+_PLAIN = re.compile(r"\d+(?:[.,]\d+)?")
+_CLOCK = re.compile(r"\b\d{1,2}[:.]\d{2}\b")
+_BAR = {"bar": 1.0, "kpa": 0.01, "mbar": 0.001, "psi": 0.0689476, "mpa": 10.0}
+_UNITS = {
+    CheckpointKind.PRESSURE_GAUGE: frozenset([*_BAR, "barg", "bar g"]),
+    CheckpointKind.LIQUID_LEVEL_GAUGE: frozenset(["%", "percent", "prozent"]),
+    CheckpointKind.VALVE: frozenset(["deg", "°", "degrees", "grad", "-", "–"]),
+}
+_OPEN, _CLOSED = 70.0, 20.0
+"""degrees from which a valve's normal position counts as open, and up to which as closed"""
+_TICKED = "this row is ticked, or marked as done: it may be left out"
+
+
+@dataclass
+class _Row:
+    """A row while its cells are read."""
+
+    named: list[CheckpointInfo] = field(default_factory=list)
+    unused: list[str] = field(default_factory=list)
+    doubts: list[str] = field(default_factory=list)
+    differences: list[str] = field(default_factory=list)
+    left_out: bool = False
+    manner: str = ""
+
+
+def propose_row(row: FormRow, composer: Composer) -> Proposal:
+    """Return what a row proposes; `certain` if every cell agrees with the site."""
+    if row.is_heading:
+        times = [c for c in row.cells if _CLOCK.fullmatch(c.text.content)]
+        if len(times) > 1:
+            return Proposal(choices=((),), doubt="these times can be rounds at these times of day")
+        return Proposal(aside="the headings of columns")
+    found = _Row()
+    for cell in row.cells:
+        if not _read_sheet_cell(cell, found, composer):
+            _read_cell(cell.text, found, composer)
+    ids = {c.id: c for c in found.named}
+    if not ids:
+        return _without_checkpoint(row, composer)
+    _compare(row.cells, next(iter(ids.values())), found, composer)
+    words = checkpoint_words(list(ids.values()))
+    check, spare = f"Check {words}{found.manner}.", f"Do not check {words}."
+    if row.box is not None and row.box.strip():
+        return Proposal(choices=((spare,), (check,)), doubt=_TICKED)
+    if found.doubts:
+        return Proposal(choices=((spare,), (check,)), doubt=found.doubts[0])
+    if found.left_out:
+        return Proposal((spare,), tuple(found.unused))
+    if len(ids) > 1 and len(row.cells) > 1:
+        return Proposal(choices=((check,), ()), doubt="this row names several checkpoints")
+    composer.measured(list(ids.values()))
+    unused = tuple(found.unused)
+    return Proposal((check,), unused, differences=tuple(found.differences), certain=not unused)
+
+
+def _without_checkpoint(row: FormRow, composer: Composer) -> Proposal:
+    """Return what a row without a checkpoint is: a field to fill in, or something to ask about."""
+    text = row.place
+    if (
+        row.box is None
+        and _FILL.search(text.content)
+        and not mentions_in(text, composer.understanding).mentions
+    ):
+        return Proposal(aside="a field that a person fills in")
+    return composer.propose(text) if len(row.cells) < 2 else Proposal(choices=((),))
+
+
+# ---- cells
+
+
+def _read_sheet_cell(cell: Cell, found: _Row, composer: Composer) -> bool:
+    """Read a cell whose heading says what it holds; False for one that may name a checkpoint."""
+    text = cell.text.content
+    form = composer.understanding.language.prose.form
+    nothing = cue_pattern("nothing", form["nothing"]).fullmatch(text) is not None
+    match cell.role:
+        case Role.NUMBER if _NUMBER.fullmatch(text):
+            return True
+        case Role.POINTS | Role.LOW | Role.HIGH if _PLAIN.fullmatch(text):
+            return True
+        case Role.UNIT | Role.NORMAL | Role.KIND | Role.REPORT | Role.FLOOR:
+            return True
+        case Role.WINDOW:
+            window = _RANGE.fullmatch(text)
+            if window is None:
+                found.doubts.append(f"`{text}` is not understood as minutes")
+            else:
+                found.manner = f" between minute {window['low']} and minute {window['high']}"
+            return True
+        case Role.CHECKPOINT if text.isdecimal():
+            found.named += [c for c in composer.catalog.checkpoints if c.id == int(text)]
+            if not any(c.id == int(text) for c in composer.catalog.checkpoints):
+                found.doubts.append(f"there is no checkpoint {text}")
+            return True
+        case Role.FILL | Role.ACTION if nothing:
+            found.doubts.append(f"`{text}` can mean that this is left out")
+            return True
+        case Role.FILL if not _without_fill(text, form):
+            return True
+        case Role.REMARK:
+            return _read_remark(cell.text, found, composer)
+    return False
+
+
+def _read_remark(text: ScriptText, found: _Row, composer: Composer) -> bool:
+    cues = composer.understanding.language.prose.cues
+    form = composer.understanding.language.prose.form
+    if cue_pattern("leave_out", form["leave_out"]).search(text.content):
+        found.left_out = True
+    elif cue_pattern("forbidding", cues["forbidding"]).search(text.content):
+        found.doubts.append(f"`{text.content}` can change what is done here")
+    else:
+        found.unused.append(text.content)
+    return True
+
+
+def _without_fill(text: str, form: Mapping[str, str]) -> str:
+    """Return what is left of a cell without blanks to fill in and the words of forms."""
+    rest = _FILL.sub(" ", text)
+    furniture = cue_pattern("furniture", form["furniture"])
+    rest = furniture.sub(" ", rest)
+    for name in ("open", "closed", "half"):
+        if _FILL.search(text):
+            rest = cue_pattern(name, form[name]).sub(" ", rest)
+    return rest.strip(" :.,-()%")
+
+
+def _read_cell(text: ScriptText, found: _Row, composer: Composer) -> None:
+    """Read a cell by what it contains."""
+    form = composer.understanding.language.prose.form
+    content = text.content
+    if cue_pattern("nothing", form["nothing"]).fullmatch(content):
+        found.doubts.append(f"`{content}` can mean that this is left out")
+        return
+    if cue_pattern("leave_out", form["leave_out"]).search(content):
+        found.left_out = True
+        return
+    if not _without_fill(content, form) or _RANGE.fullmatch(content):
+        return
+    mentions = mentions_in(text, composer.understanding)
+    named = mentions.of("checkpoints")
+    for mention in named:
+        with suppress(RefusedError):
+            found.named += composer.checkpoints([mention])
+            continue
+        said = content[mention.start : mention.end]
+        found.doubts.append(f"it is not clear which checkpoint `{said}` is")
+    if not named and _NUMBER.fullmatch(content):
+        return
+    words = {content[w.start : w.end] for w in mentions.unknown}
+    found.unused += [w for w in sorted(words, key=content.index) if _without_fill(w, form)]
+    others = [
+        m for m in mentions.mentions if m.kind in ("DURATION", "TIMES", "EVENT", "UNTIL", "EXCEPT")
+    ]
+    if others:
+        found.doubts.append(f"`{content[others[0].start : others[0].end]}` is not understood here")
+
+
+# ---- what the site knows of the checkpoint
+
+
+def _compare(
+    cells: Sequence[Cell], checkpoint: CheckpointInfo, found: _Row, composer: Composer
+) -> None:
+    """Compare floors, units, kinds, positions and ranges with those of the site."""
+    form = composer.understanding.language.prose.form
+    for cell in cells:
+        content = cell.text.content
+        lowered = content.lower().strip(" .")
+        match cell.role:
+            case Role.FLOOR:
+                floors = _floors(cell.text, composer)
+                if floors and checkpoint.floor not in floors:
+                    found.doubts.append(f"{checkpoint.name} is on floor {checkpoint.floor}")
+                elif not floors:
+                    found.unused.append(content)
+            case Role.UNIT if lowered not in _UNITS[checkpoint.kind]:
+                found.unused.append(content)
+            case Role.KIND if lowered not in (str(checkpoint.kind), str(checkpoint.kind) + "s"):
+                found.doubts.append(f"checkpoint {checkpoint.id} is {checkpoint.name}")
+        if cell.role in (Role.NORMAL, Role.OTHER, Role.NAME):
+            found.differences += _range_difference(content, checkpoint)
+            if checkpoint.kind is CheckpointKind.VALVE:
+                found.differences += _position_difference(content, checkpoint, form)
+    by_role = {cell.role: cell.text.content for cell in cells}
+    low, high = by_role.get(Role.LOW), by_role.get(Role.HIGH)
+    if low and high and _PLAIN.fullmatch(low) and _PLAIN.fullmatch(high):
+        unit = by_role.get(Role.UNIT, "")
+        found.differences += _range_difference(f"{low} - {high} {unit}", checkpoint)
+
+
+def _floors(text: ScriptText, composer: Composer) -> set[int]:
+    if text.content.isdecimal():
+        return {int(text.content)}
+    places = mentions_in(text, composer.understanding).of("place")
+    found: set[int] = set()
+    for place in places:
+        if isinstance(place.value, tuple):
+            with suppress(RefusedError):
+                found |= composer.floors([f for f in place.value if isinstance(f, FloorName)])
+    return found
+
+
+def _range_difference(content: str, checkpoint: CheckpointInfo) -> Iterator[str]:
+    said = _RANGE.search(content)
+    if said is None:
+        return
+    unit = (said["unit"] or "").lower().strip(".,;)")
+    factor = _BAR.get(unit, 1.0) if checkpoint.kind is CheckpointKind.PRESSURE_GAUGE else 1.0
+    low, high = (float(said[k].replace(",", ".")) * factor for k in ("low", "high"))
+    known = checkpoint.nominal
+    if abs(low - known.low) > 1e-6 or abs(high - known.high) > 1e-6:
+        yield (
+            f"the normal range of {checkpoint.name} is {low:g} to {high:g} here, "
+            f"but {known.low:g} to {known.high:g} {checkpoint.unit} on the site"
+        )
+
+
+def _position_difference(
+    content: str, checkpoint: CheckpointInfo, form: Mapping[str, str]
+) -> Iterator[str]:
+    known = checkpoint.nominal
+    for name in ("half", "open", "closed"):
+        if cue_pattern(name, form[name]).search(content) is None:
+            continue
+        fits = {
+            "open": known.low >= _OPEN,
+            "closed": known.high <= _CLOSED,
+            "half": known.low > _CLOSED and known.high < _OPEN,
+        }[name]
+        if not fits and "/" not in content:
+            yield (
+                f"{checkpoint.name} is {name} here, but {known.low:g} to {known.high:g}° is normal "
+                "on the site"
+            )
+        return

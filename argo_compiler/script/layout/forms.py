@@ -17,7 +17,7 @@ ROW = "\ue001"
 """the text of a row where sentences are read"""
 
 
-class Role(StrEnum):
+class CellRole(StrEnum):
     """What a cell of a row contains."""
 
     NUMBER = "number"
@@ -49,7 +49,7 @@ class Role(StrEnum):
 class Cell:
     """A cell of a row."""
 
-    role: Role
+    role: CellRole
     text: ScriptText
     heading: str = ""
 
@@ -208,13 +208,13 @@ def _cells(line: ScriptText, cut: str) -> list[Cell]:
     for found in pattern.finditer(content, start, end):
         if len(cells) >= _MOST_CELLS:
             break
-        cells.append(Cell(Role.OTHER, line[at : found.start()].strip()))
+        cells.append(Cell(CellRole.OTHER, line[at : found.start()].strip()))
         at = found.end()
-    cells.append(Cell(Role.OTHER, line[at:end].strip()))
+    cells.append(Cell(CellRole.OTHER, line[at:end].strip()))
     return cells
 
 
-def _headings(cells: Sequence[Cell], prose: Prose) -> list[Role] | None:
+def _headings(cells: Sequence[Cell], prose: Prose) -> list[CellRole] | None:
     """Return the roles of columns by their headings, if a line has such."""
     texts = [cell.text.content for cell in cells]
     said = [text for text in texts if text]
@@ -222,13 +222,13 @@ def _headings(cells: Sequence[Cell], prose: Prose) -> list[Role] | None:
     known = sum(role is not None for role in roles)
     if len(said) < 2 or known < 2 or 2 * known < len(said):
         return None
-    return [Role(role) if role is not None else Role.OTHER for role in roles]
+    return [CellRole(role) if role is not None else CellRole.OTHER for role in roles]
 
 
-def _with_roles(cells: Sequence[Cell], headings: Sequence[Role] | None, cut: str) -> list[Cell]:
+def _with_roles(cells: Sequence[Cell], headings: Sequence[CellRole] | None, cut: str) -> list[Cell]:
     if headings is None or (cut == "  " and len(cells) != len(headings)):
         return list(cells)
     return [
-        Cell(headings[i] if i < len(headings) else Role.OTHER, cell.text)
+        Cell(headings[i] if i < len(headings) else CellRole.OTHER, cell.text)
         for i, cell in enumerate(cells)
     ]

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
-from argo_compiler.script.documents.source import ScriptText, quotes
+from argo_compiler.script.documents.source import ScriptText, Source, quotes
 from argo_compiler.script.sentences.words.loading import pattern
 
 
@@ -55,6 +55,11 @@ _RULE = re.compile(r"([-=_~*'])\1{2,}|\+[-=+]+\+")
 _RULE_SIGNS = ("-", "=", "_", "~", "*", "'", "+")
 _MAIL = re.compile(r"\s*(?:>\s?)+")
 """before the lines of a letter that is quoted in another one"""
+_STAMP = re.compile(
+    r"\s*(?:\[[0-9]{1,2}[:.][0-9]{2}(?::[0-9]{2})?(?:,?\s*[0-9./-]+)?\]|[0-9]{1,2}:[0-9]{2}(?=\s))"
+    r"\s*[^\W\d_][\w .-]{0,30}:\s+"
+)
+"""before a line of a chat: `[07:52, 14/03] Jonas: `"""
 _RUN_IN = re.compile(r"(?:^|[,;.!])\s+([0-9]{1,3})[.)]\s+(?=[^\W\d_])")
 _LABEL = re.compile(r"\s*(?:[A-Za-z]?-?[0-9]|[A-Z](?!\w))")
 _ORDINAL = re.compile(r"(?<![\w.,])[0-9]{1,2}\.$")
@@ -92,6 +97,16 @@ def lines_of(texts: Sequence[ScriptText]) -> Iterator[ScriptLine]:
             above = line
     if above is not None:
         yield above
+
+
+def stamped(source: Source) -> dict[int, ScriptText]:
+    """Return the lines of a chat without the time and the name before each, by their numbers."""
+    found: dict[int, ScriptText] = {}
+    for number, line in enumerate(source.lines, start=1):
+        stamp = _STAMP.match(line)
+        if stamp is not None:
+            found[number] = source.line_text(number)[stamp.end() :]
+    return found if len(found) > 1 else {}
 
 
 def unmarked(text: ScriptText) -> ScriptText:

@@ -15,7 +15,7 @@ from argo_compiler.script.layout.cells import Cells
 from argo_compiler.script.layout.fields import Field, ScriptFields
 from argo_compiler.script.layout.forms import ROW, FormRow, forms
 from argo_compiler.script.layout.items import LineItem, LineSense, items_of
-from argo_compiler.script.layout.lines import LineMark, lines_of, sentences, unmarked
+from argo_compiler.script.layout.lines import LineMark, lines_of, sentences, stamped, unmarked
 from argo_compiler.script.layout.lists import Lists, on_floors
 from argo_compiler.script.layout.rows import COLUMN_HEADINGS, tables
 from argo_compiler.script.parsing.repeats import Repeats, repeats
@@ -132,7 +132,8 @@ class _Parser:
         self.forms = sheet.rows
         rows = {number: _as_row(source.line_text(number)) for number in self.forms}
         words = _vocabulary(self.understanding, source.text)
-        healed = heal(source, words, {**found.rows, **sheet.texts, **rows})
+        read = {**stamped(source), **found.rows, **sheet.texts, **rows}
+        healed = heal(source, words, read)
         unreadable = (source.line_text(number).strip() for number in healed.unreadable)
         self.pieces += [Piece(text) for text in unreadable]
         self.diagnostics.extend(healed.diagnostics)

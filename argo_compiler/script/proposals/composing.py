@@ -10,7 +10,13 @@ from dataclasses import dataclass
 
 from argo_compiler.base.catalog import Catalog, CheckpointInfo
 from argo_compiler.script.documents.source import Diagnostics, RefusedError, ScriptText
-from argo_compiler.script.proposals.mentions import Mention, Mentions, checkpoint_words, mentions_in
+from argo_compiler.script.proposals.mentions import (
+    Mention,
+    Mentions,
+    checkpoint_words,
+    is_pronoun,
+    mentions_in,
+)
 from argo_compiler.script.resolve.lookup import Lookup
 from argo_compiler.script.resolve.nouns import Memory, NounResolver
 from argo_compiler.script.sentences.tree.nouns import Nouns
@@ -118,6 +124,8 @@ class Composer:
         """Checkpoints, and nothing else than that they are read, and how often."""
         named = found.of("checkpoints")
         if not named or not found.only(*_CHECKING, "MORE", "again", "OF", "VALUE"):
+            return None
+        if all(map(is_pronoun, named)) and not found.has("MEASURE", "again", "MORE"):
             return None
         if _verb_before(found, named[-1]):
             return None

@@ -7,7 +7,7 @@ from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.script.documents.source import ScriptText
 from argo_compiler.script.sentences.building.sentences import build
 from argo_compiler.script.sentences.grammar.parser import StumbleError
-from argo_compiler.script.sentences.tree.nouns import Nouns
+from argo_compiler.script.sentences.tree.nouns import Nouns, Pronoun
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.prose import cue_pattern
 from argo_compiler.script.sentences.words.word import Word
@@ -129,3 +129,9 @@ def checkpoint_words(checkpoints: Sequence[CheckpointInfo]) -> str:
     """Return checkpoints by their numbers: `checkpoint 1, checkpoint 3 and checkpoint 4`."""
     said = [f"checkpoint {checkpoint.id}" for checkpoint in checkpoints]
     return said[0] if len(said) == 1 else f"{', '.join(said[:-1])} and {said[-1]}"
+
+
+def is_pronoun(mention: Mention) -> bool:
+    """Whether a noun phrase names no checkpoint, but means one that was named before."""
+    nouns = mention.value
+    return isinstance(nouns, Nouns) and all(isinstance(noun, Pronoun) for noun in nouns.nouns)

@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 
 from argo_compiler.base.catalog import CheckpointInfo, CheckpointKind
 from argo_compiler.script.documents.source import RefusedError, ScriptText
-from argo_compiler.script.layout.forms import Cell, FormRow, Role
+from argo_compiler.script.layout.forms import Cell, CellRole, FormRow
 from argo_compiler.script.proposals.composing import Composer, Proposal
-from argo_compiler.script.proposals.mentions import checkpoint_words, mentions_in
+from argo_compiler.script.proposals.mentions import checkpoint_words, is_pronoun, mentions_in
 from argo_compiler.script.sentences.tree.places import FloorName
 from argo_compiler.script.sentences.words.prose import cue_pattern
 
@@ -98,30 +98,30 @@ def _read_sheet_cell(cell: Cell, found: _Row, composer: Composer) -> bool:
     form = composer.understanding.language.prose.form
     nothing = cue_pattern("nothing", form["nothing"]).fullmatch(text) is not None
     match cell.role:
-        case Role.NUMBER if _NUMBER.fullmatch(text):
+        case CellRole.NUMBER if _NUMBER.fullmatch(text):
             return True
-        case Role.POINTS | Role.LOW | Role.HIGH if _PLAIN.fullmatch(text):
+        case CellRole.POINTS | CellRole.LOW | CellRole.HIGH if _PLAIN.fullmatch(text):
             return True
-        case Role.UNIT | Role.NORMAL | Role.KIND | Role.REPORT | Role.FLOOR:
+        case CellRole.UNIT | CellRole.NORMAL | CellRole.KIND | CellRole.REPORT | CellRole.FLOOR:
             return True
-        case Role.WINDOW:
+        case CellRole.WINDOW:
             window = _RANGE.fullmatch(text)
             if window is None:
                 found.doubts.append(f"`{text}` is not understood as minutes")
             else:
                 found.manner = f" between minute {window['low']} and minute {window['high']}"
             return True
-        case Role.CHECKPOINT if text.isdecimal():
+        case CellRole.CHECKPOINT if text.isdecimal():
             found.named += [c for c in composer.catalog.checkpoints if c.id == int(text)]
             if not any(c.id == int(text) for c in composer.catalog.checkpoints):
                 found.doubts.append(f"there is no checkpoint {text}")
             return True
-        case Role.FILL | Role.ACTION if nothing:
+        case CellRole.FILL | CellRole.ACTION if nothing:
             found.doubts.append(f"`{text}` can mean that this is left out")
             return True
-        case Role.FILL if not _without_fill(text, form):
+        case CellRole.FILL if not _without_fill(text, form):
             return True
-        case Role.REMARK:
+        case CellRole.REMARK:
             return _read_remark(cell.text, found, composer)
     return False
 
@@ -131,11 +131,19 @@ def _read_remark(text: ScriptText, found: _Row, composer: Composer) -> bool:
     form = composer.understanding.language.prose.form
     if cue_pattern("leave_out", form["leave_out"]).search(text.content):
         found.left_out = True
-    elif cue_pattern("forbidding", cues["forbidding"]).search(text.content):
+    elif cue_pattern("forbidding", cues["forbidding"]).search(text.content) or _asks(
+        text, composer
+    ):
         found.doubts.append(f"`{text.content}` can change what is done here")
     else:
         found.unused.append(text.content)
     return True
+
+
+def _asks(text: ScriptText, composer: Composer) -> bool:
+    """Whether a remark has words of the mission language, other than first and last."""
+    mentions = mentions_in(text, composer.understanding)
+    return not mentions.only("first", "last", "MEASURE", "ORDINAL", "courtesy")
 
 
 def _without_fill(text: str, form: Mapping[str, str]) -> str:
@@ -162,7 +170,7 @@ def _read_cell(text: ScriptText, found: _Row, composer: Composer) -> None:
     if not _without_fill(content, form) or _RANGE.fullmatch(content):
         return
     mentions = mentions_in(text, composer.understanding)
-    named = mentions.of("checkpoints")
+    named = [m for m in mentions.of("checkpoints") if not is_pronoun(m)]
     for mention in named:
         with suppress(RefusedError):
             found.named += composer.checkpoints([mention])
@@ -192,24 +200,24 @@ def _compare(
         content = cell.text.content
         lowered = content.lower().strip(" .")
         match cell.role:
-            case Role.FLOOR:
+            case CellRole.FLOOR:
                 floors = _floors(cell.text, composer)
                 if floors and checkpoint.floor not in floors:
                     found.doubts.append(f"{checkpoint.name} is on floor {checkpoint.floor}")
                 elif not floors:
                     found.unused.append(content)
-            case Role.UNIT if lowered not in _UNITS[checkpoint.kind]:
+            case CellRole.UNIT if lowered not in _UNITS[checkpoint.kind]:
                 found.unused.append(content)
-            case Role.KIND if lowered not in (str(checkpoint.kind), str(checkpoint.kind) + "s"):
+            case CellRole.KIND if lowered not in (str(checkpoint.kind), str(checkpoint.kind) + "s"):
                 found.doubts.append(f"checkpoint {checkpoint.id} is {checkpoint.name}")
-        if cell.role in (Role.NORMAL, Role.OTHER, Role.NAME):
+        if cell.role in (CellRole.NORMAL, CellRole.OTHER, CellRole.NAME):
             found.differences += _range_difference(content, checkpoint)
             if checkpoint.kind is CheckpointKind.VALVE:
                 found.differences += _position_difference(content, checkpoint, form)
     by_role = {cell.role: cell.text.content for cell in cells}
-    low, high = by_role.get(Role.LOW), by_role.get(Role.HIGH)
+    low, high = by_role.get(CellRole.LOW), by_role.get(CellRole.HIGH)
     if low and high and _PLAIN.fullmatch(low) and _PLAIN.fullmatch(high):
-        unit = by_role.get(Role.UNIT, "")
+        unit = by_role.get(CellRole.UNIT, "")
         found.differences += _range_difference(f"{low} - {high} {unit}", checkpoint)
 
 

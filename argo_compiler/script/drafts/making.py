@@ -170,28 +170,35 @@ def _known(
         state = LineState.PROPOSED if proposal.sentences else LineState.SET_ASIDE
         found = {"state": state, "sentences": proposal.sentences, "unused": proposal.unused}
         found |= {"reason": proposal.aside, "choices": proposal.choices}
+        if proposal.certain:
+            found["state"] = LineState.UNDERSTOOD
         confirmed = decision is not None and decision.sentences == proposal.sentences != ()
     if decision is not None and (confirmed or decision.act is not Act.CONFIRMED):
         aside = decision.act is Act.SET_ASIDE
         found = {"state": LineState.SET_ASIDE if aside else LineState.UNDERSTOOD}
         found |= {"act": decision.act, "sentences": decision.sentences}
     if error is not None:
-        found |= {"state": LineState.OPEN, "reason": error.message, "hint": error.hint or ""}
+        doubt = "" if proposal is None else proposal.doubt
+        found |= {"state": LineState.OPEN, "reason": doubt or error.message}
+        found["hint"] = error.hint or ""
     return found
 
 
 def _asides(reading: _Reading, proposals: Mapping[int, Proposal]) -> tuple[Diagnostic, ...]:
-    """Return the warnings for the pieces that proposals set aside."""
-    found = [
-        diagnostic_of(
-            "script.set-aside",
-            f"`{_shown(text_of(piece))}` is set aside: it is {proposals[piece.text.first].aside}",
-            "write it as a step if the robot has to do something",
-            span=piece.text.span(),
-        )
-        for piece in reading.script.pieces
-        if piece.text.first in proposals and proposals[piece.text.first].aside
-    ]
+    """Return the warnings for pieces that are set aside, or that differ from the site."""
+    found: list[Diagnostic] = []
+    for piece in reading.script.pieces:
+        proposal = proposals.get(piece.text.first)
+        if proposal is None:
+            continue
+        span = piece.text.span()
+        if proposal.aside:
+            message = f"`{_shown(text_of(piece))}` is set aside: it is {proposal.aside}"
+            hint = "write it as a step if the robot has to do something"
+            found.append(diagnostic_of("script.set-aside", message, hint, span=span))
+        for message in proposal.differences:
+            hint = "correct one of the two; the mission uses that of the site"
+            found.append(diagnostic_of("script.other-range", message, hint, span=span))
     return with_excerpts(found, reading.script.source_text.split("\n"))
 
 

@@ -7,7 +7,7 @@ and each cell has a role, by the heading of its column or by what it contains.
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from argo_compiler.script.documents.source import ScriptText, Source, join
@@ -51,7 +51,6 @@ class Cell:
 
     role: CellRole
     text: ScriptText
-    heading: str = ""
 
 
 @dataclass(frozen=True)
@@ -65,8 +64,12 @@ class FormRow:
     """what stands in the box before it: a blank, `x`, `-`; None: there is no box"""
     is_heading: bool = False
     """whether it has the headings of the columns"""
+    labelled: bool = False
+    """whether it is no more than a label and a value"""
 
 
+Columns = list[tuple[int, CellRole]]
+"""where the headings of columns begin, as offsets in the source, and what the columns hold"""
 _BLANK = re.compile(r"_{2,}|\.{4,}|…{2,}|[□☐]|\[\s*\]")
 _BOX = re.compile(r"\s*(?:[-*•]\s+)?(?:\[([ xX*✓v~-]?)\]|([□☐☑☒✓✔✗✘]))\s*")
 _TICKED = {"☑": "x", "☒": "x", "✓": "x", "✔": "x", "✗": "-", "✘": "-", "□": " ", "☐": " "}
@@ -84,6 +87,9 @@ _RULE = re.compile(r"[\s|:=+-]*-[\s|:=+-]*")
 _SENTENCE = re.compile(r"[a-zäöüß)][.!?]\s{2,}[A-ZÄÖÜ]")
 _LONGEST = 2000
 """characters of a row"""
+_DEEP = 8
+"""blanks before a line that goes on from the cell above it"""
+_UNIT_OF_LABEL = re.compile(r"(.+?)\s*[(\[](s|sec|seconds|min|minutes|h|hours)[)\]]", re.IGNORECASE)
 _MOST_CELLS = 16
 _MOST_ROWS = 10_000
 
@@ -109,20 +115,24 @@ def forms(
     rows: dict[int, FormRow] = {}
     texts: dict[int, ScriptText] = {}
     for group, cut in _groups(source, taken):
-        cells = [_cells(source.line_text(number), cut) for number in group]
-        headings = _headings(cells[0], prose)
-        if headings is None and cut == "\t":
-            continue  # text recognition cuts words by tabs
-        for number, found in zip(group, cells, strict=True):
+        lines = [(number, _cells(source.line_text(number), cut)) for number in group]
+        if cut == "  ":
+            lines = list(_wrapped(lines, source, texts))
+        headless = not any(_headings(found, prose) for _, found in lines)
+        columns: Columns | None = None
+        for number, found in lines:
             line = source.line_text(number)
             if _RULE.fullmatch(line.content):
                 texts[number] = line[:0]
-            elif headings is not None and number == group[0]:
+            elif (headings := _headings(found, prose)) is not None:
+                columns = headings
                 rows[number] = FormRow(line.strip(), tuple(found), is_heading=True)
-            elif headings is None and (field := _field(found, prose)) is not None:
+            elif (field := _field(found, prose)) is not None:
                 texts[number] = field
-            elif headings is not None or not is_plain(line):
-                rows[number] = _row(line, _with_roles(found, headings, cut))
+            elif cut == "\t" and headless:
+                continue  # text recognition cuts words by tabs
+            elif columns is not None or not is_plain(line):
+                rows[number] = _row(line, _with_roles(found, columns, cut), cut)
     for number in range(1, len(source.lines) + 1):
         line = source.line_text(number)
         content = line.content
@@ -131,38 +141,62 @@ def forms(
             continue
         marked = any(pattern.search(content) for pattern in (_BLANK, _BOXED, _STRUCK))
         if marked and not (_OPEN_BOX.match(content) and is_plain(line)):
-            rows[number] = _row(line, _cells(line, "  "))
+            rows[number] = _row(line, _cells(line, "  "), "  ")
     return Forms(rows, texts)
 
 
+def _wrapped(
+    lines: Sequence[tuple[int, list[Cell]]], source: Source, texts: dict[int, ScriptText]
+) -> Iterator[tuple[int, list[Cell]]]:
+    """Yield rows of two cells with the lines below that stand under the second one, as its text was
+    broken; those become empty."""
+    last: tuple[int, list[Cell]] | None = None
+    for number, cells in lines:
+        line = source.lines[number - 1]
+        indent = len(line) - len(line.lstrip())
+        if last is not None and indent >= _DEEP and len(last[1]) == 2:
+            first, value = last[1]
+            if abs(_column(source, value.text.first) - indent - 1) <= 1:
+                whole = join([value.text, source.line_text(number).strip()])
+                last = (last[0], [first, replace(value, text=whole)])
+                texts[number] = source.line_text(number)[:0]
+                continue
+        if last is not None:
+            yield last
+        last = (number, cells)
+    if last is not None:
+        yield last
+
+
 def _field(cells: Sequence[Cell], prose: Prose) -> ScriptText | None:
-    """Return two cells as a field, `Start: starting area 2`, if the first is a field's label."""
+    """Return two cells as a field, `Start: starting area 2`, if the first is a field's label; with
+    a unit in brackets behind it, that is the value's."""
     if len(cells) != 2 or not all(cell.text.content for cell in cells):
         return None
     label, value = (cell.text for cell in cells)
-    known = prose.label.fullmatch(f"{label.content.rstrip(' :')}:")
-    if known is None:
+    named = _UNIT_OF_LABEL.fullmatch(label.content)
+    said = label[: named.end(1)] if named is not None else label
+    said = said[: len(said.content.rstrip(" :"))]
+    if prose.label.fullmatch(f"{said.content}:") is None:
         return None
-    colon = ScriptText(": ", [label.last, value.first], label.source)
-    return join([label[: len(label.content.rstrip(" :"))], colon, value], "")
+    colon = ScriptText(": ", [said.last, value.first], label.source)
+    unit = value[-1:].replaced(f" {named[2]}") if named is not None else value[:0]
+    return join([said, colon, value, unit], "")
 
 
-def _row(line: ScriptText, cells: Sequence[Cell]) -> FormRow:
+def _row(line: ScriptText, cells: Sequence[Cell], cut: str) -> FormRow:
     box = _BOX.match(line.content)
     mark: str | None = None
     if box is not None:
-        mark = (
-            _TICKED.get(box[2] or "", (box[1] or " ").lower())
-            if box[2]
-            else (box[1] or " ").lower()
-        )
+        mark = _TICKED.get(box[2] or "") or (box[1] or " ").lower()
         first = cells[0].text
         inner = _BOX.match(first.content)
         rest = first[inner.end() :].strip() if inner is not None else first
-        cells = [Cell(cells[0].role, rest, cells[0].heading), *cells[1:]]
+        cells = [replace(cells[0], text=rest), *cells[1:]]
     elif _STRUCK.fullmatch(line.content):
         mark = "-"
-    return FormRow(line.strip(), tuple(c for c in cells if c.text.content), mark)
+    labelled = len(cells) == 2 and cut in (".", ";", "  ", "|")
+    return FormRow(line.strip(), tuple(c for c in cells if c.text.content), mark, labelled=labelled)
 
 
 def _groups(source: Source, taken: Mapping[int, ScriptText]) -> Iterator[tuple[list[int], str]]:
@@ -172,7 +206,9 @@ def _groups(source: Source, taken: Mapping[int, ScriptText]) -> Iterator[tuple[l
     for number in range(1, len(source.lines) + 2):
         line = source.lines[number - 1] if number <= len(source.lines) else ""
         here = "" if number in taken else _cut_of(line)
-        if group and (here == cut or (cut == "|" and _RULE.fullmatch(line) and line.strip())):
+        rule = cut == "|" and line.strip() and _RULE.fullmatch(line)
+        deep = cut == "  " and line.strip() and len(line) - len(line.lstrip()) >= _DEEP
+        if group and (here == cut or rule or deep):
             group.append(number)
             continue
         if len(group) > 1:
@@ -182,7 +218,7 @@ def _groups(source: Source, taken: Mapping[int, ScriptText]) -> Iterator[tuple[l
 
 def _cut_of(line: str) -> str:
     inner = line.strip()
-    if not inner or len(line) > _LONGEST or _SENTENCE.search(inner) or '"' in inner:
+    if not inner or len(line) > _LONGEST or _SENTENCE.search(inner):
         return ""
     if "|" in inner.strip("|"):
         return "|"
@@ -192,7 +228,7 @@ def _cut_of(line: str) -> str:
         return ";"
     if _LEADER.search(inner) and re.match(r"[^\W\d].*?\s*\.{4,}\s*\S", inner):
         return "."
-    return "  " if re.search(r"\S\s{2,}\S", inner) else ""
+    return "  " if '"' not in inner and re.search(r"\S\s{2,}\S", inner) else ""
 
 
 def _cells(line: ScriptText, cut: str) -> list[Cell]:
@@ -214,21 +250,37 @@ def _cells(line: ScriptText, cut: str) -> list[Cell]:
     return cells
 
 
-def _headings(cells: Sequence[Cell], prose: Prose) -> list[CellRole] | None:
-    """Return the roles of columns by their headings, if a line has such."""
-    texts = [cell.text.content for cell in cells]
-    said = [text for text in texts if text]
-    roles = [prose.role(text) for text in texts]
+def _headings(cells: Sequence[Cell], prose: Prose) -> Columns | None:
+    """Return the columns, if a line has their headings."""
+    said = [cell for cell in cells if cell.text.content]
+    roles = [prose.role(cell.text.content) for cell in said]
     known = sum(role is not None for role in roles)
     if len(said) < 2 or known < 2 or 2 * known < len(said):
         return None
-    return [CellRole(role) if role is not None else CellRole.OTHER for role in roles]
-
-
-def _with_roles(cells: Sequence[Cell], headings: Sequence[CellRole] | None, cut: str) -> list[Cell]:
-    if headings is None or (cut == "  " and len(cells) != len(headings)):
-        return list(cells)
     return [
-        Cell(headings[i] if i < len(headings) else CellRole.OTHER, cell.text)
-        for i, cell in enumerate(cells)
+        (cell.text.first, CellRole(prose.role(cell.text.content) or CellRole.OTHER))
+        for cell in cells
     ]
+
+
+def _with_roles(cells: Sequence[Cell], columns: Columns | None, cut: str) -> list[Cell]:
+    """Return the cells with the roles of their columns; between blanks a cell belongs to the column
+    that begins nearest to it."""
+    if columns is None or not cells:
+        return list(cells)
+    if cut != "  ":
+        roles = [role for _, role in columns] + [CellRole.OTHER] * len(cells)
+        return [replace(cell, role=role) for cell, role in zip(cells, roles, strict=False)]
+    source = cells[0].text.source
+    starts = [(_column(source, first), role) for first, role in columns]
+
+    def under(cell: Cell) -> Cell:
+        at = _column(source, cell.text.first)
+        _, role = min(starts, key=lambda start: abs(start[0] - at))
+        return replace(cell, role=role)
+
+    return [under(cell) if cell.text.content else cell for cell in cells]
+
+
+def _column(source: Source, offset: int) -> int:
+    return source.span(offset, offset + 1).column

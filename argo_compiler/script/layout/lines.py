@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
-from argo_compiler.script.documents.source import ScriptText, Source, quotes
+from argo_compiler.script.documents.source import ScriptText, Source, join, quotes
 from argo_compiler.script.sentences.words.loading import pattern
 
 
@@ -105,7 +105,9 @@ def stamped(source: Source) -> dict[int, ScriptText]:
     for number, line in enumerate(source.lines, start=1):
         stamp = _STAMP.match(line)
         if stamp is not None:
-            found[number] = source.line_text(number)[stamp.end() :]
+            text = source.line_text(number)[stamp.end() :]
+            mark = ScriptText("- ", [text.first] * 2, source) if text.content else text
+            found[number] = join([mark, text], "")  # no line of a chat goes on in the next one
     return found if len(found) > 1 else {}
 
 

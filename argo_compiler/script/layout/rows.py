@@ -8,7 +8,6 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from argo_compiler.base.listing import listed
 from argo_compiler.script.documents.source import Diagnostics, ScriptText, Source, quotes
 from argo_compiler.script.layout.asides import Asides, ask_of_remark
 from argo_compiler.script.sentences.understanding import Understanding
@@ -18,6 +17,7 @@ from argo_compiler.script.sentences.words.prose import Prose
 COLUMN_HEADINGS = "column headings"
 """what the line of a table's headings is taken for"""
 _RULE = re.compile(r"[\s|:=+-]*-[\s|:=+-]*")
+_TO_FILL = re.compile(r"_{2,}|[□☐]|\.{4,}")
 _NUMBER = re.compile(r"[0-9]{1,6}")
 _MOST_COLUMNS = 12
 _MOST_ROWS = 10_000
@@ -76,6 +76,9 @@ def tables(source: Source, understanding: Understanding, diagnostics: Diagnostic
             if cut:
                 text = source.line_text(number)
                 headings = rows.headings(text, cut)
+                below = _below(source, number, cut)
+                if headings is not None and any(_TO_FILL.search(row.content) for row in below):
+                    headings = None  # a sheet that a person fills in
                 if headings is not None:
                     found[number] = text[:0]
                     all_.headings.append(text.strip())
@@ -139,12 +142,8 @@ class _Rows:
         if not (2 if cut in ";," else 1) <= len(known) <= _MOST_COLUMNS:
             return None
         strange = [cell for holds, _, cell in known if holds is None]
-        if strange and (cut != "|" or len(strange) == len(known)):
+        if strange:
             return None
-        for cell in strange:
-            said = listed((f"`{expand(t)[0]}`" for t in self.prose.columns.values()), "or")
-            message = f"there is no column `{cell.content}`"
-            self.diagnostics.error("unknown-label", message, cell.span(), f"columns are {said}")
         held = {holds for holds, _, _ in known}
         if not held & {"checkpoint", "object", "action"}:
             return None

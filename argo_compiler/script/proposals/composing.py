@@ -1,10 +1,11 @@
-"""What a clause proposes: a sentence that uses all of it that means something.
+"""What a clause proposes: sentences that use all of it that means something.
 
 A proposal never passes over a negation, a condition or a correction. Where parts are left that no
-sentence uses, the clause stays open, and its checkpoints are what can be chosen.
+sentence uses, the clause stays open, and what it may become are choices.
 """
 
-from collections.abc import Sequence
+import re
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 
@@ -14,40 +15,40 @@ from argo_compiler.script.proposals.mentions import (
     Mention,
     Mentions,
     checkpoint_words,
-    is_pronoun,
     mentions_in,
 )
 from argo_compiler.script.resolve.lookup import Lookup
 from argo_compiler.script.resolve.nouns import Memory, NounResolver
-from argo_compiler.script.sentences.tree.nouns import Nouns
+from argo_compiler.script.sentences.tree.nouns import AllOf, Nouns
 from argo_compiler.script.sentences.tree.places import AreaLocation, DockLocation, FloorName
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.amounts import Length
+from argo_compiler.script.sentences.words.numbers import Figure
 from argo_compiler.script.sentences.words.prose import cue_pattern
 
-_SIGNALS = frozenset(
-    [
-        *("IF", "IF_ONLY", "UNLESS", "ELSE", "UNTIL", "NOT", "EXCEPT", "BEFORE", "AFTER", "EVENT"),
-        *("GREATER", "LESS", "BETWEEN", "STATE", "FAILS", "BATTERY", "OUTSIDE", "NEITHER", "NOR"),
-        *("INSTEAD", "OR_NOUN", "OR_DO", "OR_TEST", "OR_NUMBER", "forbidding", "past", "question"),
-        *("correction", "EVERY", "REPLACE", "MOVE", "ADD"),
-    ]
-)
-_CHECKING = ("MEASURE", "BE_MEASURED", "TIMES", "last", "first", "GO", "checkpoints", "place", "IT")
-
-
 STATEMENT = "a statement that names nothing of the mission"
+_SIGNALS = (
+    *("forbidding", "past", "question", "correction", "leave_out", "IF", "IF_ONLY", "UNLESS"),
+    *("ELSE", "UNTIL", "NOT", "EXCEPT", "pronoun", "STATE", "MORE", "again", "TIMES"),
+)
+"""kinds of mentions without which a text is looked at for choices"""
+_COMMA = re.compile(r"\s*[,;:]\s+|\s+-\s+")
+_MOST_CLAUSES = 14
+_MOST_READINGS = 10
+"""of one checkpoint, one after the other"""
+
+Sentences = tuple[str, ...]
 
 
 @dataclass(frozen=True)
 class Proposal:
     """What is proposed for a text; without sentences and without `aside` it stays open."""
 
-    sentences: tuple[str, ...] = ()
+    sentences: Sentences = ()
     unused: tuple[str, ...] = ()
     aside: str = ""
     """why the text has no effect"""
-    choices: tuple[tuple[str, ...], ...] = ()
+    choices: tuple[Sentences, ...] = ()
     """for an open text: what it may become"""
     doubt: str = ""
     """for an open text: what is not clear"""
@@ -72,13 +73,87 @@ class Composer:
         states = self._states(text.content, found)
         if not found.mentions:
             return Proposal(aside=STATEMENT) if states else Proposal(choices=((),))
-        if states:
-            return Proposal(choices=self._choices(found) or ((),))
-        for frame in (self._leave_out, _duration, _start_and_end, _order, _wait, self._check):
-            sentences = frame(found)
-            if sentences is not None:
-                return Proposal(sentences, _unused(text, found))
+        if not states:
+            proposal = self._composed(text, found) or self._of_clauses(text)
+            if proposal is not None:
+                return proposal
         return Proposal(choices=self._choices(found))
+
+    def _composed(self, text: ScriptText, found: Mentions) -> Proposal | None:
+        sentences = self._sentences(found)
+        if sentences is None:
+            return None
+        unused = (text.content[word.start : word.end] for word in found.unknown)
+        return Proposal(sentences, tuple(unused))
+
+    def _of_clauses(self, text: ScriptText) -> Proposal | None:
+        """Return what the clauses of a text propose, if each of them proposes something or names
+        nothing of the mission."""
+        cues = self.understanding.language.prose.cues
+        cuts = [m.span() for m in cue_pattern("clause", cues["clause"]).finditer(text.content)]
+        cuts += [m.span() for m in _COMMA.finditer(text.content)]
+        starts = [0, *sorted({a for a, _ in cuts} | {b for _, b in cuts}), len(text.content)]
+        if not 2 < len(starts) <= _MOST_CLAUSES:
+            return None
+        before = self.memory.last
+        sentences: list[str] = []
+        unused: list[str] = []
+        i = 0
+        while i < len(starts) - 1:
+            for k in range(len(starts) - 1, i, -1):
+                part = text[starts[i] : starts[k]].strip()
+                found = mentions_in(part, self.understanding)
+                made = self._composed(part, found) if part.content else None
+                if made is not None:
+                    sentences += made.sentences
+                    unused += made.unused
+                    break
+                if not found.mentions and k == i + 1:
+                    unused += [part.content] if part.content.strip(" ,.;") else []
+                    break
+            else:
+                self.measured(before)
+                return None
+            i = k
+        return Proposal(tuple(sentences), tuple(unused)) if sentences else None
+
+    def measured(self, checkpoints: Sequence[CheckpointInfo]) -> None:
+        """Remember what was measured, as an earlier line says."""
+        self.memory.measured(checkpoints)
+
+    def checkpoints(self, mentions: Sequence[Mention]) -> list[CheckpointInfo]:
+        """Return the checkpoints that parts of a text name; number and name of one point, side by
+        side, are one. Raises RefusedError if that is not clear."""
+        resolver = self._resolver()
+        found: list[CheckpointInfo] = []
+        for mention in mentions:
+            assert isinstance(mention.value, Nouns)
+            found += [c for c in resolver.all(mention.value) if c not in found[-1:]]
+        return found
+
+    def floors(self, floors: Sequence[FloorName]) -> set[int]:
+        """Return the numbers of floors. Raises RefusedError if one is not on the site."""
+        return {*self._resolver().lookup.numbers(floors)}
+
+    def _resolver(self) -> NounResolver:
+        diagnostics = Diagnostics(self.understanding.diagnostics.source)
+        lookup = Lookup(self.catalog, diagnostics, None, None)
+        return NounResolver(lookup, diagnostics, self.memory)
+
+    def _sentences(self, found: Mentions) -> Sentences | None:
+        frames: tuple[Callable[[Mentions], Sentences | None], ...] = (
+            self._replace,
+            self._leave_out,
+            _duration,
+            _start_and_end,
+            _order,
+            _wait,
+            self._later,
+            self._spaced,
+            self._check,
+        )
+        made = (frame(found) for frame in frames)
+        return next((sentences for sentences in made if sentences is not None), None)
 
     def _states(self, content: str, found: Mentions) -> bool:
         """Whether a text states a fact about a thing that is none of the mission's, and asks for
@@ -90,115 +165,167 @@ class Composer:
         verb = cue_pattern("stating", cues["stating"]).search(content, begins.end())
         return verb is not None and any(word.end <= verb.start() for word in found.unknown)
 
-    def measured(self, checkpoints: Sequence[CheckpointInfo]) -> None:
-        """Remember what was measured, as an earlier line says."""
-        self.memory.measured(checkpoints)
+    def _choices(self, found: Mentions) -> tuple[Sentences, ...]:
+        """Return what an open text may become: what it would be without what is not clear, that its
+        checkpoints are read or not read, and nothing."""
+        choices: list[Sentences] = []
+        bare = found.without(*_SIGNALS)
+        said = self._sentences(bare) if bare.mentions else None
+        if said is not None:
+            choices.append(said)
+        named: dict[int, CheckpointInfo] = {}
+        for mention in found.of("checkpoints"):
+            with suppress(RefusedError):
+                named |= {c.id: c for c in self.checkpoints([mention])}
+        if 0 < len(named) < len(self.catalog.checkpoints):
+            words = checkpoint_words(list(named.values()))
+            choices += [(f"Check {words}.",), (f"Do not check {words}.",)]
+        for mention in found.of("place"):
+            if isinstance(mention.value, AreaLocation) and not named:
+                area = mention.value.area
+                choices += [(f"Start in starting area {area}.",)]
+                choices += [(f"Return to the docking station in starting area {area}.",)]
+        return (*dict.fromkeys(choices), ())
 
-    def checkpoints(self, mentions: Sequence[Mention]) -> list[CheckpointInfo]:
-        """Return the checkpoints that parts of a text name. Raises RefusedError if that is not
-        clear."""
-        source = self.understanding.diagnostics.source
-        diagnostics = Diagnostics(source)
-        lookup = Lookup(self.catalog, diagnostics, None, None)
-        resolver = NounResolver(lookup, diagnostics, self.memory)
-        found: list[CheckpointInfo] = []
-        for mention in mentions:
-            assert isinstance(mention.value, Nouns)
-            found += [c for c in resolver.all(mention.value) if c not in found[-1:]]
-        return found
+    # ---- frames: each returns its sentences, or None if the text has anything else
 
-    def _leave_out(self, found: Mentions) -> tuple[str, ...] | None:
-        """`skip PG 7`, `valve R12 is not needed`"""
-        cue = found.has("leave_out", "SPARE", "DELETE")
-        if not cue or not found.only(
-            "leave_out", "SPARE", "DELETE", "checkpoints", "place", "BE_MEASURED"
-        ):
+    def _leave_out(self, found: Mentions) -> Sentences | None:
+        """`skip PG 7, no ladder there`, `valve R12 is not needed`"""
+        if not found.has("leave_out", "SPARE", "DELETE"):
+            return None
+        idle = [m for m in found.of("forbidding", "correction") if _before_unknown(m, found)]
+        kept = Mentions(tuple(m for m in found.mentions if m not in idle), found.unknown)
+        allowed = ("leave_out", "SPARE", "DELETE", "checkpoints", "place", "BE_MEASURED")
+        if not kept.only(*allowed):
             return None
         with suppress(RefusedError):
-            named = self.checkpoints(found.of("checkpoints"))
+            named = self.checkpoints(kept.of("checkpoints"))
             if named:
                 return (f"Do not check {checkpoint_words(named)}.",)
         return None
 
-    def _check(self, found: Mentions) -> tuple[str, ...] | None:
+    def _replace(self, found: Mentions) -> Sentences | None:
+        """`sorry, not R25 but R12 in step 2`"""
+        named = found.of("checkpoints")
+        denials = ("correction", "forbidding", "NOT", "BUT", "EXCEPT")
+        allowed = ("checkpoints", "STEP", "NUMBER", "place", *denials)
+        if len(named) != 2 or not found.has("correction") or not found.only(*allowed):
+            return None
+        said = found.of(*denials)
+        denied = [m for m in said if m.end <= named[0].start]
+        between = [m for m in said if named[0].end <= m.start < named[1].start]
+        if not denied or len(between) > 1:
+            return None
+        with suppress(RefusedError):
+            (first,), (second,) = (self.checkpoints([one]) for one in named)
+            return (f"Replace checkpoint {first.id} by checkpoint {second.id}.",)
+        return None
+
+    def _later(self, found: Mentions) -> Sentences | None:
+        """`Ten minutes later read valve R18`"""
+        lengths, named = found.of("DURATION"), found.of("checkpoints")
+        if len(lengths) != 1 or not found.has("later") or not named:
+            return None
+        if not found.only("DURATION", "later", "checkpoints", "MEASURE"):
+            return None
+        text = _length(lengths[0].value)
+        checked = self._check(found.without("DURATION", "later"))
+        if text is None or checked is None or lengths[0].start > named[0].start:
+            return None
+        return (f"Wait for {text}.", *checked)
+
+    def _spaced(self, found: Mentions) -> Sentences | None:
+        """`pressure gauge 3: two readings, ten minutes apart`"""
+        lengths, counts = found.of("DURATION"), found.of("NUMBER", "TIMES")
+        spacing = ("later", "IN_BETWEEN", "PAUSE_OF")
+        if len(lengths) != 1 or len(counts) != 1 or not found.has(*spacing):
+            return None
+        allowed = ("DURATION", "NUMBER", "TIMES", "checkpoints", "MEASURE", "pronoun", *spacing)
+        count = counts[0].value
+        text = _length(lengths[0].value)
+        if not found.only(*allowed) or not isinstance(count, Figure) or text is None:
+            return None
+        checked = self._check(found.without("DURATION", "NUMBER", "TIMES", "pronoun", *spacing))
+        if checked is None or count.whole is None or not 1 < count.whole <= _MOST_READINGS:
+            return None
+        return (*checked, *((f"Wait for {text}.", *checked) * (count.whole - 1)))
+
+    def _check(self, found: Mentions) -> Sentences | None:
         """Checkpoints, and nothing else than that they are read, and how often."""
         named = found.of("checkpoints")
-        if not named or not found.only(*_CHECKING, "MORE", "again", "OF", "VALUE"):
+        allowed = ("MEASURE", "BE_MEASURED", "TIMES", "last", "first", "GO", "place", "OF", "VALUE")
+        if not found.only("checkpoints", "pronoun", "MORE", "again", *allowed):
             return None
-        if all(map(is_pronoun, named)) and not found.has("MEASURE", "again", "MORE"):
-            return None
+        if not named:
+            named = found.of("pronoun")
+            if not named or not found.has("MEASURE", "again", "MORE"):
+                return None
         if _verb_before(found, named[-1]):
             return None
         with suppress(RefusedError):
-            checkpoints = self.checkpoints(named)
-            floors = [s.value for s in found.of("place")]
-            if not _fit(checkpoints, floors):
-                return None
+            checkpoints = self._placed(named, found.of("place"))
             times = found.of("TIMES")
-            often = f" {times[0].value.whole} times" if times else ""  # type: ignore[attr-defined]
-            if len(times) > 1 or (times and len(checkpoints) > 1):
+            if checkpoints is None or len(times) > 1 or (times and len(checkpoints) > 1):
                 return None
+            often = ""
+            if times and isinstance(times[0].value, Figure) and times[0].value.whole != 1:
+                often = f" {times[0].value.whole} times"
             self.measured(checkpoints)
             return (f"Check {checkpoint_words(checkpoints)}{often}.",)
         return None
 
-    def floors(self, floors: Sequence[FloorName]) -> set[int]:
-        """Return the numbers of floors. Raises RefusedError if one is not on the site."""
-        diagnostics = Diagnostics(self.understanding.diagnostics.source)
-        return {*Lookup(self.catalog, diagnostics, None, None).numbers(floors)}
-
-    def _choices(self, found: Mentions) -> tuple[tuple[str, ...], ...]:
-        """Return what an open text may become: its checkpoints are read, or they are not."""
-        named: list[CheckpointInfo] = []
-        for mention in found.of("checkpoints"):
-            with suppress(RefusedError):
-                named += self.checkpoints([mention])
-        if not named:
-            return ()
-        words = checkpoint_words(list({c.id: c for c in named}.values()))
-        return ((f"Check {words}.",), (f"Do not check {words}.",), ())
-
-
-def _unused(text: ScriptText, found: Mentions) -> tuple[str, ...]:
-    return tuple(text.content[word.start : word.end] for word in found.unknown)
-
-
-# ---- frames: each returns its sentences, or None if the text has anything else
+    def _placed(
+        self, named: Sequence[Mention], places: Sequence[Mention]
+    ) -> list[CheckpointInfo] | None:
+        """Return the checkpoints, each of which is on the floor named beside it; None if one is
+        not. A floor before `all valves` says which are meant."""
+        floors = [place for place in places if isinstance(place.value, tuple)]
+        if len(floors) < len(places):
+            return None
+        if len(floors) == 1 and len(named) == 1 and isinstance(named[0].value, Nouns):
+            nouns = named[0].value
+            if all(isinstance(noun, AllOf) and not noun.floors for noun in nouns.nouns):
+                resolver = self._resolver()
+                return resolver.all(resolver.on(_floor_names(floors[0]), nouns))
+        checkpoints = self.checkpoints(named)
+        for place in floors:
+            before = [m for m in named if m.start < place.start] or list(named)
+            near = self.checkpoints(before[-1:]) if len(floors) > 1 else checkpoints
+            if not {c.floor for c in near} <= self.floors(_floor_names(place)):
+                return None
+        return checkpoints
 
 
-def _duration(found: Mentions) -> tuple[str, ...] | None:
-    """`keep it under 15 minutes`"""
+def _floor_names(place: Mention) -> list[FloorName]:
+    assert isinstance(place.value, tuple)
+    return [floor for floor in place.value if isinstance(floor, FloorName)]
+
+
+def _duration(found: Mentions) -> Sentences | None:
+    """`keep it under 15 minutes`, `the whole test must be over after 90 minutes`"""
     lengths = found.of("DURATION", "MOST_TIME")
-    others = (
-        "limit",
-        "DURATION",
-        "MOST_TIME",
-        "LESS",
-        "TOTAL",
-        "MAX_DURATION",
-        "WITHIN",
-        "AT_MOST",
-    )
-    limited = found.has("limit", "MOST_TIME", "LESS", "MAX_DURATION", "WITHIN", "AT_MOST")
-    if len(lengths) != 1 or not limited or not found.only(*others, "IT", "EVERYTHING"):
+    limits = ("limit", "MOST_TIME", "LESS", "MAX_DURATION", "WITHIN", "AT_MOST")
+    allowed = ("DURATION", "TOTAL", "pronoun", "EVERYTHING", "MEASURE", *limits)
+    if len(lengths) != 1 or not found.has(*limits) or not found.only(*allowed):
         return None
     text = _length(lengths[0].value)
     return None if text is None else (f"Maximum duration: {text}.",)
 
 
-def _start_and_end(found: Mentions) -> tuple[str, ...] | None:
+def _start_and_end(found: Mentions) -> Sentences | None:
     """`start in area 1`, `from area 2, back to its dock`"""
-    allowed = ("place", "start", "home", "START", "FROM", "HOME", "DOCK", "END", "last", "GO", "IT")
-    if not found.only(*allowed):
+    allowed = ("place", "start", "home", "START", "FROM", "HOME", "DOCK", "END", "last", "GO")
+    if not found.only(*allowed, "pronoun"):
         return None
-    areas = [s for s in found.of("place") if isinstance(s.value, AreaLocation | DockLocation)]
+    areas = [m for m in found.of("place") if isinstance(m.value, AreaLocation | DockLocation)]
     if len(areas) != len(found.of("place")):
         return None
+    docks = [m for m in areas if isinstance(m.value, DockLocation)]
     starts, homes = found.of("start", "START", "FROM"), found.of("home", "HOME", "END")
     if starts and not homes and len(areas) == 1:
         area = _area_of(areas[0])
         return None if area is None else (f"Start in starting area {area}.",)
-    if homes and not starts and len(areas) <= 1:
+    if (homes or docks) and not starts and len(areas) <= 1:
         area = _area_of(areas[0]) if areas else None
         where = f" in starting area {area}" if area is not None else ""
         return (f"Return to the docking station{where}.",)
@@ -206,21 +333,22 @@ def _start_and_end(found: Mentions) -> tuple[str, ...] | None:
         first, last = _area_of(areas[0]), _area_of(areas[-1])
         if first is None:
             return None
-        where = f" in starting area {last}" if last is not None else ""
-        return (f"Start in starting area {first}.", f"Return to the docking station{where}.")
+        end = last if last is not None else first
+        return (f"Start in starting area {first}.", f"End of the mission: starting area {end}.")
     return None
 
 
-def _order(found: Mentions) -> tuple[str, ...] | None:
+def _order(found: Mentions) -> Sentences | None:
     """`any order is fine`"""
     if found.has("ANY_ORDER", "ORDER_FREE") and found.only("ANY_ORDER", "ORDER_FREE"):
         return ("Order: any.",)
-    if found.has("THIS_ORDER") and found.only("THIS_ORDER", "MEASURE", "KIND", "DO_FOLLOWING"):
+    allowed = ("THIS_ORDER", "MEASURE", "DO_FOLLOWING", "KIND", "STEP", "checkpoints", "ROUNDS_OF")
+    if found.has("THIS_ORDER") and found.only(*allowed) and not found.has("checkpoints"):
         return ("Order: precise.",)
     return None
 
 
-def _wait(found: Mentions) -> tuple[str, ...] | None:
+def _wait(found: Mentions) -> Sentences | None:
     lengths = found.of("DURATION")
     if len(lengths) == 1 and found.has("WAIT", "PAUSE") and found.only("WAIT", "PAUSE", "DURATION"):
         text = _length(lengths[0].value)
@@ -228,21 +356,15 @@ def _wait(found: Mentions) -> tuple[str, ...] | None:
     return None
 
 
+def _before_unknown(mention: Mention, found: Mentions) -> bool:
+    """Whether an unknown word follows at once, as in `no ladder`."""
+    return any(0 <= word.start - mention.end <= 1 for word in found.unknown)
+
+
 def _verb_before(found: Mentions, last: Mention) -> bool:
     """Whether an unknown word stands where the verb of an order does: `paint valve R25`."""
     before = [word for word in found.unknown if word.end <= last.start]
     return bool(before) and not found.has("MEASURE", "BE_MEASURED")
-
-
-def _fit(checkpoints: Sequence[CheckpointInfo], places: Sequence[object]) -> bool:
-    """Whether checkpoints are on the floors that are named with them."""
-    for place in places:
-        if not isinstance(place, tuple):
-            return False
-        floors = {f.number for f in place if isinstance(f, FloorName)}
-        if not {c.floor for c in checkpoints} <= floors:
-            return False
-    return True
 
 
 def _area_of(mention: Mention) -> int | None:

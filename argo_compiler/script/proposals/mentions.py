@@ -24,10 +24,12 @@ _WEAK = frozenset(
     ]
 )
 """types of words that only join others"""
-_OF_STATEMENTS = frozenset(["subject", "stating", "asking"])
-"""cues of which only statements consist"""
 _LONGEST = 24
 """words of a noun phrase"""
+_APART = frozenset(["subject", "stating", "asking", "clause"])
+"""cues that are no mentions, but part a text or tell statements"""
+_OPENING = frozenset(["question", "sequence"])
+"""cues that mean something only where a text begins"""
 
 
 @dataclass(frozen=True)
@@ -35,7 +37,7 @@ class Mention:
     """A part of a text that means something."""
 
     kind: str
-    """`checkpoints`, `place`, a cue of the prose, or a type of word"""
+    """`checkpoints`, `pronoun`, `place`, a cue of the prose, or a type of word"""
     start: int
     end: int
     value: object = None
@@ -59,38 +61,61 @@ class Mentions:
         """Whether there is nothing but parts of these kinds."""
         return all(mention.kind in kinds for mention in self.mentions)
 
+    def without(self, *kinds: str) -> "Mentions":
+        """Return these mentions without those of some kinds."""
+        kept = tuple(mention for mention in self.mentions if mention.kind not in kinds)
+        return Mentions(kept, self.unknown)
+
 
 def mentions_in(text: ScriptText, understanding: Understanding) -> Mentions:
     """Return what a text has that means something, in the order of the text."""
-    content = text.content
-    cues = list(_cues(content, understanding))
-    words = [
-        w
-        for w in understanding.words(text)
-        if not any(a < w.end and w.start < b for _, a, b in cues)
-    ]
-    found = [Mention(name, start, end) for name, start, end in cues if name != "courtesy"]
+    words = understanding.words(text)
+    phrases = dict(_phrases(words, text, understanding))
+    named = [m for m in phrases.values() if m.kind != "pronoun"]
+    cues = [cue for cue in _cues(text.content, understanding) if not _overlaps(cue, named)]
+    found = [cue for cue in cues if cue.kind not in ("courtesy", "sequence")]
     unknown: list[Word] = []
     i = 0
     while i < len(words):
         word = words[i]
-        phrase = _phrase(words, i, text, understanding)
-        if phrase is not None:
-            mention, i = phrase
-            found.append(mention)
+        phrase = phrases.get(i)
+        if phrase is not None and not _overlaps(phrase, cues):
+            found.append(phrase)
+            while i < len(words) and words[i].start < phrase.end:
+                i += 1
+            continue
+        i += 1
+        if any(cue.start < word.end and word.start < cue.end for cue in cues):
             continue
         if word.type == "WORD":
             unknown.append(word)
         elif word.type not in _WEAK:
             found.append(Mention(word.type, word.start, word.end, word.value))
-        i += 1
-    return Mentions(tuple(sorted(found, key=lambda s: s.start)), tuple(unknown))
+    return Mentions(tuple(sorted(found, key=lambda m: m.start)), tuple(unknown))
+
+
+def _overlaps(mention: Mention, others: Sequence[Mention]) -> bool:
+    return any(other.start < mention.end and mention.start < other.end for other in others)
+
+
+def _phrases(
+    words: Sequence[Word], text: ScriptText, understanding: Understanding
+) -> Iterator[tuple[int, Mention]]:
+    """Yield the noun phrases and places, each with the index of its first word."""
+    i = 0
+    while i < len(words):
+        phrase = _phrase(words, i, text, understanding)
+        if phrase is None:
+            i += 1
+            continue
+        yield i, phrase[0]
+        i = phrase[1]
 
 
 def _phrase(
     words: Sequence[Word], i: int, text: ScriptText, understanding: Understanding
 ) -> tuple[Mention, int] | None:
-    """Return the longest noun phrase or place that begins at a word, and the word behind it."""
+    """Return the longest noun phrase or place that begins at a word, and the index behind it."""
     first = words[i].type
     starts = [name for name, types in (("nouns", _NOUNS), ("location", _PLACES)) if first in types]
     for start in starts:
@@ -101,37 +126,37 @@ def _phrase(
             except StumbleError:
                 continue
             node = build(branch, list(words[i:behind]), text, understanding.diagnostics)
-            kind = "place" if start == "location" else _kind_of(node)
+            kind = "place"
+            if start == "nouns":
+                kind = "pronoun" if _means_another(node) else "checkpoints"
             return Mention(kind, words[i].start, words[behind - 1].end, node), behind
     return None
 
 
-def _kind_of(nouns: Nouns) -> str:
-    return "checkpoints" if nouns.nouns else "nouns"
+def _means_another(nouns: Nouns) -> bool:
+    """Whether a noun phrase names no checkpoint, but means one that was named before."""
+    return all(isinstance(noun, Pronoun) for noun in nouns.nouns)
 
 
-def _cues(content: str, understanding: Understanding) -> Iterator[tuple[str, int, int]]:
-    """Yield the cues of a text with their places; of two that overlap, the first and longest."""
-    found: list[tuple[int, int, str]] = []
+def _cues(content: str, understanding: Understanding) -> Iterator[Mention]:
+    """Yield the cues of a text; of two that overlap, the first and longest."""
+    found: list[Mention] = []
+    begins = len(content) - len(content.lstrip(' "(-'))
     for name, phrases in understanding.language.prose.cues.items():
-        if name in _OF_STATEMENTS:
+        if name in _APART:
             continue
-        pattern = cue_pattern(name, phrases)
-        found += [(m.start(), -m.end(), name) for m in pattern.finditer(content)]
+        for match in cue_pattern(name, phrases).finditer(content):
+            opening = match.start() <= begins or match[0] == "?"
+            if name not in _OPENING or opening:
+                found.append(Mention(name, *match.span()))
     behind = 0
-    for start, negative_end, name in sorted(found):
-        if start >= behind:
-            behind = -negative_end
-            yield name, start, behind
+    for cue in sorted(found, key=lambda m: (m.start, -m.end)):
+        if cue.start >= behind:
+            behind = cue.end
+            yield cue
 
 
 def checkpoint_words(checkpoints: Sequence[CheckpointInfo]) -> str:
     """Return checkpoints by their numbers: `checkpoint 1, checkpoint 3 and checkpoint 4`."""
     said = [f"checkpoint {checkpoint.id}" for checkpoint in checkpoints]
     return said[0] if len(said) == 1 else f"{', '.join(said[:-1])} and {said[-1]}"
-
-
-def is_pronoun(mention: Mention) -> bool:
-    """Whether a noun phrase names no checkpoint, but means one that was named before."""
-    nouns = mention.value
-    return isinstance(nouns, Nouns) and all(isinstance(noun, Pronoun) for noun in nouns.nouns)

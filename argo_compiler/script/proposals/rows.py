@@ -13,7 +13,7 @@ from argo_compiler.base.catalog import CheckpointInfo, CheckpointKind
 from argo_compiler.script.documents.source import RefusedError, ScriptText
 from argo_compiler.script.layout.forms import Cell, CellRole, FormRow
 from argo_compiler.script.proposals.composing import Composer, Proposal
-from argo_compiler.script.proposals.mentions import checkpoint_words, is_pronoun, mentions_in
+from argo_compiler.script.proposals.mentions import checkpoint_words, mentions_in
 from argo_compiler.script.sentences.tree.places import FloorName
 from argo_compiler.script.sentences.words.prose import cue_pattern
 
@@ -30,8 +30,18 @@ _UNITS = {
     CheckpointKind.LIQUID_LEVEL_GAUGE: frozenset(["%", "percent", "prozent"]),
     CheckpointKind.VALVE: frozenset(["deg", "°", "degrees", "grad", "-", "–"]),
 }
+_ALL_UNITS = frozenset().union(*_UNITS.values())
+_POSITIONS = ("half", "open", "closed")
 _OPEN, _CLOSED = 70.0, 20.0
 """degrees from which a valve's normal position counts as open, and up to which as closed"""
+_OF_FORMS = frozenset(
+    [
+        *("MEASURE", "BE_MEASURED", "NUMBER", "TIME_WORD", "OF", "pronoun", "question", "past"),
+        "PERSON",
+        *("GREATER", "LESS", "STATE", "DONE", "QUANTITY", "REPORT", "MODE", "IN_BETWEEN"),
+    ]
+)
+"""what a field of a form may mention that has no effect on a mission"""
 _TICKED = "this row is ticked, or marked as done: it may be left out"
 
 
@@ -78,15 +88,23 @@ def propose_row(row: FormRow, composer: Composer) -> Proposal:
 
 
 def _without_checkpoint(row: FormRow, composer: Composer) -> Proposal:
-    """Return what a row without a checkpoint is: a field to fill in, or something to ask about."""
-    text = row.place
-    if (
-        row.box is None
-        and _FILL.search(text.content)
-        and not mentions_in(text, composer.understanding).mentions
-    ):
+    """Return what a row without a checkpoint is: a field to fill in, one that a mission does not
+    have, an order such as to dock, or something to ask about."""
+    found = mentions_in(row.place, composer.understanding)
+    needed = [m for m in found.mentions if m.kind not in _OF_FORMS]
+    blank = _FILL.search(row.place.content) is not None
+    if row.box is None and blank and not needed:
         return Proposal(aside="a field that a person fills in")
-    return composer.propose(text) if len(row.cells) < 2 else Proposal(choices=((),))
+    labels = composer.understanding.language.prose.form["labels"]
+    idle = cue_pattern("labels", labels).search(row.cells[0].text.content) is not None
+    if row.labelled and row.box is None and idle and not needed:
+        return Proposal(aside="a field that a mission does not have")
+    roles = (CellRole.NAME, CellRole.ACTION, CellRole.OTHER)
+    said = [cell.text for cell in row.cells if cell.role in roles]
+    if row.box is None and len(said) == 1 and said[0].content:
+        inner = composer.propose(said[0])
+        return inner if inner.sentences or len(row.cells) == 1 else Proposal(choices=((),))
+    return Proposal(choices=((),))
 
 
 # ---- cells
@@ -97,12 +115,20 @@ def _read_sheet_cell(cell: Cell, found: _Row, composer: Composer) -> bool:
     text = cell.text.content
     form = composer.understanding.language.prose.form
     nothing = cue_pattern("nothing", form["nothing"]).fullmatch(text) is not None
+    if not nothing and _FILL.search(text) and not _without_fill(text, form):
+        return True
     match cell.role:
         case CellRole.NUMBER if _NUMBER.fullmatch(text):
             return True
         case CellRole.POINTS | CellRole.LOW | CellRole.HIGH if _PLAIN.fullmatch(text):
             return True
-        case CellRole.UNIT | CellRole.NORMAL | CellRole.KIND | CellRole.REPORT | CellRole.FLOOR:
+        case CellRole.NORMAL if nothing or _is_normal(text, form):
+            return True
+        case CellRole.UNIT if nothing or text.lower().strip(" .") in _ALL_UNITS:
+            return True
+        case CellRole.KIND if text.lower().removesuffix("s") in {str(k) for k in CheckpointKind}:
+            return True
+        case CellRole.FLOOR if _floors(cell.text, composer):
             return True
         case CellRole.WINDOW:
             window = _RANGE.fullmatch(text)
@@ -124,6 +150,13 @@ def _read_sheet_cell(cell: Cell, found: _Row, composer: Composer) -> bool:
         case CellRole.REMARK:
             return _read_remark(cell.text, found, composer)
     return False
+
+
+def _is_normal(text: str, form: Mapping[str, str]) -> bool:
+    """Whether a cell has no more than a normal range, or the position that a valve must have."""
+    if _RANGE.fullmatch(text) or _PLAIN.fullmatch(text):
+        return True
+    return any(cue_pattern(name, form[name]).fullmatch(text) for name in _POSITIONS)
 
 
 def _read_remark(text: ScriptText, found: _Row, composer: Composer) -> bool:
@@ -151,7 +184,7 @@ def _without_fill(text: str, form: Mapping[str, str]) -> str:
     rest = _FILL.sub(" ", text)
     furniture = cue_pattern("furniture", form["furniture"])
     rest = furniture.sub(" ", rest)
-    for name in ("open", "closed", "half"):
+    for name in _POSITIONS:
         if _FILL.search(text):
             rest = cue_pattern(name, form[name]).sub(" ", rest)
     return rest.strip(" :.,-()%")
@@ -159,18 +192,24 @@ def _without_fill(text: str, form: Mapping[str, str]) -> str:
 
 def _read_cell(text: ScriptText, found: _Row, composer: Composer) -> None:
     """Read a cell by what it contains."""
-    form = composer.understanding.language.prose.form
+    prose = composer.understanding.language.prose
+    form, cues = prose.form, prose.cues
     content = text.content
     if cue_pattern("nothing", form["nothing"]).fullmatch(content):
         found.doubts.append(f"`{content}` can mean that this is left out")
         return
-    if cue_pattern("leave_out", form["leave_out"]).search(content):
+    left = _without_fill(content, form)
+    if not left or _RANGE.fullmatch(content):
+        return
+    if any(
+        cue_pattern("leave_out", said).search(left)
+        for said in (form["leave_out"], cues["leave_out"])
+    ):
         found.left_out = True
-        return
-    if not _without_fill(content, form) or _RANGE.fullmatch(content):
-        return
+    elif cue_pattern("forbidding", cues["forbidding"]).search(left):
+        found.doubts.append(f"`{content}` can change what is done here")
     mentions = mentions_in(text, composer.understanding)
-    named = [m for m in mentions.of("checkpoints") if not is_pronoun(m)]
+    named = mentions.of("checkpoints")
     for mention in named:
         with suppress(RefusedError):
             found.named += composer.checkpoints([mention])
@@ -181,9 +220,7 @@ def _read_cell(text: ScriptText, found: _Row, composer: Composer) -> None:
         return
     words = {content[w.start : w.end] for w in mentions.unknown}
     found.unused += [w for w in sorted(words, key=content.index) if _without_fill(w, form)]
-    others = [
-        m for m in mentions.mentions if m.kind in ("DURATION", "TIMES", "EVENT", "UNTIL", "EXCEPT")
-    ]
+    others = mentions.of("DURATION", "TIMES", "EVENT", "UNTIL", "EXCEPT", "IF", "UNLESS")
     if others:
         found.doubts.append(f"`{content[others[0].start : others[0].end]}` is not understood here")
 
@@ -252,7 +289,7 @@ def _position_difference(
     content: str, checkpoint: CheckpointInfo, form: Mapping[str, str]
 ) -> Iterator[str]:
     known = checkpoint.nominal
-    for name in ("half", "open", "closed"):
+    for name in _POSITIONS:
         if cue_pattern(name, form[name]).search(content) is None:
             continue
         fits = {

@@ -174,6 +174,8 @@ def _field(cells: Sequence[Cell], prose: Prose) -> ScriptText | None:
     if len(cells) != 2 or not all(cell.text.content for cell in cells):
         return None
     label, value = (cell.text for cell in cells)
+    if value.content.startswith(":"):
+        return None
     named = _UNIT_OF_LABEL.fullmatch(label.content)
     said = label[: named.end(1)] if named is not None else label
     said = said[: len(said.content.rstrip(" :"))]

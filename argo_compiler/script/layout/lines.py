@@ -71,6 +71,7 @@ _BEHIND_ORDINAL = (
     rf"{_MORE_ORDINALS}*(?:\s+<behind_ordinals>|\s*(?:,|<between_ordinals>)$)|{_MORE_ORDINALS}+$"
 )
 """what stands behind an ordinal, where no line cuts it: `im 1. und 2. Stock`"""
+_FLOOR_ONLY = r"(?:<behind_ordinals>)\W*"
 _NEXT_SIGN = re.compile(r"\s*(\S)")
 
 
@@ -138,6 +139,8 @@ def _marked(text: ScriptText, indent: int) -> ScriptLine:
     patterns = (pattern(_NUMBER), pattern(_STEP), _BRACKETED)
     if number := next(filter(None, (p.match(text.content) for p in patterns)), None):
         rest = text[number.end() :].strip()
+        if pattern(_FLOOR_ONLY).fullmatch(rest.content):
+            return ScriptLine(text, indent)  # `1. Obergeschoss`
         return ScriptLine(rest, indent, LineMark.NUMBER, int(number[1]), marked=text)
     if letter := _LETTER.match(text.content) or _SUB_NUMBER.match(text.content):
         return ScriptLine(text[letter.end() :].strip(), indent, LineMark.LETTER)

@@ -5,7 +5,7 @@ import pytest
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.diagnostics import Severity
 from argo_compiler.il import Order
-from argo_compiler.script import parse
+from argo_compiler.script import LineState, import_script, parse
 from tests.argo_compiler.script.conftest import findings, measured
 from tests.whole_scripts import import_whole
 
@@ -117,7 +117,9 @@ def test_a_remark_in_a_table_may_say_something(catalog: Catalog) -> None:
 
 def test_a_column_that_there_is_not(catalog: Catalog) -> None:
     text = f"{START}\n| Checkpoint | Colour |\n| #4 | red |"
-    assert errors(text, catalog) == [(3, "Colour")]
+    (row,) = (line for line in import_script(text, catalog).lines if line.line == 4)
+    assert (row.state, row.sentences) == (LineState.PROPOSED, ("Check checkpoint 4.",))
+    assert row.unused == ("red",)
 
 
 def test_a_letter(catalog: Catalog) -> None:

@@ -92,7 +92,8 @@ def test_a_row_that_leaves_something_out_never_becomes_a_check(row: str, catalog
 
 
 def test_words_that_a_row_does_not_use_have_to_be_confirmed(catalog: Catalog) -> None:
-    text = "Point                   Reading       Remarks\npressure gauge 1        ____ bar      tap the glass first\n"
+    text = "Point                   Reading       Remarks\n"
+    text += "pressure gauge 1        ____ bar      tap the glass first\n"
     draft = draft_of(text, catalog)
     assert at(draft, 2).state is LineState.PROPOSED
     assert at(draft, 2).unused == ("tap the glass first",)

@@ -26,9 +26,28 @@ _SPOTS = frozenset(["AREA", "DOCK", "PLACE", "FLOOR", "FLOOR_NAME", "ORDINAL", "
 
 def arranged(words: list[Word]) -> list[Word]:
     """The words in the order of the grammar, those of two senses told apart."""
+    words = _counted_from_ground(words)
     told = [w for i in range(len(words)) for w in _told(words, i)]
     found = _verbs_first(_compared(told))
     return [w for i, w in enumerate(found) if w.type != "IS" or _is_needed(found, i)]
+
+
+def _counted_from_ground(words: list[Word]) -> list[Word]:
+    """The words, `1. Obergeschoss` as the second floor; floors are counted from the bottom."""
+    if all(word.type != "UPPER_FLOOR" for word in words):
+        return words
+    found: list[Word] = []
+    for word in words:
+        if word.type == "UPPER_FLOOR":
+            dotted = [w.type for w in found[-2:]] == ["NUMBER", "SIGN"] and found[-1].value == "."
+            if dotted and found[-2].value.whole is not None:
+                number = found[-2]
+                found[-2:] = [Word("ORDINAL", number.value.whole + 1, number.start, number.end)]
+            elif found and found[-1].type == "ORDINAL":
+                found[-1] = replace(found[-1], value=found[-1].value + 1)
+            word = replace(word, type="FLOOR", value=False)
+        found.append(word)
+    return found
 
 
 # ---- words of two senses

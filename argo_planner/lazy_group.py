@@ -56,7 +56,8 @@ class _Command(TyperCommand):
 
 
 def _has_two_words(option: Any) -> bool:
-    return " " in (option.metavar or "")
+    several = getattr(option, "multiple", False) and option.nargs == 1
+    return several and " " in (option.metavar or "")
 
 
 @dataclass(frozen=True)

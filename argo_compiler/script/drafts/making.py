@@ -26,7 +26,10 @@ from argo_compiler.script.resolve.importing import resolve_script
 _OF_OPTIONS = frozenset(["script.area-choice", "script.area-conflict", "script.area-not-offered"])
 """codes of errors that another option resolves, and no change of the line"""
 _UNREAD = frozenset(
-    ["script.not-understood", "script.unfinished", "script.unknown-label", "script.row"]
+    [
+        *("script.not-understood", "script.unfinished", "script.unknown-label", "script.row"),
+        *("script.duration", "script.field"),
+    ]
 )
 """codes of errors of a piece that the grammar does not take; others are questions"""
 
@@ -77,7 +80,7 @@ def import_script(
     errors = _errors_by_piece(reading)
     unread = {at for at, error in errors.items() if error.code in _UNREAD and at not in said}
     proposals = propose(reading.script, unread, catalog)
-    proposed = {at: p.sentences for at, p in proposals.items() if p.sentences or p.aside}
+    proposed = {at: p.sentences for at, p in proposals.items() if _reads(p)}
     if proposed:
         reading = _read(text, catalog, source_name, areas, {**said, **proposed})
         errors = _errors_by_piece(reading)
@@ -89,6 +92,11 @@ def import_script(
         mission=None if left else reading.mission,
         diagnostics=by_position((*reading.diagnostics, *_asides(reading, proposals))),
     )
+
+
+def _reads(proposal: Proposal) -> bool:
+    """Whether a proposal says what is read instead of its piece, be it nothing."""
+    return bool(proposal.sentences or proposal.aside or proposal.certain)
 
 
 def _read(

@@ -41,7 +41,7 @@ _BRIDGES = ("AND_", "OR_", "JOINT")
 _WHOLE = re.compile(r"(?:(?:ANY_ORDER|THIS_ORDER|(?:MOST_TIME|WITHIN DURATION)(?: TOTAL)?) )+")
 _JOINTS = frozenset(["NEXT", "JOINT", "AND_NOUN", "AND_AMOUNT", "AND_TEST", "AND_NUMBER"])
 _INTRODUCTION = re.compile(
-    r"(?:WORD )?(?:TO )?(?:MEASURE )?(?:ALL |THEM )?KIND (?:ANY|THIS)_ORDER "
+    r"(?:WORD )?(?:TO )?(?:MEASURE )?(?:ALL |THEM |DO_FOLLOWING )?KIND (?:ANY|THIS)_ORDER "
 )
 
 

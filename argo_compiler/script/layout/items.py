@@ -64,6 +64,7 @@ class LineItem:
 
 
 _OPENERS = frozenset([*VERBS, "IF", "UNLESS", "ELSE"]) - {"DOCK", "FROM"}
+_OPENING_TYPES = frozenset((type_,) for type_ in _OPENERS)
 _WORD = re.compile(r"\w+")
 _LAST = 80
 """characters at the end of a text that tell whether it goes on"""
@@ -79,7 +80,7 @@ _END = 200
 """characters at the end of a longer one that are looked at"""
 _MOST_KNOWN = 1024
 _WRAPPED = 45
-"""characters of a line that may go on in the next one, as it was broken for its length"""
+"""characters; no shorter line is broken for its length"""
 _LONGEST_STRANGE = 300
 """characters; lines that make no sense are put together up to here"""
 _DEEPEST = 20
@@ -95,6 +96,8 @@ class LineSense:
     understanding: Understanding
     asides: Asides
     fields: ScriptFields
+    width: int
+    """characters of the longest line"""
     one: dict[tuple[object, ...], bool] = field(default_factory=dict)
     """whether two lines, one below the other, are one text; many are alike"""
 
@@ -105,6 +108,13 @@ class LineSense:
         numbered = content[-1:].isdigit() and asides.is_explicit_title(text)
         alone = numbered or asides.is_remark(content) or asides.opens(content)
         return alone or self.fields.is_field(text)
+
+    def is_broken(self, line: str, below: ScriptText) -> bool:
+        """Whether a line was broken for its length, and goes on in the next one."""
+        first = below.content.split(maxsplit=1)[0]
+        full = len(line) >= _WRAPPED and len(line) + 1 + len(first) > self.width
+        types = self.understanding.types(below)
+        return full and below.content[0].islower() and types[:1] not in _OPENING_TYPES
 
     def announces(self, text: ScriptText) -> bool:
         """Whether a text says that lines below it are to be done: `Do the following twice:`."""
@@ -274,12 +284,9 @@ def _are_one(item: LineItem, line: ScriptLine, sense: LineSense) -> bool:
     if sense.is_complete(rest) or len(last.content) > _LONGEST_STRANGE:
         return False
     if not whole:
-        return (
-            indented
-            or last.content.endswith("-")
-            or (below.content[:1].islower() and len(item.last_line) >= _WRAPPED)
-        )
-    return sense.is_fragment(rest, indented)
+        broken = sense.is_broken(item.last_line, below)
+        return indented or broken or last.content.endswith("-")
+    return (indented or not marked) and sense.is_fragment(rest, indented)
 
 
 def _ends_in_number(item: LineItem, line: ScriptLine, sense: LineSense) -> bool:

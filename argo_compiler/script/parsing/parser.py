@@ -138,7 +138,8 @@ class _Parser:
         self.pieces += [Piece(text) for text in unreadable]
         self.diagnostics.extend(healed.diagnostics)
         texts = Cells(self.fields, self.understanding).joined(healed.lines)
-        sense = LineSense(self.understanding, self.asides, self.fields)
+        width = max(map(len, source.lines))
+        sense = LineSense(self.understanding, self.asides, self.fields, width)
         items = items_of(lines_of(texts), sense, language.words)
         lists = Lists(self.understanding, self._record)
         steps = list(self._steps(lists.told(items)))

@@ -29,9 +29,11 @@ from argo_compiler.script.sentences.words.prose import cue_pattern
 STATEMENT = "a statement that names nothing of the mission"
 _SIGNALS = (
     *("forbidding", "past", "question", "correction", "leave_out", "IF", "IF_ONLY", "UNLESS"),
-    *("ELSE", "UNTIL", "NOT", "EXCEPT", "pronoun", "STATE", "MORE", "again", "TIMES"),
+    *("ELSE", "UNTIL", "NOT", "EXCEPT", "pronoun", "STATE", "MORE", "again", "TIMES", "GREATER"),
+    *("INCLUDED", "RECHARGE"),
 )
 """kinds of mentions without which a text is looked at for choices"""
+_DOCKING = ("home", "HOME", "DOCK", "END", "place")
 _COMMA = re.compile(r"\s*[,;:]\s+|\s+-\s+")
 _MOST_CLAUSES = 14
 _MOST_READINGS = 10
@@ -66,6 +68,8 @@ class Composer:
         self.understanding = understanding
         self.catalog = catalog
         self.memory = Memory()
+        self.tags: dict[str, CheckpointInfo] = {}
+        """checkpoints by the tags that the script has given them"""
 
     def propose(self, text: ScriptText) -> Proposal:
         """Return what a sentence or a line proposes."""
@@ -169,10 +173,10 @@ class Composer:
         """Return what an open text may become: what it would be without what is not clear, that its
         checkpoints are read or not read, and nothing."""
         choices: list[Sentences] = []
-        bare = found.without(*_SIGNALS)
-        said = self._sentences(bare) if bare.mentions else None
-        if said is not None:
-            choices.append(said)
+        for bare in (found.without(*_SIGNALS), found.without(*_SIGNALS, *_DOCKING)):
+            said = self._sentences(bare) if bare.mentions else None
+            if said is not None:
+                choices.append(said)
         named: dict[int, CheckpointInfo] = {}
         for mention in found.of("checkpoints"):
             with suppress(RefusedError):
@@ -305,8 +309,12 @@ def _duration(found: Mentions) -> Sentences | None:
     """`keep it under 15 minutes`, `the whole test must be over after 90 minutes`"""
     lengths = found.of("DURATION", "MOST_TIME")
     limits = ("limit", "MOST_TIME", "LESS", "MAX_DURATION", "WITHIN", "AT_MOST")
-    allowed = ("DURATION", "TOTAL", "pronoun", "EVERYTHING", "MEASURE", *limits)
-    if len(lengths) != 1 or not found.has(*limits) or not found.only(*allowed):
+    allowed = ("DURATION", "TOTAL", "pronoun", "everything", "MEASURE", *limits)
+    if found.has("over") and found.has("forbidding", "NOT"):  # `not longer than`
+        found = found.without("over", "forbidding", "NOT")
+    elif not found.has(*limits):
+        return None
+    if len(lengths) != 1 or not found.only(*allowed):
         return None
     text = _length(lengths[0].value)
     return None if text is None else (f"Maximum duration: {text}.",)
@@ -342,8 +350,8 @@ def _order(found: Mentions) -> Sentences | None:
     """`any order is fine`"""
     if found.has("ANY_ORDER", "ORDER_FREE") and found.only("ANY_ORDER", "ORDER_FREE"):
         return ("Order: any.",)
-    allowed = ("THIS_ORDER", "MEASURE", "DO_FOLLOWING", "KIND", "STEP", "checkpoints", "ROUNDS_OF")
-    if found.has("THIS_ORDER") and found.only(*allowed) and not found.has("checkpoints"):
+    allowed = ("THIS_ORDER", "MEASURE", "DO_FOLLOWING", "KIND", "STEP", "TIME_WORD", "ROUNDS_OF")
+    if found.has("THIS_ORDER") and found.only(*allowed):
         return ("Order: precise.",)
     return None
 

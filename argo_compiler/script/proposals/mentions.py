@@ -7,7 +7,7 @@ from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.script.documents.source import ScriptText
 from argo_compiler.script.sentences.building.sentences import build
 from argo_compiler.script.sentences.grammar.parser import StumbleError
-from argo_compiler.script.sentences.tree.nouns import Nouns, Pronoun
+from argo_compiler.script.sentences.tree.nouns import AllOf, Nouns, Pronoun
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.prose import cue_pattern
 from argo_compiler.script.sentences.words.word import Word
@@ -37,7 +37,7 @@ class Mention:
     """A part of a text that means something."""
 
     kind: str
-    """`checkpoints`, `pronoun`, `place`, a cue of the prose, or a type of word"""
+    """`checkpoints`, `pronoun`, `everything`, `place`, a cue of the prose, or a type of word"""
     start: int
     end: int
     value: object = None
@@ -128,14 +128,18 @@ def _phrase(
             node = build(branch, list(words[i:behind]), text, understanding.diagnostics)
             kind = "place"
             if start == "nouns":
-                kind = "pronoun" if _means_another(node) else "checkpoints"
+                kind = _kind_of(node)
             return Mention(kind, words[i].start, words[behind - 1].end, node), behind
     return None
 
 
-def _means_another(nouns: Nouns) -> bool:
-    """Whether a noun phrase names no checkpoint, but means one that was named before."""
-    return all(isinstance(noun, Pronoun) for noun in nouns.nouns)
+def _kind_of(nouns: Nouns) -> str:
+    """Return what a noun phrase is: `pronoun` if it means what was named before, `everything` if it
+    is the whole mission or site, else `checkpoints`."""
+    if all(isinstance(noun, Pronoun) for noun in nouns.nouns):
+        return "pronoun"
+    whole = len(nouns.nouns) == 1 and isinstance(nouns.nouns[0], AllOf) and nouns.nouns[0].whole
+    return "everything" if whole and not nouns.but else "checkpoints"
 
 
 def _cues(content: str, understanding: Understanding) -> Iterator[Mention]:

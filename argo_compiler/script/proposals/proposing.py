@@ -1,5 +1,6 @@
 """Proposals for the pieces of a script that the grammar does not take."""
 
+import re
 from bisect import bisect_right
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import suppress
@@ -14,9 +15,14 @@ from argo_compiler.script.sentences.tree.orders import Measure, Sentence
 from argo_compiler.script.sentences.tree.script import ScriptStep
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.language import Language
+from argo_compiler.script.sentences.words.prose import cue_pattern
 
 MAX_PROPOSED = 2000
 """pieces of a script; no more are looked at"""
+_FIRST = 4
+"""pieces of a letter in which a name alone is a greeting"""
+_NAME = re.compile(r"[^\W\d_a-zäöü][^\W\d_A-ZÄÖÜ]+,")
+_CLOCK = re.compile(r"\s*[0-9]{1,2}[:.][0-9]{2}\b")
 
 
 def propose(script: Script, unread: Collection[int], catalog: Catalog) -> dict[int, Proposal]:
@@ -28,16 +34,25 @@ def propose(script: Script, unread: Collection[int], catalog: Catalog) -> dict[i
     language = Language.of(script.source_text, places)
     understanding = Understanding(language, frozenset(), Diagnostics(source))
     composer = Composer(understanding, catalog)
-    pieces = script.pieces
-    measured = _measured(script.steps, pieces)
+    measured = _measured(script.steps, script.pieces)
     found: dict[int, Proposal] = {}
-    for piece in pieces:
+    in_log = False
+    for i, piece in enumerate(script.pieces):
         start = piece.text.first
+        content = piece.text.content
+        if content.isupper() and start not in script.rows:
+            logs = understanding.language.prose.form["logs"]
+            in_log = cue_pattern("logs", logs).fullmatch(content.strip(" :")) is not None
         if start in unread and len(found) < MAX_PROPOSED:
             row = script.rows.get(start)
-            found[start] = (
-                composer.propose(piece.text) if row is None else propose_row(row, composer)
-            )
+            if in_log and _CLOCK.match(content if row is None else row.place.content):
+                found[start] = Proposal(aside="an entry of a log")
+            elif row is not None:
+                found[start] = propose_row(row, composer, first=i == 0)
+            elif i < _FIRST and _NAME.fullmatch(content):
+                found[start] = Proposal(aside="a greeting")
+            else:
+                found[start] = composer.propose(piece.text)
         for mention in measured.get(start, ()):
             with suppress(RefusedError):
                 composer.measured(composer.checkpoints([mention]))

@@ -14,6 +14,7 @@ from argo_compiler.script.documents.source import RefusedError, ScriptText
 from argo_compiler.script.layout.forms import Cell, CellRole, FormRow
 from argo_compiler.script.proposals.composing import Composer, Proposal
 from argo_compiler.script.proposals.mentions import checkpoint_words, mentions_in
+from argo_compiler.script.proposals.tags import count_tag, tag_of
 from argo_compiler.script.sentences.tree.places import FloorName
 from argo_compiler.script.sentences.words.prose import cue_pattern
 
@@ -54,11 +55,14 @@ class _Row:
     doubts: list[str] = field(default_factory=list)
     differences: list[str] = field(default_factory=list)
     left_out: bool = False
+    tag: str = ""
+    """a plant tag that is not known"""
     manner: str = ""
 
 
-def propose_row(row: FormRow, composer: Composer) -> Proposal:
-    """Return what a row proposes; `certain` if every cell agrees with the site."""
+def propose_row(row: FormRow, composer: Composer, first: bool = False) -> Proposal:
+    """Return what a row proposes; `certain` if every cell agrees with the site. `first`: it is the
+    first line of the script, and may be its title."""
     if row.is_heading:
         times = [c for c in row.cells if _CLOCK.fullmatch(c.text.content)]
         if len(times) > 1:
@@ -70,7 +74,10 @@ def propose_row(row: FormRow, composer: Composer) -> Proposal:
             _read_cell(cell.text, found, composer)
     ids = {c.id: c for c in found.named}
     if not ids:
-        return _without_checkpoint(row, composer)
+        return _without_checkpoint(row, composer, first)
+    if found.tag and len(ids) == 1 and _is_definition(row, found.tag):
+        composer.tags[found.tag] = next(iter(ids.values()))
+        return Proposal(certain=True)
     _compare(row.cells, next(iter(ids.values())), found, composer)
     words = checkpoint_words(list(ids.values()))
     check, spare = f"Check {words}{found.manner}.", f"Do not check {words}."
@@ -87,12 +94,23 @@ def propose_row(row: FormRow, composer: Composer) -> Proposal:
     return Proposal((check,), unused, differences=tuple(found.differences), certain=not unused)
 
 
-def _without_checkpoint(row: FormRow, composer: Composer) -> Proposal:
+def _is_definition(row: FormRow, tag: str) -> bool:
+    """Whether a row only says which checkpoint a tag is, that the script uses elsewhere."""
+    plain = len(row.cells) == 2 and row.box is None and not _FILL.search(row.place.content)
+    return plain and count_tag(tag, row.place.source.text) > 1
+
+
+def _without_checkpoint(row: FormRow, composer: Composer, first: bool) -> Proposal:
     """Return what a row without a checkpoint is: a field to fill in, one that a mission does not
     have, an order such as to dock, or something to ask about."""
     found = mentions_in(row.place, composer.understanding)
     needed = [m for m in found.mentions if m.kind not in _OF_FORMS]
+    tags = [cell.text.content for cell in row.cells if tag_of(cell.text.content)]
+    if tags:
+        return Proposal(choices=((),), doubt=f"the tag `{tags[0]}` is not known")
     blank = _FILL.search(row.place.content) is not None
+    if first and row.box is None and not needed:
+        return Proposal(aside="the title")
     if row.box is None and blank and not needed:
         return Proposal(aside="a field that a person fills in")
     labels = composer.understanding.language.prose.form["labels"]
@@ -116,6 +134,15 @@ def _read_sheet_cell(cell: Cell, found: _Row, composer: Composer) -> bool:
     form = composer.understanding.language.prose.form
     nothing = cue_pattern("nothing", form["nothing"]).fullmatch(text) is not None
     if not nothing and _FILL.search(text) and not _without_fill(text, form):
+        return True
+    tag = tag_of(text)
+    if tag is not None and cell.role in (CellRole.NAME, CellRole.CHECKPOINT, CellRole.OTHER):
+        if tag in composer.tags:
+            found.named.append(composer.tags[tag])
+        elif not mentions_in(cell.text, composer.understanding).has("checkpoints"):
+            found.tag = tag
+        else:
+            return False
         return True
     match cell.role:
         case CellRole.NUMBER if _NUMBER.fullmatch(text):

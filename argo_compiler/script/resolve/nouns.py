@@ -222,6 +222,8 @@ class NounResolver:
             return self.lookup.numbered(label, noun.span)
         if noun.kind is None and not plural and isinstance(label, int):
             return self._inherited(noun, label, kind)
+        if noun.kind is None and not self.lookup.called(str(label), kind):
+            kind = None  # `pressure gauge 1, R25`: a name has no kind from the one before it
         return self.lookup.identified(str(label), kind, noun.span)
 
     def _numbered_of_kind(self, number: int, kind: Kind, span: Span) -> CheckpointInfo:

@@ -98,6 +98,7 @@ def _the_one(part: RulePart) -> TheOne:
 def _pronoun(part: RulePart) -> Pronoun:
     them = part.word("THEM", "BOTH")
     number = part.word("NUMBER")
+    shown = part.word("VALUE")
     return Pronoun(
         span=part.span,
         every=them is not None,
@@ -105,7 +106,15 @@ def _pronoun(part: RulePart) -> Pronoun:
         or_one=them is not None and them.value == "or one",
         count=whole(part, number.value) if number else None,
         kind=_kind(part.word("KIND"))[0],
+        quantity=None if shown is None else Quantity(shown.value),
     )
+
+
+def _is_of_last(child: object, nouns: list[Noun], joint: str) -> bool:
+    """Whether a noun is what the checkpoint before it shows: `checkpoint 2, level`."""
+    shown = isinstance(child, Pronoun) and child.quantity is not None and joint == ","
+    last = nouns[-1] if nouns else None
+    return shown and isinstance(last, Labelled) and last.quantity is None
 
 
 def _nouns(part: RulePart) -> Nouns:
@@ -113,8 +122,14 @@ def _nouns(part: RulePart) -> Nouns:
     nouns: list[Noun] = []
     but: list[Noun] = []
     either = excluded = False
+    joint = ""
     for child in part.children:
+        if _is_of_last(child, nouns, joint):
+            nouns[-1] = replace(nouns[-1], quantity=child.quantity)
+            continue
+        joint = ""
         if isinstance(child, Word):
+            joint = str(child.value).strip()
             excluded = excluded or child.type == "EXCEPT"
             either = either or child.type.startswith("OR_")
         else:

@@ -81,6 +81,8 @@ class Pronoun(Node):
     count: int | None = None
     """how many they are, if that is said: `the same four`"""
     kind: Kind | None = None
+    quantity: Quantity | None = None
+    """of `the value`, `the level`: what is asked for"""
 
 
 Noun = Labelled | AllOf | TheOne | Pronoun

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.errors import INCOMPLETE, ArgoError
 from argo_compiler.base.garbage_collector import enable_garbage_collector
 from argo_compiler.base.version import __version__
 from argo_planner.lazy_group import LazyCommand, LazyGroup
@@ -193,7 +193,7 @@ def _report_error(error: BaseException) -> int:
     """Print an ArgoError and return the exit status; raise other errors again."""
     if isinstance(error, SystemExit) and isinstance(error.code, int):
         return error.code
-    if isinstance(error, ArgoError) and error.code == "incomplete":
+    if isinstance(error, ArgoError) and error.code == INCOMPLETE:
         from argo_planner.terminal.draft_display import incomplete_text
 
         print(incomplete_text(error), file=sys.stderr)  # type: ignore[arg-type]

@@ -11,6 +11,9 @@ from typing import ClassVar
 
 from argo_compiler.base.listing import listed
 
+INCOMPLETE = "incomplete"
+"""code of the error of a draft with lines that are left to decide on"""
+
 
 class Remedy(StrEnum):
     """Remedy for an error; each front end expresses it in its own words."""

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.errors import INCOMPLETE, ArgoError
 from argo_compiler.diagnostics import (
     Diagnostic,
     DiagnosticError,
@@ -19,7 +19,6 @@ from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, St
 from argo_planner.terminal.output import EXIT_INCOMPLETE
 from argo_planner.terminal.words import add_options_to_hints
 from argo_planner.use_cases.checking import (
-    INCOMPLETE,
     Format,
     check_source,
     error_diagnostics,

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from argo_compiler.analysis import Travel, analyse
 from argo_compiler.base.catalog import Catalog
-from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.errors import INCOMPLETE, ArgoError
 from argo_compiler.base.stages import stage
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import (
@@ -34,8 +34,6 @@ from argo_planner.use_cases.importing import (
 if TYPE_CHECKING:
     from argo_compiler.script import DraftLine
 
-INCOMPLETE = "incomplete"
-"""code of the error of a draft with lines that are left to decide on"""
 MAX_POSES = 1_000
 """highest number of poses between which a check plans paths; each takes some milliseconds"""
 

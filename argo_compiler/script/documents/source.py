@@ -75,7 +75,7 @@ class Source:
 
     def span(self, start: int, end: int) -> Span:
         """The span of the characters `start` to `end`, cut at the end of its first line."""
-        line = bisect_right(self._starts, start) or 1
+        line = self.line_at(start)
         line_start, line_end = self._bounds[line - 1]
         length = (end if end < line_end else line_end) - start
         return span_at(line, start - line_start + 1, length if length > 1 else 1)

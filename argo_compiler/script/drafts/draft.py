@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 
-from argo_compiler.base.errors import Invalid
+from argo_compiler.base.errors import INCOMPLETE, Invalid
 from argo_compiler.base.listing import listed
 from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError
@@ -17,7 +17,7 @@ _Acts = dict[int, tuple["Act | None", tuple[str, ...]]]
 
 
 class LineState(StrEnum):
-    """What is known of a line of a draft."""
+    """State of a line of a draft."""
 
     UNDERSTOOD = "understood"
     PROPOSED = "proposed"
@@ -29,7 +29,7 @@ class LineState(StrEnum):
 
 
 class Act(StrEnum):
-    """What a person has done with a line."""
+    """Act of a person on a line."""
 
     CONFIRMED = "confirmed"
     SAID = "said"
@@ -37,7 +37,7 @@ class Act(StrEnum):
 
 
 class LineDecision(Model):
-    """What a person has decided on for a line of a script.
+    """Decision of a person about a line of a script.
 
     A line is found again by its text. A confirmation counts only while the proposal is the same.
     """
@@ -89,7 +89,7 @@ class DraftLine(Model):
 
     @property
     def is_left(self) -> bool:
-        """Whether something is left to decide on."""
+        """Return True if a person still has to decide on the line."""
         return self.state in (LineState.PROPOSED, LineState.OPEN)
 
 
@@ -100,7 +100,7 @@ class Draft:
     source_name: str
     lines: tuple[DraftLine, ...]
     mission: Mission | None
-    """None as long as a line is open or not confirmed, or the mission as a whole has an error"""
+    """the mission; None while a line is open or not confirmed, or the mission has an error"""
     diagnostics: tuple[Diagnostic, ...] = ()
     """all messages, by position; one for each open line is an error"""
 
@@ -111,7 +111,7 @@ class Draft:
 
     @cached_property
     def decisions(self) -> tuple[LineDecision, ...]:
-        """What a person has decided on."""
+        """Return the decisions about the lines, in their order."""
         return decisions_of((line.text, line.act, line.sentences) for line in self.lines)
 
     def require_mission(self) -> Mission:
@@ -234,7 +234,7 @@ def decisions_of(
 class IncompleteDraft(DiagnosticError):
     """Raised where a mission is asked for, and its draft has lines left to decide on."""
 
-    code = "incomplete"
+    code = INCOMPLETE
 
     def __init__(self, draft: Draft) -> None:
         super().__init__(draft.source_name, draft.diagnostics)

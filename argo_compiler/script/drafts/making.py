@@ -33,7 +33,6 @@ _UNREAD = frozenset(
 )
 """codes of errors of a piece that the grammar does not take; others are questions"""
 
-
 _LONGEST_SHOWN = 60
 """characters of a text that a message shows"""
 
@@ -95,7 +94,7 @@ def import_script(
 
 
 def _reads(proposal: Proposal) -> bool:
-    """Whether a proposal says what is read instead of its piece, be it nothing."""
+    """Return True if a proposal states what replaces its piece, or that nothing does."""
     return bool(proposal.sentences or proposal.aside or proposal.certain)
 
 

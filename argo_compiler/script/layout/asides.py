@@ -141,8 +141,11 @@ class Asides:
         return not self.names_tasks(text) or self._is_headline(text)
 
     def _is_headline(self, text: ScriptText) -> bool:
-        """Whether a text that names a checkpoint or a floor is no more than a headline: `Leak test
-        at pressure gauge 2`. It has no verb, and nothing that leaves out or takes back."""
+        """Return True if a text that names a checkpoint or a floor is only a headline.
+
+        Example: `Leak test at pressure gauge 2`. It has no verb, and nothing that leaves out or
+        takes back.
+        """
         content = text.content
         if content.endswith(".") or "IS" in self.understanding.types(text):
             return False
@@ -151,7 +154,7 @@ class Asides:
         return all(cue_pattern(name, cues[name]).search(content) is None for name in spoken)
 
     def names_tasks(self, text: ScriptText) -> bool:
-        """Whether a text names a checkpoint, a floor, an area, a time or a count."""
+        """Return True if a text names a checkpoint, a floor, an area, a time or a count."""
         types = self.understanding.types(text)
         if self.is_explicit_title(text):
             return False

@@ -18,7 +18,7 @@ ROW = "\ue001"
 
 
 class CellRole(StrEnum):
-    """What a cell of a row contains."""
+    """Role of a cell in a row of a sheet."""
 
     NUMBER = "number"
     """of the row or of the item"""
@@ -73,7 +73,6 @@ Columns = list[tuple[int, CellRole]]
 _BLANK = re.compile(r"_{2,}|\.{4,}|…{2,}|[□☐]|\[\s*\]")
 _BOX = re.compile(r"\s*(?:[-*•]\s+)?(?:\[([ xX*✓v~-]?)\]|([□☐☑☒✓✔✗✘]))\s*")
 _TICKED = {"☑": "x", "☒": "x", "✓": "x", "✔": "x", "✗": "-", "✘": "-", "□": " ", "☐": " "}
-_BOXED = re.compile(rf"^{_BOX.pattern}")
 _OPEN_BOX = re.compile(r"\s*(?:[-*•]\s+)?(?:\[\s?\]|[□☐])")
 _STRUCK = re.compile(r"^\s*(?:[-*•]\s+)?~~.*~~\s*$")
 _LEADER = re.compile(r"\s*(?:\.{3,}|…+)\s*")
@@ -139,7 +138,7 @@ def forms(
         known = number in rows or number in texts or number in taken
         if known or len(content) > _LONGEST or len(rows) > _MOST_ROWS:
             continue
-        marked = any(pattern.search(content) for pattern in (_BLANK, _BOXED, _STRUCK))
+        marked = _BOX.match(content) or any(p.search(content) for p in (_BLANK, _STRUCK))
         if marked and not (_OPEN_BOX.match(content) and is_plain(line)):
             rows[number] = _row(line, _cells(line, "  "), "  ")
     return Forms(rows, texts)

@@ -110,7 +110,7 @@ class LineSense:
         return alone or self.fields.is_field(text)
 
     def is_broken(self, line: str, below: ScriptText) -> bool:
-        """Whether a line was broken for its length, and goes on in the next one."""
+        """Return True if a line was broken for its length and goes on in the next one."""
         first = below.content.split(maxsplit=1)[0]
         full = len(line) >= _WRAPPED and len(line) + 1 + len(first) > self.width
         types = self.understanding.types(below)

@@ -222,7 +222,7 @@ class _Parser:
         return said
 
     def _is_plain_line(self, line: ScriptText) -> bool:
-        """Whether a line makes sense without columns: as sentences, or as a field."""
+        """Return True if a line can be read without columns: as sentences or as a field."""
         text = unmarked(line)
         if self.fields.is_field(text):
             return True

@@ -70,7 +70,11 @@ class FormRow:
 
 Columns = list[tuple[int, CellRole]]
 """where the headings of columns begin, as offsets in the source, and what the columns hold"""
-_BLANK = re.compile(r"_{2,}|\.{4,}|…{2,}|[□☐]|\[\s*\]")
+_BLANK = re.compile(r"_{2,}|\.{4,}|…{2,}")
+"""to be filled in by a person"""
+_BOXES = re.compile(r"[□☐]|\[\s+\]")
+"""within a line, where `[]` may be a list without items: `with joints []`"""
+_QUOTED = re.compile(r'"[^"]*"')
 _BOX = re.compile(r"\s*(?:[-*•]\s+)?(?:\[([ xX*✓v~-]?)\]|([□☐☑☒✓✔✗✘]))\s*")
 _TICKED = {"☑": "x", "☒": "x", "✓": "x", "✔": "x", "✗": "-", "✘": "-", "□": " ", "☐": " "}
 _OPEN_BOX = re.compile(r"\s*(?:[-*•]\s+)?(?:\[\s?\]|[□☐])")
@@ -138,8 +142,11 @@ def forms(
         known = number in rows or number in texts or number in taken
         if known or len(content) > _LONGEST or len(rows) > _MOST_ROWS:
             continue
-        marked = _BOX.match(content) or any(p.search(content) for p in (_BLANK, _STRUCK))
-        if marked and not (_OPEN_BOX.match(content) and is_plain(line)):
+        boxed, struck = _BOX.match(content), _STRUCK.match(content)
+        ticked = boxed and not _OPEN_BOX.match(content)
+        blank = _BLANK.search(_QUOTED.sub("", content))
+        boxes = _OPEN_BOX.match(content) or _BOXES.search(content)
+        if blank or ticked or struck or (boxes and not is_plain(line)):
             rows[number] = _row(line, _cells(line, "  "), "  ")
     return Forms(rows, texts)
 

@@ -187,3 +187,10 @@ def test_what_a_line_proposes(line: str, sentences: tuple[str, ...], catalog: Ca
     draft = draft_of(f"Check valve R25.\n{line}", catalog)
     assert at(draft, 2).sentences == sentences
     assert at(draft, 2).state is LineState.PROPOSED
+
+
+def test_a_list_without_items_is_no_box_to_tick(catalog: Catalog) -> None:
+    step = 'The steps are:\n1. "T0": check checkpoint #1, standing at (0, 0, 0) heading 0 degrees,'
+    draft = draft_of(f"{step}\n   with joints [].\n", catalog)
+    assert not draft.left
+    assert measured_in(draft.require_mission()) == ["1"]

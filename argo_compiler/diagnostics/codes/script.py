@@ -230,9 +230,9 @@ SCRIPT = {
     "script.no-checkpoint": error(
         "An exception leaves no checkpoint.", "Name the remaining checkpoints."
     ),
-    "script.no-effect": note(
-        "Words such as a title, a greeting or a remark have no effect on the mission.",
-        "No action is needed; if they are an order, write it in other words.",
+    "script.no-effect": warning(
+        "Words such as a greeting or a remark have no effect on the mission.",
+        "If they are an order, write it in other words; else remove them, or set the line aside.",
     ),
     "script.no-patrol": error(
         "A floor has no three places that the robot can drive between.",
@@ -333,6 +333,10 @@ SCRIPT = {
     "script.remark": warning(
         "A remark contains an order, which is not planned.",
         "If it is an order, remove the word that makes it a remark.",
+    ),
+    "script.question": error(
+        "A sentence is a question, and may not be an order.",
+        "Write it as an order, or remove it; in a draft, choose one of the two.",
     ),
     "script.repeated-field": error("A field or title occurs twice.", "Leave one of the two out."),
     "script.repeated-limit": error(

@@ -9,10 +9,10 @@ from collections.abc import Iterator
 from functools import cache
 from itertools import islice, pairwise
 
-from argo_compiler.script.documents.source import Diagnostics, ScriptText, join, quotes
+from argo_compiler.script.documents.source import Diagnostics, ScriptText, join
 from argo_compiler.script.sentences.grammar.parser import StumbleError
 from argo_compiler.script.sentences.understanding import Understanding
-from argo_compiler.script.sentences.words.lexicon import Lexicon, expand
+from argo_compiler.script.sentences.words.lexicon import expand
 from argo_compiler.script.sentences.words.loading import pattern
 from argo_compiler.script.sentences.words.prose import Prose, begins, cue_pattern, either
 from argo_compiler.script.sentences.words.word import VERBS, Word
@@ -22,7 +22,16 @@ _MANNERS = frozenset(
         *("DURATION", "SPEED", "TIMES", "AT_MOST", "MOST_TIME", "MOST_TIMES", "WITHIN", "LATEST"),
         *("EARLIEST", "IF_TIME", "ANY_ORDER", "THIS_ORDER", "RETRY", "MAX_DURATION", "BACK_IN"),
         *("PRIORITY", "RANKED", "BY_IMPORTANCE", "ENDLESS", "FINISHING", "STOPPING", "SPARE"),
-        *("LEAVE_OUT", "ORDER_FREE", "ROUND_DRIVEN", "EXCEPT", "CANNOT"),
+        *(
+            "REVERSED",
+            "IN_CIRCLES",
+            "PREFERABLY",
+            "LEAVE_OUT",
+            "ORDER_FREE",
+            "ROUND_DRIVEN",
+            "EXCEPT",
+            "CANNOT",
+        ),
     ]
 )
 """how, when and how often"""
@@ -71,7 +80,6 @@ class Asides:
     def __init__(self, understanding: Understanding) -> None:
         self.understanding = understanding
         self.prose: Prose = understanding.language.prose
-        self._idle = _idle(understanding.language.lexicon)
 
     # ---- whole lines
 
@@ -136,8 +144,13 @@ class Asides:
         if text.content.endswith(":") and {*words} <= _phrases_of(self.prose.around_reactions):
             return True  # `To be obeyed all the time:`
         short = len(words) <= _LONGEST_TITLE
-        if not short or self.asks(text, counted=True):
+        behind = text.source.text[text.last + 1 : text.last + 2]
+        if not short or behind == "?" or self.asks(text, counted=True):
             return False
+        types = self.understanding.types(text)
+        stated = "IS" in types and not text.content.endswith(":")  # `The steps are:`
+        if stated or ";" in text.content:
+            return False  # `Round for three robots; yours is the second part`
         return not self.names_tasks(text) or self._is_headline(text)
 
     def _is_headline(self, text: ScriptText) -> bool:
@@ -147,7 +160,7 @@ class Asides:
         takes back.
         """
         content = text.content
-        if content.endswith(".") or "IS" in self.understanding.types(text):
+        if content.endswith(".") or not _COUNTED.isdisjoint(self.understanding.types(text)):
             return False
         cues = self.prose.cues
         spoken = ("forbidding", "past", "leave_out", "stating", "correction")
@@ -160,9 +173,17 @@ class Asides:
             return False
         return (
             any(a == "KIND" and b in _LABELS for a, b in pairwise(types))
+            or ("HASH", "NUMBER") in pairwise(types)
+            or any(
+                w.type == "IDENT" and self._is_name(text, w) for w in self.understanding.words(text)
+            )
             or not _COUNTED.isdisjoint(types)
             or any(pair in _FLOORS for pair in pairwise(types))
         )
+
+    def _is_name(self, text: ScriptText, word: Word) -> bool:
+        """Return True if a word is a part of a name of the site, such as `R25`."""
+        return text.content[word.start : word.end].lower() in self.understanding.names
 
     def stands_for_title(self, text: ScriptText) -> bool:
         """Whether a line over numbered steps, which makes no sense as an order, is a title though
@@ -265,14 +286,6 @@ class Asides:
         kept.append(text[start:])
         return join([part for part in kept if part.content] or kept), cut
 
-    def idle(self, text: ScriptText) -> Iterator[ScriptText]:
-        """Words of a sentence that say nothing that a plan could hold: `tonight`."""
-        quoted: list[tuple[int, int]] | None = None
-        for found in self._idle.finditer(text.content):
-            quoted = quotes(text.content) if quoted is None else quoted
-            if not any(a < found.start() < b for a, b in quoted):
-                yield text[found.start() : found.end()]
-
     # ---- what may ask for something
 
     def names(self, text: ScriptText) -> bool:
@@ -328,7 +341,9 @@ class Asides:
 
     def corrects(self, remark: ScriptText) -> bool:
         """Whether a remark may take something back, or say when or how it is done."""
-        return _limits(remark, "set_aside", "correcting")
+        return "KIND" in self.understanding.types(remark) or _limits(
+            remark, "set_aside", "correcting"
+        )
 
     def ranks(self, text: ScriptText) -> bool:
         """Whether a text says of a kind only when it is done: `The valves come first`."""
@@ -392,13 +407,6 @@ def _said(text: ScriptText, word: Word) -> str:
 def _phrases_of(phrases: str) -> frozenset[str]:
     """The phrases that bars separate."""
     return frozenset(expand(phrases))
-
-
-@cache
-def _idle(lexicon: Lexicon) -> re.Pattern[str]:
-    idle = lexicon.phrases.get(("IDLE", None), [])
-    said = either("|".join(idle)) if idle else "(?!)"
-    return re.compile(rf"(?<![\w-])(?:{said})(?![\w-])", re.IGNORECASE)
 
 
 @cache

@@ -259,7 +259,7 @@ class ScriptFields:
             self.diagnostics.error("unknown-label", message, label.span(), hint)
             return
         said = label.source.text[label.offsets[0] : value.offsets[-1] + 1]
-        self.diagnostics.note("no-effect", f"`{said}` has no effect", label.span())
+        self.diagnostics.warning("no-effect", f"`{said}` has no effect", label.span())
 
     def _meaning(self, name: str, value: ScriptText, kind: type[Mode] | type[Order]) -> Any:
         """What one of a few values means."""
@@ -378,7 +378,7 @@ class ScriptFields:
             aside = value[tail + 1 :].strip()
             if aside.content:
                 message = f"`{aside.content}` has no effect"
-                self.diagnostics.note("no-effect", message, aside.span())
+                self.diagnostics.warning("no-effect", message, aside.span())
         else:
             tail = len(value.content)
         self._refuse_strays(value, tail, covered)

@@ -15,6 +15,7 @@ from argo_compiler.script.layout.lines import LineMark, ScriptLine, sentence_bou
 from argo_compiler.script.sentences.grammar.parser import StumbleError
 from argo_compiler.script.sentences.tree.places import FloorName
 from argo_compiler.script.sentences.understanding import Understanding
+from argo_compiler.script.sentences.words.without_effect import MISPLACED
 from argo_compiler.script.sentences.words.word import VERBS
 
 
@@ -165,6 +166,7 @@ class LineSense:
         if ended:
             return not isinstance(self.understanding.read(text), StumbleError)
         types = self.understanding.types(text)
+        types = types[:-1] if types[-1:] == (MISPLACED,) else types  # an article, without its noun
         return "WORD" not in types and self.understanding.grammar.begins(types)
 
     def _fits(self, sentence: ScriptText) -> bool:

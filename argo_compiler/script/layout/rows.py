@@ -19,6 +19,7 @@ COLUMN_HEADINGS = "column headings"
 _RULE = re.compile(r"[\s|:=+-]*-[\s|:=+-]*")
 _TO_FILL = re.compile(r"_{2,}|[□☐]|\.{4,}")
 _NUMBER = re.compile(r"[0-9]{1,6}")
+_NOT_APPLICABLE = frozenset(["n/a", "na", "n.a.", "entfällt", "entf."])
 _MOST_COLUMNS = 12
 _MOST_ROWS = 10_000
 """of all tables of a script"""
@@ -169,6 +170,9 @@ class _Rows:
             self._note(cells["nothing"])
         if "done" in cells:
             self._done(cells["done"])
+        action = cells.get("action")
+        if action is not None and action.content.lower() in expand(self.prose.form["nothing"]):
+            self._ask_of_cell(cells.pop("action"))
         number = cells.get("number")
         mark: list[str | ScriptText] = ["- "]
         if number is not None and _NUMBER.fullmatch(number.content.strip(" .)#")):
@@ -204,12 +208,21 @@ class _Rows:
         hint = "remove the column, or the rows that are done"
         self.diagnostics.error("ambiguous-cell", message, cell.span(), hint)
 
+    def _ask_of_cell(self, cell: ScriptText) -> None:
+        """Ask about a row whose cell may leave it out, such as `-` under `Action`."""
+        message = f"`{cell.content}` can mean that this row is not a task"
+        hint = "remove the row, or what stands in this column"
+        self.diagnostics.error("ambiguous-cell", message, cell.span(), hint)
+
     def _note(self, aside: ScriptText) -> None:
         if self.asides.corrects(aside) or self.asides.bids(aside):
             ask_of_remark(aside, self.diagnostics)
             return
+        if aside.content.lower() in _NOT_APPLICABLE:
+            self._ask_of_cell(aside)
+            return
         message = f"`{aside.content}` is taken for a remark and has no effect"
-        self.diagnostics.note("no-effect", message, aside.span())
+        self.diagnostics.warning("no-effect", message, aside.span())
 
     def _readings(self, cells: dict[str, ScriptText]) -> Iterator[list[str | ScriptText]]:
         """The sentences that the cells may stand for, the most likely first."""

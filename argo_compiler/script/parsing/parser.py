@@ -5,6 +5,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from types import MappingProxyType
+from unicodedata import normalize
 
 from argo_compiler.base.garbage_collector import collector_held
 from argo_compiler.diagnostics import DiagnosticError
@@ -52,7 +53,7 @@ def parse(
     are the offsets at which these pieces begin in the text. Raises DiagnosticError for what is no
     script at all.
     """
-    source = Source(text, source_name)
+    source = Source(normalize("NFC", text), source_name)
     _require_size(source)
     diagnostics = Diagnostics(source)
     language = Language.of(text, places)

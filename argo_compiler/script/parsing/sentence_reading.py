@@ -7,8 +7,9 @@ from argo_compiler.script.layout.asides import Asides, ask_of_remark
 from argo_compiler.script.layout.fields import ScriptFields
 from argo_compiler.script.layout.items import LineItem
 from argo_compiler.script.layout.lines import LineMark
-from argo_compiler.script.sentences.doubts import ask_of_words, placed_in
+from argo_compiler.script.sentences.doubts import ask_of_words, is_question, placed_in
 from argo_compiler.script.sentences.grammar.parser import StumbleError
+from argo_compiler.script.sentences.scopes import ask_of_scopes
 from argo_compiler.script.sentences.tree.orders import Amend, Follow, Sentence, Start
 from argo_compiler.script.sentences.tree.script import Said, Text, Unread
 from argo_compiler.script.sentences.understanding import Reading, Understanding
@@ -49,7 +50,7 @@ class SentenceReader:
         """Says that a text has no effect."""
         said = text.content if len(text.content) <= 60 else f"{text.content[:57]}..."
         message = f"`{said}` is taken for {what} and has no effect"
-        self.diagnostics.note("no-effect", message, text.span())
+        self.diagnostics.warning("no-effect", message, text.span())
         self.noted = text, what
 
     def remark(self, text: ScriptText) -> list[Said]:
@@ -93,7 +94,10 @@ class SentenceReader:
         if stands_over and self.fields.introduces(text):
             return []
         if item.line.heading and {*self.understanding.types(text)} == {"KIND"}:
-            self.note(text, "a heading")  # `Pressure gauges` over steps
+            if self.asides.sets_aside(text):
+                self._ask_of_heading(text)  # `Valves only`
+            else:
+                self.note(text, "a heading")  # `Pressure gauges` over steps
             return []
         if not self.ordered and self.fields.whole_mission(text):
             return []
@@ -116,6 +120,11 @@ class SentenceReader:
                 reading = self.understanding.read(text)
         if isinstance(reading, StumbleError):
             return self._not_understood(text, item, reading)
+        if is_question(text, self.understanding.language.lexicon):
+            message = "this is a question: it is not clear whether the robot has to do it"
+            hint = "write it as an order, or remove it"
+            self.diagnostics.error("question", message, text.span(), hint)
+            return [Unread(span=text.span())]
         joint = self.understanding.unfinished(text)
         if joint is not None:
             message = f"nothing follows `{joint.content}`"
@@ -149,7 +158,9 @@ class SentenceReader:
         *orders, last = node.orders
         if not isinstance(last, Follow) or last.manner is not None or last.name is not None:
             return [node]
-        self.diagnostics.note("no-effect", f"`{text.content}` has no effect by itself", text.span())
+        self.diagnostics.warning(
+            "no-effect", f"`{text.content}` has no effect by itself", text.span()
+        )
         return [replace(node, orders=tuple(orders))] if orders or node.facts else []
 
     def _ask_of_rank(self, text: ScriptText) -> list[Said]:
@@ -165,14 +176,13 @@ class SentenceReader:
 
     def _node(self, text: ScriptText, reading: Reading) -> Said:
         self.begun = True
-        for idle in self.asides.idle(text):
-            self.diagnostics.note("no-effect", f"`{idle.content}` has no effect", idle.span())
         lexicon = self.understanding.language.lexicon
         ask_of_words(text, lexicon, self.diagnostics, self.ordered)
         node = self.understanding.node(text, reading)
         if isinstance(node, Sentence):
             placed = placed_in(text, node, lexicon)
             node = replace(node, placed=placed) if placed else node
+            ask_of_scopes(node, self.understanding.joints("or"), self.diagnostics)
             self.ordered |= any(not isinstance(order, Start) for order in node.orders)
         return Unread(span=text.span()) if node is None else node
 
@@ -216,6 +226,8 @@ class SentenceReader:
         if not first or "," not in text.content:
             return None
         head = text[: text.content.index(",")]
+        if self.asides.names_tasks(head):
+            return None
         parts = self._behind(text[len(head.content) + 1 :].strip())
         return _Title(head, parts=parts) if self.asides.is_title(head) and parts else None
 
@@ -243,14 +255,11 @@ class SentenceReader:
     def _entitled(self, title: _Title, item: LineItem, first: bool) -> list[Said]:
         """Keeps a title, and reads what stands behind it."""
         self.begun = True
-        if first:
+        if self.asides.sets_aside(title.head):
+            self._ask_of_heading(title.head)
+        elif first:
             doubtful = not self.asides.is_title(title.head) or self.asides.names_tasks(title.head)
             self._entitle(title.head, asked=doubtful)
-        elif self.asides.sets_aside(title.head):
-            message = f"`{title.head.content}` can mean that the lines below it are not tasks, "
-            message += "or not always"
-            hint = "remove the lines that are not tasks, and the heading; or write another heading"
-            self.diagnostics.error("ambiguous-title", message, title.head.span(), hint)
         else:
             self.note(title.head, "a heading")
         if title.fields is not None:
@@ -262,6 +271,12 @@ class SentenceReader:
             if not self.fields.whole_mission(part) and not isinstance(reading, StumbleError):
                 said.append(self._node(part, reading))
         return said
+
+    def _ask_of_heading(self, heading: ScriptText) -> None:
+        message = f"`{heading.content}` can mean that the lines below it are not tasks, "
+        message += "or not always"
+        hint = "remove the lines that are not tasks, and the heading; or write another heading"
+        self.diagnostics.error("ambiguous-title", message, heading.span(), hint)
 
     def _entitle(self, title: ScriptText, asked: bool = False) -> None:
         """Takes a text for the title; with a warning, where something may be asked for in it."""

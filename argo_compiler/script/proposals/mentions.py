@@ -6,10 +6,12 @@ from dataclasses import dataclass
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.script.documents.source import ScriptText
 from argo_compiler.script.sentences.building.sentences import build
+from argo_compiler.script.sentences.doubts import is_question
 from argo_compiler.script.sentences.grammar.parser import StumbleError
 from argo_compiler.script.sentences.tree.nouns import AllOf, Nouns, Pronoun
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.prose import cue_pattern
+from argo_compiler.script.sentences.words.without_effect import HARMLESS, MISPLACED
 from argo_compiler.script.sentences.words.word import Word
 
 _NOUNS = frozenset(["KIND", "HASH", "IDENT", "ALL", "OF", "EVERYTHING", "IT", "THEM", "VALUE"])
@@ -19,7 +21,17 @@ _WEAK = frozenset(
     [
         *("TO", "IN", "AT", "ON", "FOR", "BY", "IS", "HE", "SIGN", "SHOWN", "CAN", "SHOULD"),
         *("NEXT", "COLON", "AND_NOUN", "AND_DO", "AND_PLACE", "AND_ON", "AND_TEST", "JOINT"),
-        *("AND_NUMBER", "AND_AMOUNT", "EITHER", "STRAY", "RPAR", "LPAR", "LPAR_HOW", "NAMELY"),
+        *(
+            "AND_NUMBER",
+            "AND_AMOUNT",
+            "EITHER",
+            "STRAY",
+            MISPLACED,
+            "RPAR",
+            "LPAR",
+            "LPAR_HOW",
+            "NAMELY",
+        ),
         *("FROM", "DASH", "AND_EVENT", "THIS", "EQUAL"),
     ]
 )
@@ -74,6 +86,9 @@ def mentions_in(text: ScriptText, understanding: Understanding) -> Mentions:
     named = [m for m in phrases.values() if m.kind != "pronoun"]
     cues = [cue for cue in _cues(text.content, understanding) if not _overlaps(cue, named)]
     found = [cue for cue in cues if cue.kind not in ("courtesy", "sequence")]
+    if is_question(text, understanding.language.lexicon):
+        end = len(text.content)
+        found.append(Mention("question", end, end))
     unknown: list[Word] = []
     i = 0
     while i < len(words):
@@ -85,11 +100,12 @@ def mentions_in(text: ScriptText, understanding: Understanding) -> Mentions:
                 i += 1
             continue
         i += 1
-        if any(cue.start < word.end and word.start < cue.end for cue in cues):
+        misplaced = word.type == MISPLACED and word.value not in HARMLESS
+        if not misplaced and any(cue.start < word.end and word.start < cue.end for cue in cues):
             continue
         if word.type == "WORD":
             unknown.append(word)
-        elif word.type not in _WEAK:
+        elif misplaced or word.type not in _WEAK:
             found.append(Mention(word.type, word.start, word.end, word.value))
     return Mentions(tuple(sorted(found, key=lambda m: m.start)), tuple(unknown))
 

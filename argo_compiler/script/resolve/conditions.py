@@ -3,24 +3,26 @@
 from collections.abc import Sequence
 from itertools import product
 
-from argo_compiler.base.catalog import CheckpointInfo
+from argo_compiler.base.catalog import CheckpointInfo, CheckpointKind
 from argo_compiler.il import Condition, ConditionType
 from argo_compiler.il.exclusive_conditions import are_contradictory, are_surely_exhaustive
 from argo_compiler.script.documents.source import Diagnostics
 from argo_compiler.script.resolve.lookup import told
 from argo_compiler.script.resolve.nouns import NounResolver
 from argo_compiler.script.resolve.program import Alternatives
-from argo_compiler.script.resolve.units import converted
+from argo_compiler.script.resolve.units import ABSOLUTE, converted
 from argo_compiler.script.sentences.tree.conditions import (
     Amount,
     Asked,
     Between,
     Compared,
     InState,
+    InValvePosition,
     Relation,
     SaidCondition,
     TaskState,
     Test,
+    ValvePosition,
 )
 from argo_compiler.script.sentences.tree.nouns import AllOf, Labelled, Nouns, Pronoun
 
@@ -38,6 +40,12 @@ _TYPES = {
     Relation.AT_LEAST: (ConditionType.GREATER, True),
     Relation.AT_MOST: (ConditionType.LESS, True),
 }
+POSITIONS_DEG: dict[ValvePosition, tuple[float | None, float | None]] = {
+    ValvePosition.OPEN: (80.0, None),
+    ValvePosition.HALF_OPEN: (35.0, 55.0),
+    ValvePosition.CLOSED: (None, 10.0),
+}
+"""bounds of the positions of valves, in degrees: 90 is open and 0 is closed, 10 are tolerated"""
 _STATES = {
     TaskState.ABNORMAL: ConditionType.ABNORMAL,
     TaskState.UNREADABLE: ConditionType.UNREADABLE,
@@ -155,6 +163,8 @@ class ConditionResolver:
         match test.predicate:
             case InState(state=state):
                 return [self._state(state, test, checkpoint)]
+            case InValvePosition(position=position):
+                return self._position(position, test, checkpoint)
             case Between() as between:
                 return self._between(between, test, checkpoint)
             case Compared() as compared:
@@ -174,6 +184,24 @@ class ConditionResolver:
             return ConditionType.WITHIN, checkpoint.nominal.low, checkpoint.nominal.high, True
         return _STATES[state], None, None, False
 
+    def _position(
+        self, position: ValvePosition, test: Test, checkpoint: CheckpointInfo
+    ) -> "list[_Bound]":
+        """Return the bounds of a position, in degrees, or those of all other positions."""
+        if checkpoint.kind is not CheckpointKind.VALVE:
+            message = f"{told(checkpoint)} is no valve, and can't be open or closed"
+            hint = f"write a value in {checkpoint.unit}, or name a valve"
+            self.diagnostics.refuse("condition", message, test.span, hint)
+        low, high = POSITIONS_DEG[position]
+        if low is not None and high is not None:
+            if not test.negated:
+                return [(ConditionType.WITHIN, low, high, True)]
+            outside = ((ConditionType.LESS, low), (ConditionType.GREATER, high))
+            return [(kind, bound, None, False) for kind, bound in outside]
+        greater = (low is not None) is not test.negated
+        kind = ConditionType.GREATER if greater else ConditionType.LESS
+        return [(kind, low if low is not None else high, None, not test.negated)]
+
     def _between(
         self, predicate: Between, test: Test, checkpoint: CheckpointInfo
     ) -> "list[_Bound]":
@@ -190,6 +218,11 @@ class ConditionResolver:
     def _bound(self, amount: Amount, checkpoint: CheckpointInfo) -> float:
         """The amount in the checkpoint's unit."""
         value = _in_unit_of(checkpoint, amount)
+        if value is None and amount.unit.endswith(ABSOLUTE):
+            text = self.diagnostics.source.said(amount.span)
+            message = f"{told(checkpoint)} shows gauge pressure, and `{text}` is absolute"
+            hint = f"write the gauge pressure in {checkpoint.unit}: about 1 bar less"
+            self.diagnostics.refuse("unit", message, amount.span, hint)
         if value is None:
             message = f"{told(checkpoint)} is measured in {checkpoint.unit}"
             hint = f"write the value in {checkpoint.unit}, not in {amount.unit}"
@@ -211,6 +244,8 @@ def _fits(test: Test, checkpoint: CheckpointInfo) -> bool:
             amounts = [low, high]
         case InState():
             return True
+        case InValvePosition():
+            return checkpoint.kind is CheckpointKind.VALVE
     return all(_in_unit_of(checkpoint, amount) is not None for amount in amounts)
 
 

@@ -102,7 +102,7 @@ def _mission(
     text = said.designation or said.title
     if said.designation and said.title and not said.format_title:
         message = f"`{said.title.text}` has no effect, because the script has another designation"
-        diagnostics.note("no-effect", message, said.title.span)
+        diagnostics.warning("no-effect", message, said.title.span)
     mission = Mission(
         designation=text.text if text else "",
         site=_site(script, catalog, diagnostics),

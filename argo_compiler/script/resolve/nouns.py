@@ -16,10 +16,17 @@ from argo_compiler.script.sentences.tree.nouns import (
     Noun,
     Nouns,
     Pronoun,
+    Quantity,
     TheOne,
 )
 from argo_compiler.script.sentences.tree.places import FloorName
 
+_SHOWN_BY: dict[Quantity | None, Kind] = {
+    Quantity.PRESSURE: Kind.PRESSURE_GAUGE,
+    Quantity.LEVEL: Kind.LIQUID_LEVEL_GAUGE,
+    Quantity.POSITION: Kind.VALVE,
+}
+"""what shows a quantity"""
 _SHOWN = 6
 """checkpoints that a message names"""
 
@@ -220,6 +227,8 @@ class NounResolver:
             if kind not in (None, Kind.CHECKPOINT) and (noun.kind or plural):
                 return self._numbered_of_kind(label, kind, noun.span)
             return self.lookup.numbered(label, noun.span)
+        if kind is Kind.GAUGE and isinstance(label, int):
+            self._require_named(label, noun.span)
         if noun.kind is None and not plural and isinstance(label, int):
             return self._inherited(noun, label, kind)
         if noun.kind is None and not self.lookup.called(str(label), kind):
@@ -243,6 +252,18 @@ class NounResolver:
         found = self.lookup.numbered(number, span)
         message = f"checkpoint #{number} is {found.name}, and there is no {kind} {number}"
         self.diagnostics.refuse("checkpoint-mismatch", message, span, "name one of them")
+
+    def _require_named(self, number: int, span: Span) -> None:
+        """Ask about `gauge 8`, which can be checkpoint 8 as well if that is a gauge."""
+        named = self.lookup.called(str(number), Kind.GAUGE)
+        numbered = self.lookup.by_number.get(number)
+        if len(named) != 1 or numbered is None or numbered in named:
+            return
+        if agrees(numbered, Kind.GAUGE):
+            readings = listed(map(told, (*named, numbered)), "or")
+            message = f"`{Kind.GAUGE} {number}` can be read as {readings}"
+            hint = f"write `checkpoint {number}` or `{named[0].name}`"
+            self.diagnostics.refuse("ambiguous-checkpoint", message, span, hint)
 
     def _inherited(self, noun: Labelled, label: int, kind: Kind | None) -> CheckpointInfo:
         """`valve R25 and 5`: a number behind one of a kind may be a name or a number."""
@@ -291,6 +312,8 @@ class NounResolver:
         last = self.memory.last
         if not last:
             self._nothing_before(noun.span)
+        if noun.quantity in _SHOWN_BY:
+            return self._showing(noun, _SHOWN_BY[noun.quantity])
         if noun.count is not None:
             return self._counted(noun, noun.count)
         if noun.every and len(last) == len(self.memory.before) == 1:
@@ -304,6 +327,20 @@ class NounResolver:
         if len(last) == 1 or noun.every:
             return list(last)
         self._ambiguous("ambiguous-pronoun", noun, last)
+
+    def _showing(self, noun: Pronoun, kind: Kind) -> list[CheckpointInfo]:
+        """Return the last checkpoint that shows a quantity, such as `the level`."""
+        measured = (self.memory.last, tuple(self.memory.so_far.values()))
+        found = next(filter(None, ([c for c in m if agrees(c, kind)] for m in measured)), [])
+        if len(found) > 1:
+            self._ambiguous("ambiguous-pronoun", noun, found)
+        if not found and self.memory.known:
+            said = self.diagnostics.source.said(noun.span)
+            message = f"no {kind} is measured before this, so that `{said}` means none"
+            self.diagnostics.refuse("which-checkpoint", message, noun.span, "name the checkpoint")
+        if not found:
+            raise RefusedError
+        return found
 
     def _counted(self, noun: Pronoun, count: int) -> list[CheckpointInfo]:
         """`The same four`: as many were measured last, one or two of them at a time or in all."""

@@ -421,7 +421,7 @@ class Planner:
                 done = "reported" if order.word is PlainWord.REPORT else "done next"
                 what = "every reading" if order.word is PlainWord.REPORT else "the next task"
                 message = f"this has no effect, because {what} is {done} anyway"
-                self.diagnostics.note("no-effect", message, order.span)
+                self.diagnostics.warning("no-effect", message, order.span)
             case _:
                 message = f"this does not say when to {order.word}"
                 hint = "write `if a gas leak is detected, pause`, or `wait 5 minutes`"
@@ -461,7 +461,7 @@ class Planner:
                 context.diagnostics.error("spared", asks, span, hint)
             else:
                 message = f"checkpoint #{key} is not in the mission anyway, so this has no effect"
-                context.diagnostics.note("no-effect", message, span)
+                context.diagnostics.warning("no-effect", message, span)
 
 
 def _as_wait_for_battery(order: ScriptOrder) -> ScriptOrder:

@@ -1,5 +1,6 @@
 """The tasks that an order plans."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from argo_compiler.base.catalog import CheckpointInfo
@@ -66,8 +67,10 @@ class TaskMaker:
         found = nouns.all(what)
         if order.manner is not None and all(isinstance(noun, Labelled) for noun in what.nouns):
             nouns.warn_of_empty(order.manner.floors, found, "one of these", order.span)
+        self._require_first(order, found)
         self.context.memory.measured(found)
         if order.manner is not None and order.manner.backwards:
+            self._require_several(order, found)
             found.reverse()
         tasks = [measurement(c, order.span) for c in found]
         if self.visiting is not None and self.visiting[1] == found[:1]:
@@ -75,6 +78,28 @@ class TaskMaker:
             self.visiting = None
         self.leave_unvisited()
         return tasks
+
+    def _require_several(
+        self, order: orders.Measure, checkpoints: Sequence[CheckpointInfo]
+    ) -> None:
+        """Ask what the reverse order of a single checkpoint is."""
+        if len(checkpoints) == 1:
+            message = "a single checkpoint has no reverse order; other lines may be meant, too"
+            hint = "write the checkpoints in one list, or in the intended order"
+            self.context.diagnostics.refuse("ambiguous-order", message, order.span, hint)
+
+    def _require_first(self, order: orders.Measure, checkpoints: Sequence[CheckpointInfo]) -> None:
+        """Ask about `check #4 again` where checkpoint 4 was not measured before."""
+        memory = self.context.memory
+        manner = order.manner
+        if manner is None or not manner.more or manner.times != 1 or not memory.known:
+            return
+        for checkpoint in checkpoints:
+            if checkpoint.id not in memory.so_far:
+                message = f"checkpoint #{checkpoint.id} is not measured before this; `again` can "
+                message += "mean twice, or once more after an earlier mission"
+                hint = "write `twice`, or remove `again`"
+                self.context.diagnostics.refuse("ambiguous-measure", message, order.span, hint)
 
     def _require_known(self, order: orders.Measure) -> None:
         """That `the whole list` is not said where something was measured before."""

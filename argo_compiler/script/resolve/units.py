@@ -9,6 +9,8 @@ if TYPE_CHECKING:
 
 _UNIT = re.compile(r"[^\W\d_]+|[°%]|°[CF]|[^\W\d_]+/[^\W\d_]+")
 """how units are written in a catalogue; anything else is a name of its own, and not converted"""
+ABSOLUTE = " absolute"
+"""how the name of a unit of absolute pressure ends; gauges show what exceeds that of the air"""
 _ANGLES = frozenset(["deg", "rad", "°", "degree", "degrees", "radian"])
 
 
@@ -16,6 +18,8 @@ def converted(value: float, unit: str, wanted: str) -> float | None:
     """The value in the wanted unit; None if it can't be told in that one."""
     if unit == wanted:
         return value
+    if unit.endswith(ABSOLUTE):
+        return None
     # To Pint an angle is a number as a share is; 30 % of a valve are no 17 degrees.
     if (unit in _ANGLES) != (wanted in _ANGLES) or not _UNIT.fullmatch(wanted):
         return None

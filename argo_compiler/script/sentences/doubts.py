@@ -9,6 +9,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
+from itertools import takewhile
 
 from argo_compiler.script.documents.source import Diagnostics, ScriptText
 from argo_compiler.script.sentences.tree import orders
@@ -20,6 +21,7 @@ from argo_compiler.script.sentences.words.lexer import all_words, placed_words
 from argo_compiler.script.sentences.words.lexicon import Lexicon
 from argo_compiler.script.sentences.words.loading import everywhere, pattern
 from argo_compiler.script.sentences.words.prose import either
+from argo_compiler.script.sentences.words.without_effect import TOLD, WITHOUT_EFFECT
 from argo_compiler.script.sentences.words.word import VERBS, Word
 
 _OPENS = frozenset(["IF", "IF_ONLY", "UNLESS", "UNTIL"])
@@ -30,8 +32,29 @@ _ENDS = frozenset(
 _FROM_START = frozenset(["SINCE_START", "BACK_IN", "MAX_DURATION"])
 _NAMED = frozenset(["KIND", "HASH", "NUMBER", "IDENT", "STRING", "IT", "THEM", "BOTH", "THIS"])
 _WORK = (orders.Measure, orders.VisitOrder, orders.Go, orders.Patrol)
-_DOUBTFUL = r"(?<![\w-])(?:<restricting>|<adding>|<thither>|<summing>|<yonder>|<windows>)(?![\w-])"
+_DOUBTFUL = r"(?<![\w-])(?:<summing>|<yonder>|<windows>)(?![\w-])"
 """what words that are asked about look like, so that few sentences are looked at once more"""
+_SMALL = (*sorted(TOLD), "ADDITION", "SEQUENCE", "THITHER")
+"""terminals of words without effect that are asked about, or told, where they stand"""
+_SCOPED = frozenset(
+    [
+        *("TIMES", "MORE", "SPEED", "LEAVING", "EVERY", "RETRY", "MOST_TIMES", "PRIORITY"),
+        *(
+            "RATE",
+            "TIME_WORD",
+            "UNIT_S",
+            "ANY_ORDER",
+            "IF_TIME",
+            "FOR",
+            "DURATION",
+            "IF_ONLY",
+            "UNLESS",
+            "UNTIL",
+            "READING",
+        ),
+    ]
+)
+"""what may be meant of the last item of a list, or of all"""
 _AND_SO_ON = re.compile(r"(?:^|[\d,])\s*(\.{3}|…)(?=\s|$)")
 
 
@@ -64,6 +87,10 @@ _THERE = Doubt(
     "can be the docking station, or the place named before",
     "name the place: `return to the docking station`",
 )
+_LAST_OR_ALL = Doubt(
+    "can mean that what comes behind the list is meant of its last item, or of all",
+    "write two sentences",
+)
 _AND_BACK = Doubt(
     "can mean the path home, or the same checkpoints in reverse order",
     "name the tasks on the way back",
@@ -79,48 +106,80 @@ def ask_of_dots(text: ScriptText, diagnostics: Diagnostics) -> None:
         diagnostics.error("ambiguous-word", message, text.span(*dots.span(1)), hint)
 
 
+def is_question(text: ScriptText, lexicon: Lexicon) -> bool:
+    """Return True for a sentence with a question mark that is no polite order: `could you ...?`."""
+    behind = text.source.text[text.last + 1 : text.last + 3].lstrip()
+    if not behind.startswith("?"):
+        return False
+    return all(word.type != "COURTESY" for word in all_words(text.content, lexicon)[:3])
+
+
 def ask_of_words(
     text: ScriptText, lexicon: Lexicon, diagnostics: Diagnostics, ordered: bool
 ) -> None:
     """Asks about the words of a sentence that may change what is meant. `ordered`: something is
     to be done before it."""
-    if pattern(_DOUBTFUL).search(text.content) is None:
+    doubtful = pattern(_DOUBTFUL).search(text.content) or _small(lexicon).search(text.content)
+    if doubtful is None:
         return
     words = all_words(text.content, lexicon)
-    for word, doubt in _doubts(words, text.content.lower(), ordered):
-        said = text.content[word.start : word.end]
-        span = text.span(word.start, word.end)
-        diagnostics.error("ambiguous-word", f"`{said}` {doubt.message}", span, doubt.hint)
-
-
-def _doubts(words: Sequence[Word], content: str, ordered: bool) -> Iterator[tuple[Word, Doubt]]:
+    doubts = dict(_doubts(words, text.content.lower(), ordered))
     for i, word in enumerate(words):
-        said = content[word.start : word.end]
-        after = [w.type for w in words[i + 1 :] if w.type != "FILLER"]
+        shown, span = text.content[word.start : word.end], text.span(word.start, word.end)
+        doubt = doubts.get(i)
+        if doubt is not None:
+            diagnostics.error("ambiguous-word", f"`{shown}` {doubt.message}", span, doubt.hint)
+        elif word.type in TOLD and not _opens_condition(words, i):
+            diagnostics.warning("no-effect", f"`{shown}` has no effect", span)
+
+
+def _doubts(words: Sequence[Word], content: str, ordered: bool) -> Iterator[tuple[int, Doubt]]:
+    """Yield the doubts, each with the index of its word."""
+    for i, word in enumerate(words):
+        shown = content[word.start : word.end]
+        after = [w.type for w in words[i + 1 :] if w.type not in WITHOUT_EFFECT]
         before = words[i - 1] if i > 0 else None
         orders_ = sum(w.type in VERBS and w.type != "START" for w in words[:i])
         match word.type:
-            case "FILLER" if _is(said, "restricting"):
+            case "FOCUS":
                 if _names_subject(words, i) and after[:1] and after[0] in _NAMED:
-                    yield word, _ONLY
+                    yield i, _ONLY
                 elif i == 0 and _is(_next(words, i, content), "following"):
-                    yield word, _ONLY_THEN
-            case "FILLER" if _is(said, "adding"):
+                    yield i, _ONLY_THEN
+            case "ADDITION":
                 behind = [type_ for type_ in after if type_ != "JOINT"]
                 bidden = any(w.type in VERBS for w in words[:i])
                 if bidden and behind[:1] == ["IF"] and not {*VERBS} & {*behind}:
-                    yield word, _ALSO
-            case "FILLER" if _is(said, "thither") and after[:2] == ["JOINT", "BACK"]:
-                yield word, _AND_BACK
-            case "JOINT" if _is(said, "summing") and _names_subject(words, i):
-                yield word, _SUM
+                    yield i, _ALSO
+            case "THITHER" if after[:2] == ["JOINT", "BACK"]:
+                yield i, _AND_BACK
+            case "SEQUENCE" if _is_within_list(words, i):
+                clause = list(takewhile(lambda type_: type_ not in VERBS, after))
+                parted = "ANY_ORDER" in clause and "MEASURE" in (w.type for w in words[:i])
+                if _SCOPED.intersection(clause) and not parted:
+                    yield i, _LAST_OR_ALL
+            case "JOINT" if _is(shown, "summing") and _names_subject(words, i):
+                yield i, _SUM
             case "WITHIN" if ordered or orders_ > 1:
                 types = {w.type for w in words}
-                first = re.search(rf"\b(?:{everywhere('of_start')})\b", said)  # `within the first`
+                first = re.search(rf"\b(?:{everywhere('of_start')})\b", shown)  # `within the first`
                 if types.isdisjoint(_FROM_START) and first is None:
-                    yield word, _WITHIN
+                    yield i, _WITHIN
             case "THERE" if before is not None and before.type == "HOME":
-                yield word, _THERE
+                yield i, _THERE
+
+
+def _opens_condition(words: Sequence[Word], i: int) -> bool:
+    """Return True for the `only` of `check #4 only if #1 is above 3`, which a condition has."""
+    return i + 1 < len(words) and words[i + 1].type in _OPENS
+
+
+def _is_within_list(words: Sequence[Word], i: int) -> bool:
+    """Return True for a word between two checkpoints of a list: `#1 and then #4`."""
+    before = [w.type for w in words[:i] if w.type not in WITHOUT_EFFECT]
+    after = next((w.type for w in words[i + 1 :] if w.type not in WITHOUT_EFFECT), "")
+    joined = before[-1:] == ["JOINT"] and bool({*before} & {"MEASURE", "BE_MEASURED"})
+    return joined and after in _NAMED | {"ALL", "EVERY"}
 
 
 def _next(words: Sequence[Word], i: int, content: str) -> str:
@@ -150,7 +209,8 @@ def placed_in(text: ScriptText, node: Sentence, lexicon: Lexicon) -> tuple[Place
         span = text.span(word.start, word.end)
         at = (span.line, span.column)
         before = sum((o.span.line, o.span.column) < at for o in node.orders)
-        placing = Placing.AT_BEGIN if word.type == "ORDINAL" else Placing(word.type)
+        first = word.type in ("ORDINAL", "FIRST")
+        placing = Placing.AT_BEGIN if first else Placing(word.type)
         found.append(Placed(span=span, placing=placing, orders=before))
     return tuple(found)
 
@@ -239,10 +299,18 @@ def _names_twice(order: ScriptOrder) -> bool:
 
 
 @cache
+def _small(lexicon: Lexicon) -> re.Pattern[str]:
+    """What words without effect look like that are asked about or told."""
+    phrases = [phrase for type_ in _SMALL for phrase in lexicon.phrases.get((type_, None), ())]
+    return re.compile(rf"(?<![\w-])(?:{either('|'.join(phrases))})(?![\w-])", re.IGNORECASE)
+
+
+@cache
 def _placing(lexicon: Lexicon) -> re.Pattern[str]:
     """What such words look like, so that few sentences are looked at once more."""
-    said = [phrase for p in Placing for phrase in lexicon.phrases.get((p, None), ())]
-    return re.compile(rf"\b(?:{either('|'.join(said))}|first\W*$)\b", re.IGNORECASE)
+    types = (*Placing, "FIRST")
+    phrases = [phrase for p in types for phrase in lexicon.phrases.get((p, None), ())]
+    return re.compile(rf"\b(?:{either('|'.join(phrases))}|first\W*$|(?<=^)first)\b", re.IGNORECASE)
 
 
 def _is_other_way(case: Case | None) -> bool:

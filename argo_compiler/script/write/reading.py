@@ -16,6 +16,7 @@ from argo_compiler.script.write.protocol import lines_of, parts_said
 from argo_compiler.script.write.steps import Said
 from argo_compiler.script.write.text import INDENT, number, wrapped
 
+_NO_EFFECT = frozenset(["script.no-effect", "script.set-aside", "script.order-taken"])
 _ASSUMING = frozenset(
     [
         "script.dock-assumed",
@@ -103,8 +104,12 @@ def read_back(
         text="",
         entries=tuple(entries),
         assumed=tuple(message for messages in by_line.values() for message in messages),
-        no_effect=tuple(d for d in found if d.severity is Severity.NOTE and d not in assuming),
-        warnings=tuple(d for d in found if d.severity is Severity.WARNING and d not in assuming),
+        no_effect=tuple(d for d in found if d.code in _NO_EFFECT),
+        warnings=tuple(
+            d
+            for d in found
+            if d.severity is Severity.WARNING and d.code not in _ASSUMING | _NO_EFFECT
+        ),
     )
     text = "\n".join([*lines, *_last_marks(reading)]) + "\n"
     return reading.model_copy(update={"text": text})

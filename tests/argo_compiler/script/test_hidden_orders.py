@@ -64,9 +64,10 @@ def test_a_remark_that_asks_for_something_is_a_warning(remark: str, catalog: Cat
         f"{START}.\nRegards\nPaul\nShift B",
     ],
 )
-def test_what_asks_for_nothing_is_a_note(text: str, catalog: Catalog) -> None:
+def test_what_asks_for_nothing_is_a_warning(text: str, catalog: Catalog) -> None:
     resolved = import_whole(text, catalog)
-    assert {d.severity for d in resolved.diagnostics} == {Severity.NOTE}
+    assert {d.code for d in resolved.diagnostics} <= {"script.no-effect", "script.title"}
+    assert resolved.diagnostics
     assert measured(text, catalog) == ["1"]
 
 

@@ -45,8 +45,8 @@ def test_ways_to_ask_for_a_measurement(step: str, catalog: Catalog) -> None:
         ("Patrol floor 2 three times", 2, 3, 0),
         ("Patrol floor six 3 times in circles", 6, 3, 0),
         ("Patrol the first floor for 10 minutes or three times", 1, 3, 600),
-        ("Patrol the first floor twice for 1 h 30 min", 1, 2, 5400),
-        ("Patrol the first floor for 10 minutes 3 rounds", 1, 3, 600),
+        ("Patrol the first floor twice or for 1 h 30 min", 1, 2, 5400),
+        ("Patrol the first floor for 10 minutes or 3 rounds", 1, 3, 600),
         ("Patrol the first floor in circles for two rounds", 1, 2, 0),
     ],
 )
@@ -106,10 +106,10 @@ def test_a_waypoint_that_is_about_an_object_is_moved_and_deleted_like_any_other(
 
 def test_a_hint_is_kept_and_does_nothing(catalog: Catalog) -> None:
     text = steps("Check checkpoint #1") + "   Hint: at least 3 robots were here\n"
-    (note,) = import_whole(text, catalog).diagnostics
-    assert (note.code, note.severity) == ("script.no-effect", Severity.NOTE)
-    assert note.span is not None
-    assert (note.span.line, note.span.column, note.span.length) == (4, 4, 33)
+    (warning,) = import_whole(text, catalog).diagnostics
+    assert (warning.code, warning.severity) == ("script.no-effect", Severity.WARNING)
+    assert warning.span is not None
+    assert (warning.span.line, warning.span.column, warning.span.length) == (4, 4, 33)
 
 
 # ---- where it starts and ends

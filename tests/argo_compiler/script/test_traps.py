@@ -137,7 +137,7 @@ def bounds(mission: Mission, name: str) -> list[Bounds]:
         ("Checkpoint | Floor\n1 | 1\n5 | 1", "checkpoint-mismatch", ["not on floor 1"]),
         ("Checkpoint | Done\n1 | no\n4 | x", "ambiguous-cell", ["already"]),
         ("Checkpoint | Remark\n1 | postponed\n4 | ", "ambiguous-remark", ["postponed"]),
-        ("Checkpoint | Condition\n1 | -\n4 | R25 is open", "not-understood", ["open"]),
+        ("Checkpoint | Condition\n1 | -\n4 | R25 is rusty", "not-understood", ["rusty"]),
         ("Checkpoint | Result\n1 | above 4: check #8\n4 | ", "ambiguous-remark", ["check #8"]),
         ("Check #1 and #8. If only one of them is above 3, go home.", "ambiguous-word", ["others"]),
         ("Check #1 and #8. If only #1 is above 3, go home.", "ambiguous-word", ["`only`"]),

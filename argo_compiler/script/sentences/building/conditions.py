@@ -17,6 +17,7 @@ from argo_compiler.script.sentences.tree.conditions import (
     Between,
     Compared,
     InState,
+    InValvePosition,
     Occurs,
     Predicate,
     Relation,
@@ -24,12 +25,14 @@ from argo_compiler.script.sentences.tree.conditions import (
     TaskState,
     Test,
     TooLate,
+    ValvePosition,
 )
 from argo_compiler.script.sentences.tree.nouns import Nouns
 from argo_compiler.script.sentences.words.loading import pattern
 from argo_compiler.script.sentences.words.word import Word
 
 _Alternatives = tuple[tuple[Asked, ...], ...]
+_POSITIONS = frozenset(map(str, ValvePosition))
 _MOST = 64
 """alternatives of one condition"""
 _NEGATING = r"\b<negating>\b(?!.*\b<closing>\W*$)"
@@ -83,6 +86,8 @@ def _predicate(part: RulePart) -> tuple[Predicate, bool, str]:
     stale = part.first(InState)
     if stale is not None:
         found: Predicate = stale
+    elif state is not None and state.value in _POSITIONS:
+        found = InValvePosition(span=part.span, position=ValvePosition(state.value))
     elif state is not None or part.has("FAILS"):
         found = InState(span=part.span, state=TaskState(state.value) if state else TaskState.FAILED)
     else:

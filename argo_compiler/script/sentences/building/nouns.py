@@ -1,5 +1,6 @@
 """Makes noun phrases."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -117,6 +118,35 @@ def _is_of_last(child: object, nouns: list[Noun], joint: str) -> bool:
     return shown and isinstance(last, Labelled) and last.quantity is None
 
 
+def _on_common_floors(part: RulePart, nouns: Sequence[Noun]) -> list[Noun]:
+    """Return the nouns, those of a floor with the floor: `the valves and gauges on floor 3`."""
+    found: list[Noun] = []
+    for noun in reversed(nouns):
+        after = found[-1] if found else None
+        if isinstance(noun, AllOf | TheOne) and isinstance(after, AllOf | TheOne):
+            if noun.floors and not after.floors:
+                message = "this can be on the same floor as what is before it, or on all floors"
+                hint = "write the floor behind each, or `on all floors`"
+                part.diagnostics.error("ambiguous-floor", message, after.span, hint)
+            elif after.floors and not noun.floors:
+                if isinstance(after, AllOf) or (isinstance(noun, TheOne) and not noun.plural):
+                    message = "this floor can be that of all of them, or of the last one only"
+                    hint = "write the floor behind each, or two sentences"
+                    part.diagnostics.error("ambiguous-floor", message, after.span, hint)
+                noun = replace(noun, floors=after.floors)
+        found.append(noun)
+    return found[::-1]
+
+
+def _ask_of_excepted_floors(part: RulePart, excepted: Sequence[Noun]) -> None:
+    """Ask about `everything except the valves on floor 2 and floor 3`."""
+    for noun in excepted:
+        if isinstance(noun, AllOf | TheOne) and len(noun.floors) > 1:
+            message = "the last floor can be that of the exception, or a further exception"
+            hint = "write the exceptions in a sentence of their own: `do not check ...`"
+            part.diagnostics.error("ambiguous-exception", message, noun.span, hint)
+
+
 def _nouns(part: RulePart) -> Nouns:
     require_one_joint(part)
     nouns: list[Noun] = []
@@ -138,7 +168,8 @@ def _nouns(part: RulePart) -> Nouns:
     words = part.every(Word)
     parted = len(nouns) == 2 and len(words) == 1 and str(words[0].value).strip() != ","
     parted = parted and str(words[0].value).startswith(",")
-    all_ = tuple(nouns)
+    all_ = tuple(_on_common_floors(part, nouns))
+    _ask_of_excepted_floors(part, but)
     return Nouns(span=part.span, nouns=all_, but=tuple(but), either=either, parted=parted)
 
 

@@ -27,7 +27,7 @@ def _area(part: RulePart) -> AreaLocation:
         part.error("several-places", "this area is named and excluded", "remove one of the two")
     for other in others:
         message = f"excluding area {other} has no effect, because area {area} is named"
-        part.diagnostics.note("no-effect", message, part.span)
+        part.diagnostics.warning("no-effect", message, part.span)
     return AreaLocation(span=part.span, area=area)
 
 

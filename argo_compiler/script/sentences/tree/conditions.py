@@ -66,7 +66,22 @@ class InState(Node):
         return self.state in (TaskState.FAILED, TaskState.UNREADABLE, TaskState.UNREACHABLE)
 
 
-Predicate = Compared | Between | InState
+class ValvePosition(StrEnum):
+    """ValvePosition of a valve."""
+
+    OPEN = "open"
+    HALF_OPEN = "half_open"
+    CLOSED = "closed"
+
+
+@node
+class InValvePosition(Node):
+    """`open`, `half open`, `closed`."""
+
+    position: ValvePosition
+
+
+Predicate = Compared | Between | InState | InValvePosition
 
 
 @node

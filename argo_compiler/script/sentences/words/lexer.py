@@ -14,7 +14,8 @@ from argo_compiler.script.sentences.words.lexicon import Lexicon, folded
 from argo_compiler.script.sentences.words.merging import merged, negated
 from argo_compiler.script.sentences.words.numbers import Figure, compose, read_figure, split_number
 from argo_compiler.script.sentences.words.unknown import UnknownError, UnknownFigure, unknown_text
-from argo_compiler.script.sentences.words.word import Word
+from argo_compiler.script.sentences.words.without_effect import WITHOUT_EFFECT, with_effect
+from argo_compiler.script.sentences.words.word import VERBS, Word
 from argo_compiler.script.sentences.words.word_order import arranged
 
 _PIECE = re.compile(
@@ -40,7 +41,6 @@ _NAMING = frozenset(["STEP", "SHOWN_IN", "ABOUT", "LPAR_CALLED", "LSQB"])
 _JOINING = frozenset(["JOINT", "TO", "DASH", "UPTO"])
 _PLACED = frozenset(["AT_END", "AT_BEGIN", "THERE", "INSTEAD"])
 """words that say where something stands in the script, or on the site"""
-_UNSAID = frozenset(["FILLER", "IDLE"]) | _PLACED
 
 
 # A sentence is looked at several times: what it is, whether it makes sense, what it says.
@@ -82,7 +82,7 @@ def words_of(
 
 
 def _in(text: str, lexicon: Lexicon, unknown: Mapping[int, UnknownFigure]) -> list[Word]:
-    found = _looked_up(text, lexicon)
+    found = with_effect(_looked_up(text, lexicon, _PLACED))
     if unknown:
         left = dict(unknown)
         found = [_with_unknown(word, text, left) for word in found]
@@ -101,19 +101,30 @@ def _goals(words: list[Word]) -> list[Word]:
 
 
 def placed_words(text: str, lexicon: Lexicon) -> list[Word]:
-    """The words of a sentence that say where it stands: `at the end`, `first of all`, `there`; and
-    `first` at its very end."""
-    found = _looked_up(text, lexicon, _UNSAID - _PLACED)
+    """Return the words of a sentence by which it has a place: `at the end`, `there`, and `first` at
+    its very end, or at its beginning if nothing in it comes `then`."""
+    whole = all_words(text, lexicon)
+    found = [word for word in whole if word.type not in WITHOUT_EFFECT]
     ends = found[-1:] if found and found[-1].type == "ORDINAL" and found[-1].value == 1 else []
-    return [word for word in found if word.type in _PLACED] + ends
+    return [word for word in found if word.type in _PLACED] + ends + _opening(whole, found)
+
+
+def _opening(whole: list[Word], found: list[Word]) -> list[Word]:
+    """Return the `first` with which a sentence says that it comes before all others."""
+    first = [word for word in whole if word.type == "FIRST"][:1]
+    if not first and len(found) > 1 and found[0].type == "ORDINAL" and found[0].value == 1:
+        first = found[:1] if found[1].type in VERBS or found[1].type == "JOINT" else []
+    if not first or any(w.type == "SEQUENCE" for w in whole if w.start > first[0].start):
+        return []
+    return first
 
 
 def all_words(text: str, lexicon: Lexicon) -> list[Word]:
-    """The words of a sentence one by one, those that say nothing as well."""
+    """Return the words of a sentence one by one, those without effect as well."""
     return _looked_up(text, lexicon, frozenset())
 
 
-def _looked_up(text: str, lexicon: Lexicon, unsaid: frozenset[str] = _UNSAID) -> list[Word]:
+def _looked_up(text: str, lexicon: Lexicon, left_out: frozenset[str]) -> list[Word]:
     pieces = list(_PIECE.finditer(_lower(text)))
     said = [folded(piece.group()) for piece in pieces]
     apart: set[int] = set()
@@ -142,7 +153,7 @@ def _looked_up(text: str, lexicon: Lexicon, unsaid: frozenset[str] = _UNSAID) ->
             i += 1
             continue
         type_, value = phrase.entry
-        if type_ not in unsaid:
+        if type_ not in left_out:
             if type_ == "KIND":
                 value = _definite(value, said[i - 1] if i > 0 else "", lexicon)
             elif type_ == "UNIT_S" and _is_one(value, said, i, found, lexicon):
@@ -167,6 +178,7 @@ def _numbered(piece: re.Match[str], lexicon: Lexicon) -> list[Word]:
 
 def _is_name(before: list[Word]) -> bool:
     """Whether what stands in quotation marks behind these words is a name, whatever it says."""
+    before = [word for word in before[-4:] if word.type not in WITHOUT_EFFECT]
     if not before:
         return False
     listed = len(before) > 1 and before[-2].type == "STRING"
@@ -192,7 +204,7 @@ def _definite(kind: tuple[Any, bool | None], last: str, lexicon: Lexicon) -> tup
 def _unwrapped(piece: re.Match[str], text: str, lexicon: Lexicon) -> list[Word]:
     """The words in quotation marks that name a thing as it is named without: `"area 1"`."""
     start = piece.start() + 1
-    inner = _looked_up(text[start : piece.end() - 1], lexicon)
+    inner = with_effect(all_words(text[start : piece.end() - 1], lexicon))
     types = tuple(word.type for word in inner)
     if types not in _NAMES:
         return []

@@ -7,6 +7,7 @@ from functools import lru_cache
 from itertools import product
 from typing import Any
 
+from argo_compiler.script.sentences.words.without_effect import WITHOUT_EFFECT
 from argo_compiler.script.sentences.words.word import VERBS
 
 Entry = tuple[str, Any]
@@ -38,7 +39,7 @@ class FoundPhrase:
     apart: range = range(0)
 
 
-_BEHIND = frozenset(["JOINT", "FILLER", "IF", "UNLESS", "UNTIL", "ELSE", "IF_TIME", "IF_ONLY"])
+_BEHIND = frozenset(["JOINT", "IF", "UNLESS", "UNTIL", "ELSE", "IF_TIME", "IF_ONLY"])
 _STOPS = frozenset(VERBS) - {"DOCK"} | {"IF", "UNLESS", "ELSE", "BACK"}
 _FIGURE = re.compile(r"(?<!\w)[0-9]+(?:\.[0-9]+)?(?!\w)")
 
@@ -155,7 +156,8 @@ class Lexicon:
         after = said[end]
         if after in self.passed_over:
             return False
-        return after in (",", ".", ";", ":", ")") or self._type(after) in _BEHIND
+        type_ = self._type(after)
+        return after in (",", ".", ";", ":", ")") or type_ in _BEHIND or type_ in WITHOUT_EFFECT
 
     def _type(self, piece: str) -> str | None:
         node = self.root.next.get(piece)

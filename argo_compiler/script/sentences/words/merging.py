@@ -119,6 +119,8 @@ def _inverted(words: list[Word]) -> list[Word]:
         begins = not found or found[-1].type in ("JOINT", "ELSE")
         if asks and (not found if word.type == "IS" else begins and word.type == "SHOULD"):
             found.append(replace(word, type="IF", value=None))
+        elif word.type == "SHOULD" and not found:
+            found.append(replace(word, type="STRAY"))  # `Should the robot check #4?`
         elif word.type != "SHOULD":
             found.append(word)
     return found

@@ -1,0 +1,176 @@
+"""Small words: each has a meaning, is asked about or told, or stands where it has no effect."""
+
+import pytest
+
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.diagnostics import Severity
+from argo_compiler.il import ConditionType, Order
+from argo_compiler.script import Draft, LineState, import_script
+from tests.argo_compiler.script.conftest import measured_in
+
+START = "Start in starting area 1.\n"
+
+
+def draft_of(text: str, catalog: Catalog) -> Draft:
+    return import_script(f"{START}{text}", catalog)
+
+
+def measured(text: str, catalog: Catalog) -> list[str]:
+    return measured_in(draft_of(text, catalog).require_mission())
+
+
+def conditions(text: str, catalog: Catalog) -> list[tuple[str | None, ConditionType, object]]:
+    mission = draft_of(text, catalog).require_mission()
+    ways = (way for task in mission.tasks for way in task.transitions)
+    return [(c.object_id, c.type, c.param1) for way in ways for c in way.conditions]
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("Check valve R25. Check the next valve.", "`next`"),
+        ("Check #1. If it is a normal, check #4.", "`a`"),
+        ("Check #1. If it is also above 4, check #4.", "`also`"),
+        ("Don't just check #9.", "`Don't`"),
+        ("Check #1 at the same time, then #4.", "`at`"),
+        ("Check #1 and #4. First check #8.", "come first"),
+        ("Prüfe #1 und #4. Prüfe zuerst #8.", "come first"),
+        ("Check #1 and then #4 twice.", "last item, or of all"),
+        ("Check #1, then #4 at 0.2 m/s.", "last item, or of all"),
+        ("Prüfe #1 und dann #4 zweimal.", "last item, or of all"),
+        ("Check #1 and #4 and go home twice.", "the way only"),
+        ("Patrol floor 1 three times for 10 minutes.", "each round"),
+        ("Check #1. Check #3 and check #6 if it is above 4.", "an earlier one"),
+        ("Check #1. Should the robot check #4?", "`Should`"),
+        ("Check #1. Does it have to check #4?", "`Does"),
+        ("Check #1. Is checkpoint 4 checked?", ""),
+        ("Check #1. Check #4?", "a question"),
+        ("Prüfe #1. Prüfe #4?", "a question"),
+        ("Check #4 again.", "is not measured before"),
+        ("Once again: check #4.", "is not measured before"),
+        ("Check gauge 8.", "pressure gauge 5 (#8)"),
+        ("Check #4 in reverse order.", "no reverse order"),
+        ("Check the valves on floor 3 and the gauges.", "on all floors"),
+        ("Check all valves and all gauges on floor 3.", "the last one only"),
+        ("Check everything except the valves on floor 2 and floor 3.", "a further exception"),
+        ("Check #1. If it is above 4 bara, check #4.", "absolute"),
+        ("Check #1. If it is above 60 psia, check #4.", "absolute"),
+        ("Check #1. If it is open, check #4.", "no valve"),
+        (
+            "Check pressure gauges 1 and 2, then valve R25. If the pressure is above 4, go home.",
+            "or",
+        ),
+        ("Check valve R25. If the level is above 4, go home.", "is measured before"),
+        ("Checkpoint | Action\n4 | -\n8 | read", "`-`"),
+        ("Checkpoint | Remark\n4 | N/A\n8 | ok", "`N/A`"),
+        ("Check everything on floor 6 (that is, the gauge; the valve can wait).", "a change"),
+    ],
+)
+def test_what_is_asked_about(text: str, words: str, catalog: Catalog) -> None:
+    draft = draft_of(text, catalog)
+    assert draft.mission is None
+    opened = [line for line in draft.lines if line.state is LineState.OPEN]
+    assert opened
+    assert any(words in line.reason for line in opened), [line.reason for line in opened]
+
+
+@pytest.mark.parametrize(
+    "title",
+    [
+        "R25 is locked out.",
+        "CANCELLED: round of floor 2",
+        "Skip:\n- #1",
+        "DRAFT - ask Tom before use",
+        "EXAMPLE ONLY",
+        "Superseded by sheet 2",
+        "Checklist [void]",
+        "Nur zur Information",
+        "Forbidden: floor 6",
+        "Too high: #3?",
+        "Round for three robots; yours is the second part",
+        "In reverse order:",
+        "Half as often #13 as #15, and #15 four times",
+    ],
+)
+def test_a_first_line_that_may_change_the_plan_is_no_title(title: str, catalog: Catalog) -> None:
+    draft = import_script(f"{title}\n{START}Check #5.", catalog)
+    assert draft.mission is None
+
+
+@pytest.mark.parametrize(
+    ("text", "checkpoints"),
+    [
+        ("Please check the valve R25 now, then go to floor 2 and check #5 as well.", ["4", "5"]),
+        ("Check the valves and gauges on floor 3.", ["10", "11", "9", "12"]),
+        ("Check all gauges and valves on floor 3.", ["9", "12", "10", "11"]),
+        ("Prüfe die Ventile und Manometer im dritten Stock.", ["10", "11", "9"]),
+        ("Could you check #1, please?", ["1"]),
+        ("Könntest du bitte #1 prüfen?", ["1"]),
+        ("Check PG 1, then R25, then PG 5.", ["1", "4", "8"]),
+        ("On floor 2, first check #5, then #7.", ["5", "7"]),
+        ("First check #8.\nCheck #1.", ["8", "1"]),
+    ],
+)
+def test_what_is_read(text: str, checkpoints: list[str], catalog: Catalog) -> None:
+    assert measured(text, catalog) == checkpoints
+
+
+def test_what_comes_then_in_any_order_comes_after_the_first(catalog: Catalog) -> None:
+    mission = draft_of("Check #14, then #1, #4 and #8 in any order.", catalog).require_mission()
+    assert mission.order is Order.ANY
+    assert {pair[0] for pair in mission.before} == {"MEASURE 14"}
+    assert len(mission.before) == 3
+
+
+@pytest.mark.parametrize(
+    ("text", "asked"),
+    [
+        ("Check #2. Check #1. If the level is above 50, go home.", "2"),
+        ("Check #1. Check #4. If the pressure is above 4, go home.", "1"),
+        ("Check #4. Check #1. If the position is above 45, go home.", "4"),
+        ("Prüfe #1. Prüfe #4. Wenn der Druck über 4 liegt, fahre nach Hause.", "1"),
+    ],
+)
+def test_a_quantity_is_of_what_shows_it(text: str, asked: str, catalog: Catalog) -> None:
+    assert conditions(text, catalog)[0][0] == asked
+
+
+@pytest.mark.parametrize(
+    ("state", "type_", "bound"),
+    [
+        ("is open", ConditionType.GREATER, 80),
+        ("is not open", ConditionType.LESS, 80),
+        ("is closed", ConditionType.LESS, 10),
+        ("isn't closed", ConditionType.GREATER, 10),
+        ("is half open", ConditionType.WITHIN, 35),
+    ],
+)
+def test_positions_of_valves(
+    state: str, type_: ConditionType, bound: float, catalog: Catalog
+) -> None:
+    found = conditions(f"Check valve R25. If it {state}, check #8.", catalog)
+    assert found[0] == ("4", type_, bound)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("Check #1. If it is just above 4, check #4.", "`just`"),
+        ("Only check #1.", "`Only`"),
+        ("Check #1 carefully.", "`carefully`"),
+        ("Check #1 tonight.", "`tonight`"),
+        ("Dear Paul,\nCheck #1.", "`Dear Paul,`"),
+        ("Note: the lamp is broken.\nCheck #1.", "the lamp is broken"),
+    ],
+)
+def test_what_has_no_effect_is_a_warning(text: str, words: str, catalog: Catalog) -> None:
+    draft = draft_of(text, catalog)
+    assert draft.mission is not None
+    warnings = [d for d in draft.diagnostics if d.severity is Severity.WARNING]
+    assert any(words in d.message for d in warnings)
+
+
+def test_letters_with_accents_of_their_own_are_read(catalog: Catalog) -> None:
+    composed = "Prüfe alle Ventile im dritten Stock außer R31."
+    decomposed = composed.replace("ü", "u\u0308")
+    assert measured(decomposed, catalog) == measured(composed, catalog) == ["11"]

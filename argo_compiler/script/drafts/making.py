@@ -107,7 +107,8 @@ def _read(
 ) -> _Reading:
     places = [place.name for place in catalog.places]
     names = [checkpoint.name for checkpoint in catalog.checkpoints]
-    script = parse(text, places, source_name, names, decided)
+    tags = {tag: (c.id, c.name) for c in catalog.checkpoints for tag in c.tags}
+    script = parse(text, places, source_name, names, decided, tags)
     try:
         resolved = resolve_script(script, catalog, *areas)
     except DiagnosticError as error:

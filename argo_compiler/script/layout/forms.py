@@ -212,7 +212,7 @@ def _groups(source: Source, taken: Mapping[int, ScriptText]) -> Iterator[tuple[l
     group: list[int] = []
     cut = ""
     for number in range(1, len(source.lines) + 2):
-        line = source.lines[number - 1] if number <= len(source.lines) else ""
+        line = source.line_text(number).content if number <= len(source.lines) else ""
         here = "" if number in taken else _cut_of(line)
         rule = cut == "|" and line.strip() and _RULE.fullmatch(line)
         deep = cut == "  " and line.strip() and len(line) - len(line.lstrip()) >= _DEEP

@@ -14,6 +14,7 @@ from argo_compiler.script.layout.asides import Asides
 from argo_compiler.script.layout.cells import Cells
 from argo_compiler.script.layout.fields import Field, ScriptFields
 from argo_compiler.script.layout.forms import ROW, FormRow, forms
+from argo_compiler.script.layout.glossary import Tags, explain
 from argo_compiler.script.layout.items import LineItem, LineSense, items_of
 from argo_compiler.script.layout.lines import LineMark, lines_of, sentences, stamped, unmarked
 from argo_compiler.script.layout.lists import Lists, on_floors
@@ -44,12 +45,14 @@ def parse(
     source_name: str = "script",
     names: Collection[str] = (),
     decided: Mapping[int, Sequence[str]] = MappingProxyType({}),
+    tags: Tags = MappingProxyType({}),
 ) -> Script:
     """The syntax tree of the script, with all that was found on the way in its `diagnostics`.
 
     `places` and `names` are those of the site's places and checkpoints. `decided` has the sentences
     that a person has decided on for pieces of the script, none for one that is set aside; its keys
-    are the offsets at which these pieces begin in the text. Raises DiagnosticError for what is no
+    are the offsets at which these pieces begin in the text. `tags` are the site's plant tags, with
+    the checkpoints that have them. Raises DiagnosticError for what is no
     script at all.
     """
     source = Source(text, source_name)
@@ -58,12 +61,14 @@ def parse(
     language = Language.of(text, places)
     words = frozenset(word for name in (*names, *places) for word in name.lower().split())
     understanding = Understanding(language, words, diagnostics)
+    explained = explain(source, understanding, tags, diagnostics)
     asides = Asides(understanding)
     fields = ScriptFields(understanding, diagnostics)
     reader = SentenceReader(understanding, asides, fields, diagnostics)
     known = repeats(language.lexicon, words)
     parser = _Parser(understanding, asides, fields, diagnostics, reader, known, decided=decided)
-    return parser.script()
+    parser.pieces += map(Piece, explained.explanations)
+    return parser.script(explained.source)
 
 
 def _require_size(source: Source) -> None:
@@ -123,8 +128,8 @@ class _Parser:
     forms: Mapping[int, FormRow] = field(default_factory=dict)
     """the rows of sheets, by the numbers of their lines"""
 
-    def script(self) -> Script:
-        source = self.diagnostics.source
+    def script(self, source: Source) -> Script:
+        """Return the tree of a script, whose short forms are replaced."""
         language = self.understanding.language
         found = tables(source, self.understanding, self.diagnostics)
         self.pieces += [Piece(text, COLUMN_HEADINGS) for text in found.headings]

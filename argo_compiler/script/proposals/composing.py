@@ -5,18 +5,20 @@ sentence uses, the clause stays open, and what it may become are choices.
 """
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 
 from argo_compiler.base.catalog import Catalog, CheckpointInfo
 from argo_compiler.script.documents.source import Diagnostics, RefusedError, ScriptText
+from argo_compiler.script.proposals.evidence import evidence
 from argo_compiler.script.proposals.mentions import (
     Mention,
     Mentions,
     checkpoint_words,
     mentions_in,
 )
+from argo_compiler.script.proposals.paraphrasing import paraphrases
 from argo_compiler.script.resolve.lookup import Lookup
 from argo_compiler.script.resolve.nouns import Memory, NounResolver
 from argo_compiler.script.sentences.tree.nouns import AllOf, Nouns
@@ -26,7 +28,6 @@ from argo_compiler.script.sentences.words.amounts import Length
 from argo_compiler.script.sentences.words.numbers import Figure
 from argo_compiler.script.sentences.words.prose import cue_pattern
 
-STATEMENT = "a statement that names nothing of the mission"
 _SIGNALS = (
     *("forbidding", "past", "question", "correction", "leave_out", "IF", "IF_ONLY", "UNLESS"),
     *("ELSE", "UNTIL", "NOT", "EXCEPT", "pronoun", "STATE", "MORE", "again", "TIMES", "GREATER"),
@@ -35,6 +36,16 @@ _SIGNALS = (
 """kinds of mentions without which a text is looked at for choices"""
 _DOCKING = ("home", "HOME", "DOCK", "END", "place")
 _COMMA = re.compile(r"\s*[,;:]\s+|\s+-\s+")
+_PLAIN = frozenset(
+    [
+        *("AND_NOUN", "AND_DO", "AND_PLACE", "AND_ON", "NEXT", "COLON", "JOINT", "HE", "NAMELY"),
+        *("LPAR", "RPAR", "TO", "IN", "AT", "ON", "FOR", "IS"),
+    ]
+)
+"""words that join others, of which none changes what a whole clause means"""
+_UNSURE = ("pronoun", "last", "first", "later", "again", "past", "over", "limit", "LESS", "WITHIN")
+"""mentions beside which a proposal has to be confirmed"""
+_LIKE_CHECKS = re.compile(r"(?:Check|Order:|Maximum|Start|Return|End)")
 _MOST_CLAUSES = 14
 _MOST_READINGS = 10
 """of one checkpoint, one after the other"""
@@ -68,27 +79,56 @@ class Composer:
         self.understanding = understanding
         self.catalog = catalog
         self.memory = Memory()
-        self.tags: dict[str, CheckpointInfo] = {}
-        """checkpoints by the tags that the script has given them"""
+        self.spared: set[int] = set()
+        """the checkpoints that are to be left out"""
+        self.before = ""
+        """the text before, in words of the language"""
 
     def propose(self, text: ScriptText) -> Proposal:
         """Return what a sentence or a line proposes."""
         found = mentions_in(text, self.understanding)
-        states = self._states(text.content, found)
-        if not found.mentions:
-            return Proposal(aside=STATEMENT) if states else Proposal(choices=((),))
-        if not states:
-            proposal = self._composed(text, found) or self._of_clauses(text)
-            if proposal is not None:
-                return proposal
-        return Proposal(choices=self._choices(found))
+        reason = evidence(text, found, self.understanding.language)
+        if reason:
+            return Proposal(aside=reason)
+        made = self._composed(text, found)
+        if made is None or made.unused:
+            made = self._readable(text) or made
+        if made is None and found.mentions:
+            made = self._of_clauses(text)
+        return made if made is not None else Proposal(choices=self._choices(text, found))
+
+    def _readable(self, text: ScriptText) -> Proposal | None:
+        """Return what a text is in words that the grammar takes."""
+        text = self._alike(text)
+        return next(
+            (Proposal((said,)) for said in paraphrases(text, self.understanding)),
+            None,
+        )
+
+    def _alike(self, text: ScriptText) -> ScriptText:
+        """Return a condition that ends in `likewise` with the orders of the one before it."""
+        cues = self.understanding.language.prose.cues
+        likewise = re.compile(
+            rf"[,:]?\s*{cue_pattern('likewise', cues['likewise']).pattern}\W*$", re.IGNORECASE
+        )
+        found = likewise.search(text.content)
+        _, comma, orders = self.before.partition(",")
+        if found is None or not comma:
+            return text
+        return text.replace(found.start(), len(text.content), f", {orders.strip(' .')}")
 
     def _composed(self, text: ScriptText, found: Mentions) -> Proposal | None:
+        if not found.mentions or self._depends(text, found):
+            return None
         sentences = self._sentences(found)
         if sentences is None:
             return None
-        unused = (text.content[word.start : word.end] for word in found.unknown)
-        return Proposal(sentences, tuple(unused))
+        unused = tuple(text.content[word.start : word.end] for word in found.unknown)
+        bidden = found.has("MEASURE", "BE_MEASURED") or "courtesy" not in found.joining
+        plain = bidden and found.joining <= {*_PLAIN, "courtesy"}
+        whole = plain and not unused and not found.has(*_UNSURE)
+        certain = whole and all(map(_LIKE_CHECKS.match, sentences))
+        return Proposal(sentences, unused, certain=certain)
 
     def _of_clauses(self, text: ScriptText) -> Proposal | None:
         """Return what the clauses of a text propose, if each of them proposes something or names
@@ -107,7 +147,10 @@ class Composer:
             for k in range(len(starts) - 1, i, -1):
                 part = text[starts[i] : starts[k]].strip()
                 found = mentions_in(part, self.understanding)
-                made = self._composed(part, found) if part.content else None
+                if evidence(part, found, self.understanding.language):
+                    unused.append(part.content)
+                    break
+                made = self._composed(part, found)
                 if made is not None:
                     sentences += made.sentences
                     unused += made.unused
@@ -159,20 +202,10 @@ class Composer:
         made = (frame(found) for frame in frames)
         return next((sentences for sentences in made if sentences is not None), None)
 
-    def _states(self, content: str, found: Mentions) -> bool:
-        """Whether a text states a fact about a thing that is none of the mission's, and asks for
-        nothing: `The crane is at the dock`."""
-        cues = self.understanding.language.prose.cues
-        begins = cue_pattern("subject", cues["subject"]).match(content)
-        if begins is None or cue_pattern("asking", cues["asking"]).search(content) is not None:
-            return False
-        verb = cue_pattern("stating", cues["stating"]).search(content, begins.end())
-        return verb is not None and any(word.end <= verb.start() for word in found.unknown)
-
-    def _choices(self, found: Mentions) -> tuple[Sentences, ...]:
-        """Return what an open text may become: what it would be without what is not clear, that its
-        checkpoints are read or not read, and nothing."""
-        choices: list[Sentences] = []
+    def _choices(self, text: ScriptText, found: Mentions) -> tuple[Sentences, ...]:
+        """Return what an open text may become: each of its readings, what it would be without what
+        is not clear, that its checkpoints are read or not read, and nothing."""
+        choices: list[Sentences] = list(self._readings(text, found))
         for bare in (found.without(*_SIGNALS), found.without(*_SIGNALS, *_DOCKING)):
             said = self._sentences(bare) if bare.mentions else None
             if said is not None:
@@ -191,6 +224,38 @@ class Composer:
                 choices += [(f"Return to the docking station in starting area {area}.",)]
         return (*dict.fromkeys(choices), ())
 
+    def _readings(self, text: ScriptText, found: Mentions) -> Iterator[Sentences]:
+        """Yield the text with each checkpoint that its pronoun may be, where it makes sense then;
+        of `too high` with the limit of that checkpoint."""
+        pronouns = found.of("pronoun", "THIS")[:1]
+        candidates = {c.id: c for c in self.memory.last}
+        for checkpoint in candidates.values():
+            said = text
+            for mention in pronouns:
+                said = said.replace(mention.start, mention.end, f"checkpoint {checkpoint.id}")
+            said = self._within(said, checkpoint)
+            if said is not text:
+                yield from ((one,) for one in paraphrases(said, self.understanding, changed=True))
+
+    def _within(self, text: ScriptText, checkpoint: CheckpointInfo) -> ScriptText:
+        """Return a text with `too high` as a limit."""
+        prose = self.understanding.language.prose
+        limits = (("too_high", checkpoint.nominal.high), ("too_low", checkpoint.nominal.low))
+        for name, limit in limits:
+            found = cue_pattern(name, prose.cues[name]).search(text.content)
+            if found is not None:
+                said = prose.say[name].format(f"{limit:g}")
+                text = text.replace(*found.span(), said)
+        return text
+
+    def _depends(self, text: ScriptText, found: Mentions) -> bool:
+        """Return True if a text may begin with a case that it depends on: `On smoke, go home`."""
+        cases = self.understanding.language.prose.cues["in_case"]
+        begins = cue_pattern("in_case", cases).match(text.content)
+        if begins is None or not found.unknown:
+            return False
+        return not any(m.start <= found.unknown[0].start for m in found.mentions if m.start)
+
     # ---- frames: each returns its sentences, or None if the text has anything else
 
     def _leave_out(self, found: Mentions) -> Sentences | None:
@@ -205,6 +270,7 @@ class Composer:
         with suppress(RefusedError):
             named = self.checkpoints(kept.of("checkpoints"))
             if named:
+                self.spared |= {c.id for c in named}
                 return (f"Do not check {checkpoint_words(named)}.",)
         return None
 

@@ -1,7 +1,7 @@
 """What of a text the mission language has words for: checkpoints, places, times, verbs, signals."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.script.documents.source import ScriptText
@@ -24,9 +24,21 @@ _WEAK = frozenset(
     ]
 )
 """types of words that only join others"""
+OF_FORMS = frozenset(
+    [
+        *("MEASURE", "BE_MEASURED", "NUMBER", "TIME_WORD", "OF", "pronoun", "question", "past"),
+        *("GREATER", "LESS", "STATE", "DONE", "QUANTITY", "REPORT", "MODE", "IN_BETWEEN", "PERSON"),
+    ]
+)
+"""kinds that have no effect on a mission beside the name of nothing that it has"""
 _LONGEST = 24
 """words of a noun phrase"""
-_APART = frozenset(["subject", "stating", "asking", "clause"])
+_APART = frozenset(
+    [
+        *("subject", "stating", "asking", "clause", "answer", "wondering", "people", "of_others"),
+        *("needless", "likewise", "retracting", "too_high", "too_low", "in_case"),
+    ]
+)
 """cues that are no mentions, but part a text or tell statements"""
 _OPENING = frozenset(["question", "sequence"])
 """cues that mean something only where a text begins"""
@@ -49,6 +61,8 @@ class Mentions:
 
     mentions: tuple[Mention, ...]
     unknown: tuple[Word, ...]
+    joining: frozenset[str] = frozenset()
+    """types of words that were passed over, as they only join others"""
 
     def of(self, *kinds: str) -> tuple[Mention, ...]:
         """Return the parts of these kinds."""
@@ -64,7 +78,7 @@ class Mentions:
     def without(self, *kinds: str) -> "Mentions":
         """Return these mentions without those of some kinds."""
         kept = tuple(mention for mention in self.mentions if mention.kind not in kinds)
-        return Mentions(kept, self.unknown)
+        return replace(self, mentions=kept)
 
 
 def mentions_in(text: ScriptText, understanding: Understanding) -> Mentions:
@@ -75,6 +89,7 @@ def mentions_in(text: ScriptText, understanding: Understanding) -> Mentions:
     cues = [cue for cue in _cues(text.content, understanding) if not _overlaps(cue, named)]
     found = [cue for cue in cues if cue.kind not in ("courtesy", "sequence")]
     unknown: list[Word] = []
+    joining = {cue.kind for cue in cues if cue.kind == "courtesy"}
     i = 0
     while i < len(words):
         word = words[i]
@@ -89,9 +104,12 @@ def mentions_in(text: ScriptText, understanding: Understanding) -> Mentions:
             continue
         if word.type == "WORD":
             unknown.append(word)
-        elif word.type not in _WEAK:
+        elif word.type in _WEAK:
+            joining.add(word.type)
+        else:
             found.append(Mention(word.type, word.start, word.end, word.value))
-    return Mentions(tuple(sorted(found, key=lambda m: m.start)), tuple(unknown))
+    in_order = tuple(sorted(found, key=lambda m: m.start))
+    return Mentions(in_order, tuple(unknown), frozenset(joining))
 
 
 def _overlaps(mention: Mention, others: Sequence[Mention]) -> bool:

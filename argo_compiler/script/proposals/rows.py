@@ -11,10 +11,10 @@ from dataclasses import dataclass, field
 
 from argo_compiler.base.catalog import CheckpointInfo, CheckpointKind
 from argo_compiler.script.documents.source import RefusedError, ScriptText
+from argo_compiler.script.documents.tags import count_tag, tag_of
 from argo_compiler.script.layout.forms import Cell, CellRole, FormRow
 from argo_compiler.script.proposals.composing import Composer, Proposal
 from argo_compiler.script.proposals.mentions import checkpoint_words, mentions_in
-from argo_compiler.script.proposals.tags import count_tag, tag_of
 from argo_compiler.script.sentences.tree.places import FloorName
 from argo_compiler.script.sentences.words.prose import cue_pattern
 
@@ -75,14 +75,14 @@ def propose_row(row: FormRow, composer: Composer, first: bool = False) -> Propos
     ids = {c.id: c for c in found.named}
     if not ids:
         return _without_checkpoint(row, composer, first)
-    if found.tag and len(ids) == 1 and _is_definition(row, found.tag):
-        composer.tags[found.tag] = next(iter(ids.values()))
-        return Proposal(certain=True)
     _compare(row.cells, next(iter(ids.values())), found, composer)
     words = checkpoint_words(list(ids.values()))
     check, spare = f"Check {words}{found.manner}.", f"Do not check {words}."
     if row.box is not None and row.box.strip():
         return Proposal(choices=((spare,), (check,)), doubt=_TICKED)
+    if found.tag and _may_explain(row, found.tag):
+        doubt = f"this can be a task, or only say what `{found.tag}` stands for"
+        return Proposal(choices=((check,), ()), doubt=doubt)
     if found.doubts:
         return Proposal(choices=((spare,), (check,)), doubt=found.doubts[0])
     if found.left_out:
@@ -94,10 +94,11 @@ def propose_row(row: FormRow, composer: Composer, first: bool = False) -> Propos
     return Proposal((check,), unused, differences=tuple(found.differences), certain=not unused)
 
 
-def _is_definition(row: FormRow, tag: str) -> bool:
-    """Whether a row only says which checkpoint a tag is, that the script uses elsewhere."""
+def _may_explain(row: FormRow, said: str) -> bool:
+    """Whether a row may only say which checkpoint a tag is, that the script uses elsewhere."""
     plain = len(row.cells) == 2 and row.box is None and not _FILL.search(row.place.content)
-    return plain and count_tag(tag, row.place.source.text) > 1
+    tag = tag_of(said)
+    return plain and tag is not None and count_tag(tag, row.place.source.text) > 1
 
 
 def _without_checkpoint(row: FormRow, composer: Composer, first: bool) -> Proposal:
@@ -137,12 +138,12 @@ def _read_sheet_cell(cell: Cell, found: _Row, composer: Composer) -> bool:
         return True
     tag = tag_of(text)
     if tag is not None and cell.role in (CellRole.NAME, CellRole.CHECKPOINT, CellRole.OTHER):
-        if tag in composer.tags:
-            found.named.append(composer.tags[tag])
-        elif not mentions_in(cell.text, composer.understanding).has("checkpoints"):
-            found.tag = tag
-        else:
-            return False
+        with suppress(RefusedError):
+            named = mentions_in(cell.text, composer.understanding).of("checkpoints")
+            found.named += composer.checkpoints(named)
+            if named:
+                return True
+        found.tag = text
         return True
     match cell.role:
         case CellRole.NUMBER if _NUMBER.fullmatch(text):

@@ -78,7 +78,7 @@ def import_script(
         reading = _read(text, catalog, source_name, areas, said)
     errors = _errors_by_piece(reading)
     unread = {at for at, error in errors.items() if error.code in _UNREAD and at not in said}
-    proposals = propose(reading.script, unread, catalog)
+    proposals = propose(reading.script, unread, catalog, start_area)
     proposed = {at: p.sentences for at, p in proposals.items() if _reads(p)}
     if proposed:
         reading = _read(text, catalog, source_name, areas, {**said, **proposed})
@@ -185,6 +185,8 @@ def _known(
         aside = decision.act is Act.SET_ASIDE
         found = {"state": LineState.SET_ASIDE if aside else LineState.UNDERSTOOD}
         found |= {"act": decision.act, "sentences": decision.sentences}
+    elif decision is None and proposal is not None and proposal.doubt:
+        found["state"], found["reason"] = LineState.OPEN, proposal.doubt
     if error is not None:
         doubt = "" if proposal is None else proposal.doubt
         found |= {"state": LineState.OPEN, "reason": doubt or error.message}

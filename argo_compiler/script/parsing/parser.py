@@ -29,6 +29,7 @@ from argo_compiler.script.sentences.tree.script import Said, ScriptStep, Unread
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.language import Language
 from argo_compiler.script.sentences.words.lexicon import Lexicon
+from argo_compiler.script.sentences.words.prose import cue_pattern
 from argo_compiler.script.sentences.words.unknown import UnknownError, UnknownFigure
 
 MAX_LINES = 120_000
@@ -150,7 +151,11 @@ class _Parser:
         steps = list(self._steps(lists.told(items)))
         PlacingCheck(self.diagnostics).steps(steps)
         _ask_of_title(steps, self.diagnostics)
-        _ask_of_quotes(steps, self.diagnostics)
+        refers = cue_pattern("referring", language.prose.cues["referring"])
+        if not any(
+            refers.search(line) for line in source.lines if not line.lstrip().startswith(">")
+        ):
+            _ask_of_quotes(steps, self.diagnostics)
         first = [_step_of(sentence) for sentence in self.fields.first]
         last = [_step_of(sentence) for sentence in self.fields.last]
         return Script(

@@ -19,6 +19,7 @@ _NAME = re.compile(r"(?:[^\W\d_a-zäöü][\w'-]*\.?\s?){1,3}")
 _LEAD_IN = re.compile(r"[^,]{3,60},\s+")
 _MOST_WORDS = 6
 """of a heading in capitals"""
+_FEW_WORDS = 3
 _FOR_PEOPLE = OF_FORMS | {
     "IF",
     "STATE",
@@ -100,9 +101,21 @@ def _states(text: ScriptText, found: Mentions, language: Language) -> bool:
     for begun in (0, lead_in.end() if lead_in is not None else 0):
         begins = _cue("subject", language).match(content, begun)
         verb = begins and _cue("stating", language).search(content, begins.end())
-        if begins and verb and not found.mentions:
+        if begins and verb and found.only("pronoun"):
             return any(begins.end() <= w.start < verb.start() for w in found.unknown)
     return False
+
+
+def _refers(text: ScriptText, found: Mentions, language: Language) -> bool:
+    """`Same list as below please`"""
+    return _cue("referring", language).search(text.content) is not None and not found.mentions
+
+
+def _is_none(text: ScriptText, found: Mentions, language: Language) -> bool:
+    """`None open`"""
+    nothing = cue_pattern("nothing", language.prose.form["nothing"]).match(text.content)
+    short = len(text.content.split()) <= _FEW_WORDS
+    return nothing is not None and short and found.only(*OF_FORMS)
 
 
 def _spares(text: ScriptText, found: Mentions, language: Language) -> bool:
@@ -124,5 +137,7 @@ _KINDS: tuple[tuple[str, Callable[[ScriptText, Mentions, Language], bool]], ...]
     ("a question that names nothing of the mission", _wonders),
     ("for people, not for the robot", _for_people),
     (STATEMENT, _states),
+    ("an entry that there is none", _is_none),
+    ("it refers to the lines below", _refers),
     ("it states only what is not needed", _spares),
 )

@@ -1,5 +1,6 @@
 """What of a text the mission language has words for: checkpoints, places, times, verbs, signals."""
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -9,7 +10,8 @@ from argo_compiler.script.sentences.building.sentences import build
 from argo_compiler.script.sentences.grammar.parser import StumbleError
 from argo_compiler.script.sentences.tree.nouns import AllOf, Nouns, Pronoun
 from argo_compiler.script.sentences.understanding import Understanding
-from argo_compiler.script.sentences.words.prose import cue_pattern
+from argo_compiler.script.sentences.words.amounts import Length
+from argo_compiler.script.sentences.words.prose import begins, cue_pattern
 from argo_compiler.script.sentences.words.word import Word
 
 _NOUNS = frozenset(["KIND", "HASH", "IDENT", "ALL", "OF", "EVERYTHING", "IT", "THEM", "VALUE"])
@@ -31,15 +33,19 @@ OF_FORMS = frozenset(
     ]
 )
 """kinds that have no effect on a mission beside the name of nothing that it has"""
+_FIGURE = re.compile(r"[0-9]+(?:[.,][0-9]+)?")
 _LONGEST = 24
 """words of a noun phrase"""
 _APART = frozenset(
     [
         *("subject", "stating", "asking", "clause", "answer", "wondering", "people", "of_others"),
         *("needless", "likewise", "retracting", "too_high", "too_low", "in_case"),
+        *("by_then", "at_time"),
     ]
 )
 """cues that are no mentions, but part a text or tell statements"""
+_IDLE = ("courtesy", "sequence", "referring")
+"""cues that have no effect by themselves"""
 _OPENING = frozenset(["question", "sequence"])
 """cues that mean something only where a text begins"""
 
@@ -53,6 +59,8 @@ class Mention:
     start: int
     end: int
     value: object = None
+    limits_s: tuple[float, float] = (0.0, 0.0)
+    """of a time between two limits"""
 
 
 @dataclass(frozen=True)
@@ -63,6 +71,8 @@ class Mentions:
     unknown: tuple[Word, ...]
     joining: frozenset[str] = frozenset()
     """types of words that were passed over, as they only join others"""
+    occasion: int = 0
+    """where the words end that say what the text is for: `For the acceptance`"""
 
     def of(self, *kinds: str) -> tuple[Mention, ...]:
         """Return the parts of these kinds."""
@@ -87,7 +97,9 @@ def mentions_in(text: ScriptText, understanding: Understanding) -> Mentions:
     phrases = dict(_phrases(words, text, understanding))
     named = [m for m in phrases.values() if m.kind != "pronoun"]
     cues = [cue for cue in _cues(text.content, understanding) if not _overlaps(cue, named)]
-    found = [cue for cue in cues if cue.kind not in ("courtesy", "sequence")]
+    found = [cue for cue in cues if cue.kind not in _IDLE]
+    occasion = begins(understanding.language.prose.occasion).match(text.content)
+    named_first = min((m.start for m in (*cues, *named)), default=0)
     unknown: list[Word] = []
     joining = {cue.kind for cue in cues if cue.kind == "courtesy"}
     i = 0
@@ -109,7 +121,8 @@ def mentions_in(text: ScriptText, understanding: Understanding) -> Mentions:
         else:
             found.append(Mention(word.type, word.start, word.end, word.value))
     in_order = tuple(sorted(found, key=lambda m: m.start))
-    return Mentions(in_order, tuple(unknown), frozenset(joining))
+    behind = named_first if occasion is not None else 0
+    return Mentions(in_order, tuple(unknown), frozenset(joining), behind)
 
 
 def _overlaps(mention: Mention, others: Sequence[Mention]) -> bool:
@@ -134,6 +147,8 @@ def _phrase(
     words: Sequence[Word], i: int, text: ScriptText, understanding: Understanding
 ) -> tuple[Mention, int] | None:
     """Return the longest noun phrase or place that begins at a word, and the index behind it."""
+    if (span := _span(words, i, text)) is not None:
+        return span
     first = words[i].type
     starts = [name for name, types in (("nouns", _NOUNS), ("location", _PLACES)) if first in types]
     for start in starts:
@@ -147,8 +162,40 @@ def _phrase(
             kind = "place"
             if start == "nouns":
                 kind = _kind_of(node)
+                if kind == "checkpoints" and isinstance((*node.nouns, *node.but)[-1], Pronoun):
+                    continue  # `all valves except R7, that one is locked out`
             return Mention(kind, words[i].start, words[behind - 1].end, node), behind
     return None
+
+
+def _span(words: Sequence[Word], i: int, text: ScriptText) -> tuple[Mention, int] | None:
+    """Return a time between two limits after something, in seconds, and the index behind it: `at
+    least 5 but at most 8 minutes after`."""
+    first = i + (words[i].type in ("AT_LEAST", "BETWEEN", "FROM"))
+    second = first + 1
+    while second < len(words) and words[second].type.startswith(
+        ("AND_", "JOINT", "TO", "DASH", "BUT")
+    ):
+        second += 1
+    types = [word.type for word in words[first : second + 2]]
+    if len(types) < 3 or types[-1] != "AFTER" or types[0] not in ("NUMBER", "DURATION"):
+        return None
+    most = words[second]
+    said = _FIGURE.search(text.content[most.start : most.end])
+    if (
+        most.type not in ("DURATION", "MOST_TIME")
+        or said is None
+        or not isinstance(most.value, Length)
+    ):
+        return None
+    most_s = most.value.seconds
+    least = words[first].value
+    unit_s = most_s / float(said[0].replace(",", "."))
+    least_s = least.seconds if isinstance(least, Length) else least.value * unit_s
+    if not 0 < least_s < most_s:
+        return None
+    end = words[second + 1].end
+    return Mention("SPAN", words[i].start, end, limits_s=(least_s, most_s)), second + 2
 
 
 def _kind_of(nouns: Nouns) -> str:

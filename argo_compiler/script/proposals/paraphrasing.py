@@ -5,7 +5,7 @@ whole then counts.
 """
 
 import re
-from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cache
 
 from argo_compiler.script.documents.source import ScriptText
@@ -15,33 +15,49 @@ from argo_compiler.script.sentences.words.lexicon import expand
 
 _LONGEST = 300
 """characters of a text that is paraphrased"""
+_BLANKS = re.compile(r"\s{2,}|\s(?=[,;])")
 _PART = {"n": r"[-\d.,]*\d(?:\s?(?:%|°|[a-z]{1,8}))?", "k": r"[\w-]+", "x": r".+?", "y": r".+"}
 """what stands for a slot: an amount, a word, or any words"""
 
 
-def paraphrases(
-    text: ScriptText, understanding: Understanding, changed: bool = False
-) -> Iterator[str]:
-    """Yield what a text becomes, if it makes sense then. `changed`: it already has other words than
-    the script."""
-    content = text.content.strip(" .!")
-    if len(content) > _LONGEST:
-        return
+@dataclass(frozen=True)
+class Rephrased:
+    """A text in other words, and the words of it that have no others."""
+
+    text: ScriptText
+    dropped: tuple[str, ...] = ()
+
+
+def rephrased(text: ScriptText, understanding: Understanding) -> Rephrased:
+    """Return a text with all phrases replaced that have others."""
+    if len(text.content) > _LONGEST:
+        return Rephrased(text)
+    dropped: list[str] = []
     for meant, pattern in _patterns(understanding.language.prose.paraphrases):
-        content = pattern.sub(meant, content)
-    content = " ".join(content.split())
-    changed = changed or content != text.content.strip(" .!")
-    if content and changed and makes_sense(content, text, understanding):
-        yield f"{content[0].upper()}{content[1:]}."
+        for found in reversed(list(pattern.finditer(text.content))):
+            if meant:
+                text = text.replace(*found.span(), found.expand(meant))
+            else:
+                dropped.append(found[0])
+                text = text.without(*found.span())
+    while (blanks := _BLANKS.search(text.content)) is not None:
+        text = text.without(blanks.start() + 1, blanks.end())
+    return Rephrased(text.strip(), tuple(dropped))
 
 
-def makes_sense(content: str, place: ScriptText, understanding: Understanding) -> bool:
+def reads(text: ScriptText, understanding: Understanding) -> bool:
     """Return True if the grammar takes a text as a whole."""
-    text = place.replaced(content)
-    if understanding.unfinished(text) is not None:
+    text = text[: len(text.content.rstrip(" .!"))]
+    if not text.content or understanding.unfinished(text) is not None:
         return False
     reading = understanding.read(text)
     return not isinstance(reading, StumbleError) and "WORD" not in understanding.types(text)
+
+
+def sentence(text: ScriptText) -> str:
+    """Return a text as a sentence."""
+    content = text.content.strip(" .!")
+    return f"{content[0].upper()}{content[1:]}."
 
 
 @cache

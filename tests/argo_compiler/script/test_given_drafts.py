@@ -9,28 +9,14 @@ import pytest
 from argo_compiler.base.catalog import Catalog
 from tests.argo_compiler.script.judging.drafts import Verdict, judge_draft, load_cases
 
-ACTS_PER_LINE = 0.34
-NOT_YET = frozenset(
-    [
-        "chat_two_people",
-        "cond_standing_orders",
-        "cond_unless_and_failures",
-        "cond_which_one",
-        "de_chat_quatsch",
-        "de_fahrauftrag",
-        "mail_introduction",
-        "mail_reply_with_list",
-        "mail_whole_floor_but_one",
-        "sheet_ocr",
-        "sheet_tabs",
-        "sheet_two_columns",
-        "timing_clock",
-        "timing_five_to_eight",
-        "timing_until_level",
-        "timing_windows",
-    ]
-)
-"""scripts that don't come right yet; the list may only become shorter"""
+ACTS_PER_LINE = 0.25
+WITHOUT_WORDS = {
+    "cond_standing_orders": frozenset([5, 6]),
+    "cond_unless_and_failures": frozenset([6]),
+    "timing_until_level": frozenset([6]),
+}
+"""lines that are open because the mission language has no words for what they mean: retries after a
+wait as a reaction, a count of failures in all; they may only become fewer"""
 
 
 @pytest.fixture(scope="module")
@@ -41,20 +27,17 @@ def verdicts() -> dict[str, Verdict]:
     from argo_env.planning.opening import open_site
 
     catalog: Catalog = open_site("umad").catalog
-    found = {case.name: judge_draft(case, catalog) for case in load_cases(Path(folder))}
+    found = {
+        case.name: judge_draft(case, catalog, WITHOUT_WORDS.get(case.name, frozenset()))
+        for case in load_cases(Path(folder))
+    }
     assert found, f"{folder} has no scripts"
     return found
 
 
 def test_drafts_of_other_people_come_right(verdicts: dict[str, Verdict]) -> None:
     wrong = {name: v.problems for name, v in verdicts.items() if v.problems}
-    shown = "\n".join(f"{name}: {problems}" for name, problems in wrong.items())
-    assert wrong.keys() - NOT_YET == set(), shown
-
-
-def test_the_list_of_wrong_ones_is_no_longer_than_needed(verdicts: dict[str, Verdict]) -> None:
-    right = {name for name, verdict in verdicts.items() if not verdict.problems}
-    assert right & NOT_YET == set()
+    assert not wrong, "\n".join(f"{name}: {problems}" for name, problems in wrong.items())
 
 
 def test_a_person_decides_on_one_line_of_four_at_most(verdicts: dict[str, Verdict]) -> None:

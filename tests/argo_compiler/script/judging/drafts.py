@@ -7,7 +7,7 @@ expectation, and sets all else aside; nothing is written in other words.
 import json
 import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -19,7 +19,7 @@ from argo_compiler.script import Draft, LineState, import_script
 _MOST_TURNS = 12
 _POINT = re.compile(r"(?:#|checkpoint )(\d+)")
 _CASE = re.compile(r"\b(?:if|when|unless|at least)\b", re.IGNORECASE)
-_SPARED = re.compile(r"left out|do not", re.IGNORECASE)
+_SPARED = re.compile(r"left out|without|do not|delete", re.IGNORECASE)
 _ASKED = ("asked", "open")
 _NEEDED = re.compile(r"duration|area|docking|order is|stands for|rounds|When|If")
 """in what a line means: it has an effect without naming a checkpoint"""
@@ -72,13 +72,19 @@ def _load(path: Path) -> Case:
     return Case(path.stem, text, lines, expected["mission"], expected.get("site_tags", {}))
 
 
-def judge_draft(case: Case, catalog: Catalog) -> Verdict:
-    """Return what is wrong with the draft of a script."""
+def judge_draft(
+    case: Case, catalog: Catalog, without_words: Collection[int] = frozenset()
+) -> Verdict:
+    """Return what is wrong with the draft of a script. For what the lines `without_words` mean the
+    mission language has no words: they have to be open."""
     verdict = Verdict(lines=sum(bool(line.strip()) for line in case.text.splitlines()))
     catalog = _tagged(catalog, case.tags)
+    meaning = _Meanings(catalog)
     area = None if case.mission["start_area"] else 1
     draft = import_script(case.text, catalog, start_area=area)
-    verdict.problems += _wrong_states(draft, case)
+    verdict.problems += _wrong_states(draft, case, meaning)
+    asked = {line.line for line in draft.left if line.state is LineState.OPEN}
+    verdict.problems += [f"line {n} is no longer open" for n in sorted({*without_words} - asked)]
     decisions: tuple = ()
     for _ in range(_MOST_TURNS):
         draft = import_script(case.text, catalog, start_area=area, decisions=decisions)
@@ -90,7 +96,7 @@ def judge_draft(case: Case, catalog: Catalog) -> Verdict:
             decisions = draft.confirm()
             continue
         verdict.acts += 1
-        decisions = _answered(draft, case, verdict)
+        decisions = _answered(draft, case, verdict, meaning, without_words)
     if draft.left:
         verdict.problems.append(f"not complete: {[line.label for line in draft.left]}")
     elif draft.mission is None:
@@ -112,7 +118,7 @@ def _tagged(catalog: Catalog, tags: dict[str, int]) -> Catalog:
     return catalog.model_copy(update={"checkpoints": checkpoints})
 
 
-def _wrong_states(draft: Draft, case: Case) -> Iterable[str]:
+def _wrong_states(draft: Draft, case: Case, meaning: "_Meanings") -> Iterable[str]:
     """Yield the lines whose state their expectation does not allow."""
     for number, expected in case.lines.items():
         at = [line for line in draft.lines if line.line <= number <= line.last_line]
@@ -137,7 +143,13 @@ def _wrong_states(draft: Draft, case: Case) -> Iterable[str]:
             yield f"line {number}: means `{expected.means}`, becomes {made}"
 
 
-def _answered(draft: Draft, case: Case, verdict: Verdict) -> tuple:
+def _answered(
+    draft: Draft,
+    case: Case,
+    verdict: Verdict,
+    meaning: "_Meanings",
+    without_words: Collection[int],
+) -> tuple:
     """Return the decisions with the first open line answered."""
     line = draft.left[0]
     numbers = [n for n in range(line.line, line.last_line + 1) if n in case.lines]
@@ -148,21 +160,31 @@ def _answered(draft: Draft, case: Case, verdict: Verdict) -> tuple:
             if sentences and meaning(sentences) == meaning([wanted]):
                 return draft.choose(line.label, number)
         needed = meaning([wanted]) or _NEEDED.search(wanted)
+        needed = needed and line.line not in without_words
         if expected.must.startswith("understood") and needed:
             verdict.problems.append(f"line {line.label} has no choice `{wanted}`: {line.reason}")
     return draft.set_aside([line.label])
 
 
-def meaning(sentences: Sequence[str]) -> Meaning:
-    """Return the checkpoints of sentences, which are spared, and how many conditions there are."""
-    found: Meaning = Counter()
-    for text in sentences:
-        for part in re.split(r"(?<=\.)\s+(?=[A-Z])", text):
-            spared = _SPARED.search(part) is not None
-            found.update((spared, int(number)) for number in _POINT.findall(part))
-            if _CASE.search(part):
-                found[(False, 0)] += 1
-    return found
+class _Meanings:
+    """Tells which checkpoints sentences name, by number or by name."""
+
+    def __init__(self, catalog: Catalog) -> None:
+        self._ids = {c.name.lower(): c.id for c in catalog.checkpoints}
+        longest_first = sorted(self._ids, key=len, reverse=True)
+        self._named = re.compile(rf"\b(?:{'|'.join(longest_first)})\b", re.IGNORECASE)
+
+    def __call__(self, sentences: Sequence[str]) -> Meaning:
+        """Return the checkpoints, which are spared, and how many conditions there are."""
+        found: Meaning = Counter()
+        for text in sentences:
+            said = self._named.sub(lambda name: f"#{self._ids[name[0].lower()]}", text)
+            for part in re.split(r"(?<=\.)\s+(?=[A-Z])", said):
+                spared = _SPARED.search(part) is not None
+                found.update((spared, int(number)) for number in _POINT.findall(part))
+                if _CASE.search(part):
+                    found[(False, 0)] += 1
+        return found
 
 
 def _wrong_mission(mission: Mission, expected: dict[str, Any]) -> Iterable[str]:

@@ -28,7 +28,7 @@ _OF_OPTIONS = frozenset(["script.area-choice", "script.area-conflict", "script.a
 _UNREAD = frozenset(
     [
         *("script.not-understood", "script.unfinished", "script.unknown-label", "script.row"),
-        *("script.duration", "script.field"),
+        *("script.duration", "script.field", "script.ambiguous-duration"),
     ]
 )
 """codes of errors of a piece that the grammar does not take; others are questions"""

@@ -156,6 +156,11 @@ def _equations(text: ScriptText, glossary: Glossary) -> list[tuple[str, str]]:
     """Return the short forms with their meanings if a line has nothing but equations."""
     if "=" not in text.content:
         return []
+    phrases = glossary.understanding.language.prose.form["glossary"]
+    head = cue_pattern("glossary", phrases).match(text.content)
+    if head is not None:  # `Abbr.: PG = pressure gauge`
+        text = text[head.end() :].strip()
+        text = text[len(text.content) - len(text.content.lstrip(" .:")) :]
     found: list[tuple[str, str]] = []
     start = 0
     for between in [*_BETWEEN.finditer(text.content), None]:

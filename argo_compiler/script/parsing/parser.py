@@ -202,7 +202,7 @@ class _Parser:
         """What an item says; kept, if it says so wherever it stands."""
         if item.text.content == ROW:
             return self._row(item)
-        before = len(self.diagnostics.entries)
+        before, read = len(self.diagnostics.entries), self.fields.count
         plain = self._is_plain(item)  # now: what is said first hangs on being first
         said, text = self._without_letter(item)
         text = self.fields.relabelled(text)
@@ -226,6 +226,7 @@ class _Parser:
         whole = text is item.text and len(said) == len(parts)
         whole = whole and len(self.diagnostics.entries) == before
         plain = plain and whole and not self.understanding.unknown and self._is_plain(item)
+        plain = plain and self.fields.count == read  # else it says more than its orders
         plain = plain and not self.decided  # else it may not be what the text itself says
         if plain and not any(isinstance(s, Unread) for s in said):
             self.repeats.keep(text, said, lambda text, unknown: self._again(item, text, unknown))

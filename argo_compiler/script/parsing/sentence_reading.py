@@ -95,7 +95,9 @@ class SentenceReader:
         if item.line.heading and {*self.understanding.types(text)} == {"KIND"}:
             self.note(text, "a heading")  # `Pressure gauges` over steps
             return []
-        if not self.ordered and self.fields.whole_mission(text):
+        whole = text.content == item.text.content.rstrip(".! ") and text.content[-1] != ":"
+        alone = whole and item.line.mark is LineMark.NONE and not item.items
+        if (not self.ordered or alone) and self.fields.whole_mission(text):
             return []
         text = self._behind_limit(text)
         reading = self.understanding.read(text)

@@ -33,7 +33,7 @@ from argo_compiler.script.sentences.words.prose import cue_pattern
 _SIGNALS = (
     *("forbidding", "past", "question", "correction", "leave_out", "IF", "IF_ONLY", "UNLESS"),
     *("ELSE", "UNTIL", "NOT", "EXCEPT", "pronoun", "STATE", "MORE", "again", "TIMES", "GREATER"),
-    *("INCLUDED", "RECHARGE"),
+    *("INCLUDED", "RECHARGE", "in_place_of"),
 )
 """kinds of mentions without which a text is looked at for choices"""
 _KINDS: dict[Quantity | None, CheckpointKind] = {
@@ -42,6 +42,8 @@ _KINDS: dict[Quantity | None, CheckpointKind] = {
     Quantity.POSITION: CheckpointKind.VALVE,
 }
 """the kind of checkpoint that shows a quantity"""
+_EVENTS = (("EVENT",), ("BATTERY", "LESS", "QUANTITY"), ("BATTERY", "LESS", "NUMBER"))
+"""what stands before a colon, and what is to be done then behind it"""
 _DOCKING = ("home", "HOME", "DOCK", "END", "place")
 _COMMA = re.compile(r"\s*[,;:]\s+|\s+-\s+")
 _PLAIN = frozenset(
@@ -100,7 +102,7 @@ class Composer:
         if made is None or made.unused:
             after = self.known.state()
             self.known.reset(before)
-            other = self._readable(text) or self._joined(text)
+            other = self._readable(text, found) or self._joined(text)
             if other is None:
                 self.known.reset(after)
             made = other or made
@@ -125,9 +127,11 @@ class Composer:
             return None if made is None else replace(made, certain=False)
         return None
 
-    def _readable(self, text: ScriptText) -> Proposal | None:
+    def _readable(self, text: ScriptText, found: Mentions) -> Proposal | None:
         """Return what a text is in words that the grammar, or a frame, takes."""
-        said = rephrased(self._alike(text), self.understanding)
+        if self._changes(found):
+            return None
+        said = rephrased(self._on_event(self._alike(text)), self.understanding)
         if said.text.content == text.content:
             return None
         if reads(said.text, self.understanding):
@@ -136,6 +140,25 @@ class Composer:
         if made is None:
             return None
         return replace(made, unused=(*said.dropped, *made.unused), certain=False)
+
+    def _changes(self, found: Mentions) -> bool:
+        """Return True if a text may leave out what is asked for elsewhere: then `skip it unless`
+        can't become a check in a case."""
+        if not found.has("leave_out"):
+            return False
+        with suppress(RefusedError):
+            named = {c.id for c in self.known.checkpoints(found.of("checkpoints"))}
+            return not named.isdisjoint(self.known.asked | self.known.memory.so_far.keys())
+        return True
+
+    def _on_event(self, text: ScriptText) -> ScriptText:
+        """Return `Gas alarm: go home` as a condition."""
+        head, colon, rest = text.content.partition(":")
+        types = self.understanding.types(text[: len(head)])
+        if not colon or types not in _EVENTS or not rest.strip():
+            return text
+        said = self.understanding.language.prose.say["event"].format(head.strip(), rest.strip())
+        return text.replaced(said)
 
     def _alike(self, text: ScriptText) -> ScriptText:
         """Return a condition that ends in `likewise` with the orders of the one before it."""
@@ -191,7 +214,7 @@ class Composer:
                     sentences += made.sentences
                     unused += made.unused
                     break
-                if not found.mentions and k == i + 1:
+                if not found.mentions and k == i + 1 and not self._depends(part, found):
                     unused += [part.content] if part.content.strip(" ,.;") else []
                     break
             else:
@@ -263,6 +286,6 @@ class Composer:
         """Return True if a text may begin with a case that it depends on: `On smoke, go home`."""
         cases = self.understanding.language.prose.cues["in_case"]
         begins = cue_pattern("in_case", cases).match(text.content)
-        if begins is None or not found.unknown:
+        if begins is None or not found.unknown or found.occasion:
             return False
-        return not any(m.start <= found.unknown[0].start for m in found.mentions if m.start)
+        return all(mention.start > found.unknown[0].start for mention in found.mentions)

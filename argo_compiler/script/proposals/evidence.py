@@ -19,6 +19,7 @@ _NAME = re.compile(r"(?:[^\W\d_a-zäöü][\w'-]*\.?\s?){1,3}")
 _LEAD_IN = re.compile(r"[^,]{3,60},\s+")
 _MOST_WORDS = 6
 """of a heading in capitals"""
+_BLANK_LABELS = re.compile(r"(?:[^\W\d][\w .-]{0,20}:[\s_.]*)+")
 _FEW_WORDS = 3
 _FOR_PEOPLE = OF_FORMS | {
     "IF",
@@ -71,7 +72,8 @@ def _heads(text: ScriptText, found: Mentions, _: Language) -> bool:
 
 
 def _answers(text: ScriptText, _: Mentions, language: Language) -> bool:
-    return _cue("answer", language).fullmatch(text.content.strip(" .!,")) is not None
+    said = re.split(r"[\s]*[.!,]+\s*", text.content.strip(" .!,"))
+    return all(_cue("answer", language).fullmatch(part) is not None for part in said)
 
 
 def _wonders(text: ScriptText, found: Mentions, language: Language) -> bool:
@@ -111,6 +113,11 @@ def _refers(text: ScriptText, found: Mentions, language: Language) -> bool:
     return _cue("referring", language).search(text.content) is not None and not found.mentions
 
 
+def _labels(text: ScriptText, found: Mentions, _: Language) -> bool:
+    """`Name:      Time:`"""
+    return _BLANK_LABELS.fullmatch(text.content) is not None and found.only(*OF_FORMS)
+
+
 def _is_none(text: ScriptText, found: Mentions, language: Language) -> bool:
     """`None open`"""
     nothing = cue_pattern("nothing", language.prose.form["nothing"]).match(text.content)
@@ -137,6 +144,7 @@ _KINDS: tuple[tuple[str, Callable[[ScriptText, Mentions, Language], bool]], ...]
     ("a question that names nothing of the mission", _wonders),
     ("for people, not for the robot", _for_people),
     (STATEMENT, _states),
+    ("a field that a person fills in", _labels),
     ("an entry that there is none", _is_none),
     ("it refers to the lines below", _refers),
     ("it states only what is not needed", _spares),

@@ -56,26 +56,28 @@ def _spare(named: Sequence[CheckpointInfo], known: Known) -> Sentences:
 
 
 def _replace(found: Mentions, known: Known) -> Sentences | None:
-    """`sorry, not R25 but R12 in step 2`"""
+    """`sorry, not R25 but R12 in step 2`, `R12 instead of R25`, where that is asked for."""
     named = found.of("checkpoints")
-    denials = ("correction", "forbidding", "NOT", "BUT", "EXCEPT")
-    allowed = ("checkpoints", "STEP", "NUMBER", "place", *denials)
-    if len(named) != 2 or not found.has("correction") or not found.only(*allowed):
+    denials = ("forbidding", "NOT", "EXCEPT", "in_place_of")
+    allowed = ("checkpoints", "STEP", "NUMBER", "place", "correction", "BUT", *denials)
+    if len(named) != 2 or not found.has("correction", "in_place_of") or not found.only(*allowed):
         return None
-    said = found.of(*denials)
-    denied = [m for m in said if m.end <= named[0].start]
-    between = [m for m in said if named[0].end <= m.start < named[1].start]
-    if not denied or len(between) > 1:
+    before = [m for m in found.of(*denials) if m.end <= named[0].start]
+    between = [m for m in found.of(*denials) if named[0].end <= m.start < named[1].start]
+    if bool(before) == bool(between):
         return None
     with suppress(RefusedError):
         (first,), (second,) = (known.checkpoints([one]) for one in named)
-        return (f"Replace checkpoint {first.id} by checkpoint {second.id}.",)
+        old, new = (first, second) if before else (second, first)
+        if not found.has("correction") and old.id not in known.asked | known.memory.so_far.keys():
+            return None
+        return (f"Replace checkpoint {old.id} by checkpoint {new.id}.",)
     return None
 
 
 def _in_the_same_area(found: Mentions, known: Known) -> Sentences | None:
     """`End: docking station, same area`"""
-    allowed = ("same_area", "home", "HOME", "END", "DOCK", "place", "AREA")
+    allowed = ("same_area", "last", "home", "HOME", "END", "DOCK", "place", "AREA")
     areas = [m for m in found.of("place") if _area_of(m) is not None]
     if known.start_area is None or not found.has("same_area") or not found.only(*allowed):
         return None
@@ -125,7 +127,7 @@ def _later(found: Mentions, known: Known) -> Sentences | None:
     lengths, named = found.of("DURATION"), found.of("checkpoints")
     if len(lengths) != 1 or not found.has("later") or not named:
         return None
-    if not found.only("DURATION", "later", "checkpoints", "MEASURE"):
+    if not found.only("DURATION", "later", "checkpoints", "MEASURE", "again", "MORE"):
         return None
     text = _length(lengths[0].value)
     checked = _check(found.without("DURATION", "later"), known)
@@ -244,8 +246,8 @@ def _duration(found: Mentions, _: Known) -> Sentences | None:
     lengths = found.of("DURATION", "MOST_TIME")
     limits = ("limit", "MOST_TIME", "LESS", "MAX_DURATION", "WITHIN", "AT_MOST")
     allowed = ("DURATION", "TOTAL", "pronoun", "everything", "MEASURE", *limits)
-    if found.has("over") and found.has("forbidding", "NOT"):  # `not longer than`
-        found = found.without("over", "forbidding", "NOT")
+    if found.has("over", "GREATER") and found.has("forbidding", "NOT"):  # `not longer than`
+        found = found.without("over", "GREATER", "forbidding", "NOT")
     elif not found.has(*limits):
         return None
     if len(lengths) != 1 or not found.only(*allowed):

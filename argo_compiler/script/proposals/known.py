@@ -27,6 +27,8 @@ class Known:
         """what a text named last, also if it left it out; None if that is no single one"""
         self.excepted: set[int] = set()
         """the checkpoints that a list names as its exceptions"""
+        self.asked: set[int] = set()
+        """the checkpoints that lines of the script ask for that need no proposal"""
         self.spared: set[int] = set()
         """the checkpoints that are to be left out"""
         self.start_area: int | None = None

@@ -33,6 +33,8 @@ OF_FORMS = frozenset(
     ]
 )
 """kinds that have no effect on a mission beside the name of nothing that it has"""
+_BETWEEN = ("AND_", "JOINT", "TO", "DASH", "BUT", "LATEST")
+"""how types of words begin that stand between two limits"""
 _FIGURE = re.compile(r"[0-9]+(?:[.,][0-9]+)?")
 _LONGEST = 24
 """words of a noun phrase"""
@@ -171,11 +173,9 @@ def _phrase(
 def _span(words: Sequence[Word], i: int, text: ScriptText) -> tuple[Mention, int] | None:
     """Return a time between two limits after something, in seconds, and the index behind it: `at
     least 5 but at most 8 minutes after`."""
-    first = i + (words[i].type in ("AT_LEAST", "BETWEEN", "FROM"))
+    first = i + (words[i].type in ("AT_LEAST", "BETWEEN", "FROM", "EARLIEST"))
     second = first + 1
-    while second < len(words) and words[second].type.startswith(
-        ("AND_", "JOINT", "TO", "DASH", "BUT")
-    ):
+    while second < len(words) and words[second].type.startswith(_BETWEEN):
         second += 1
     types = [word.type for word in words[first : second + 2]]
     if len(types) < 3 or types[-1] != "AFTER" or types[0] not in ("NUMBER", "DURATION"):
@@ -219,7 +219,7 @@ def _cues(content: str, understanding: Understanding) -> Iterator[Mention]:
             if name not in _OPENING or opening:
                 found.append(Mention(name, *match.span()))
     behind = 0
-    for cue in sorted(found, key=lambda m: (m.start, -m.end)):
+    for cue in sorted(found, key=lambda m: (m.start, -m.end, m.kind == "forbidding")):
         if cue.start >= behind:
             behind = cue.end
             yield cue

@@ -56,7 +56,7 @@ def reads(text: ScriptText, understanding: Understanding) -> bool:
 
 def sentence(text: ScriptText) -> str:
     """Return a text as a sentence."""
-    content = text.content.strip(" .!")
+    content = text.content.strip(" .!").replace(",,", ",")
     return f"{content[0].upper()}{content[1:]}."
 
 

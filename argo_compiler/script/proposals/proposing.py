@@ -74,6 +74,11 @@ class _Proposer:
     def all(self) -> dict[int, Proposal]:
         """Return the proposals of all pieces."""
         measured = _measured(self.script.steps, self.script.pieces)
+        for named in measured.values():
+            with suppress(RefusedError):
+                ids = {c.id for c in self.composer.known.checkpoints(named)}
+                self.composer.known.asked |= ids
+        self.composer.known.excepted.clear()
         for i, piece in enumerate(self.script.pieces):
             start = piece.text.first
             self._note_heading(piece)

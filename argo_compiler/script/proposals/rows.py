@@ -26,6 +26,7 @@ from argo_compiler.script.sentences.tree.places import FloorName
 from argo_compiler.script.sentences.words.prose import cue_pattern
 
 _FILL = re.compile(r"_{2,}|\.{3,}|…+|[□☐]|\[\s*\]|\(\s*y\s*/\s*n\s*\)|/", re.IGNORECASE)
+_TICK = re.compile(r"[xX✓✔☑☒]")
 _HASH = re.compile(r"#\d+")
 """a checkpoint by its number, or by its tag, which was replaced by that"""
 _LABELLED = re.compile(r"[^:]{1,40}:\s*([^:]*)")
@@ -178,6 +179,9 @@ def _read_sheet_cell(cell: Cell, found: _Row, composer: Composer) -> bool:
     text = cell.text.content
     form = composer.understanding.language.prose.form
     nothing = cue_pattern("nothing", form["nothing"]).fullmatch(text) is not None
+    if cue_pattern("done", form["done"]).fullmatch(text.strip(" .!")) or _TICK.fullmatch(text):
+        found.doubts.append(_TICKED)
+        return True
     if not nothing and _FILL.search(text) and not _without_fill(text, form):
         return True
     tag = tag_of(text)
@@ -236,7 +240,9 @@ def _is_normal(text: str, form: Mapping[str, str]) -> bool:
 def _read_remark(text: ScriptText, found: _Row, composer: Composer) -> bool:
     cues = composer.understanding.language.prose.cues
     form = composer.understanding.language.prose.form
-    if cue_pattern("leave_out", form["leave_out"]).search(text.content):
+    if cue_pattern("nothing", form["nothing"]).fullmatch(text.content):
+        found.doubts.append(f"`{text.content}` can mean that this is left out")
+    elif cue_pattern("leave_out", form["leave_out"]).search(text.content):
         found.left_out = True
     elif cue_pattern("forbidding", cues["forbidding"]).search(text.content) or _asks(
         text, composer
@@ -280,6 +286,8 @@ def _read_cell(text: ScriptText, found: _Row, composer: Composer) -> None:
         for said in (form["leave_out"], cues["leave_out"])
     ):
         found.left_out = True
+    elif cue_pattern("done", form["done"]).search(left):
+        found.doubts.append(_TICKED)
     elif cue_pattern("forbidding", cues["forbidding"]).search(left):
         found.doubts.append(f"`{content}` can change what is done here")
     mentions = mentions_in(text, composer.understanding)

@@ -45,6 +45,8 @@ class CheckpointInfo(Model):
     unit: str
     range: Interval
     nominal: Interval
+    tags: tuple[str, ...] = ()
+    """plant tags, such as `20-PI-1034A`"""
 
 
 class Area(Model):

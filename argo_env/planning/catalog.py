@@ -46,6 +46,7 @@ def _catalog(site: Site, patrols: Mapping[int, tuple[Pose, ...]]) -> Catalog:
                 unit=c.unit,
                 range=c.range,
                 nominal=c.nominal,
+                tags=c.tags,
             )
             for c in site.checkpoints
         ),

@@ -37,6 +37,7 @@ class SiteCheckpoint:
     position: "Vector"
     yaw: float
     nominal: Interval
+    tags: tuple[str, ...] = ()
 
     @property
     def unit(self) -> str:
@@ -188,6 +189,7 @@ def make_site(spec: SiteSpec) -> Site:
             (c.position[0], c.position[1], floor.z + c.position[2]),
             math.radians(c.yaw),
             c.nominal,
+            c.tags,
         )
         for floor in spec.floors
         for c in floor.checkpoints

@@ -23,6 +23,7 @@ MAX_GROUND = 200.0  # m along an edge; navigation keeps a grid of 0.1 m over it
 # number must not lead to millions of them.
 MAX_FLOORS = 50
 MAX_RISERS = 100  # of a flight; the norm asks for a landing after about 18
+_MOST_TAGS = 20
 MAX_THINGS = 1000  # items of one kind, on a floor or on the whole site
 _FAR = 10_000.0  # m from the origin
 _BULKY = 50.0  # m, for a radius or a width
@@ -110,6 +111,8 @@ class CheckpointSpec(Model):
     """x, y and the height above the floor's deck"""
     yaw: float
     nominal: Interval
+    tags: tuple[str, ...] = Field(default=(), max_length=_MOST_TAGS)
+    """plant tags by which scripts name it, such as `20-PI-1034A`"""
 
 
 class FloorSpec(Model):
@@ -258,5 +261,8 @@ class SiteSpec(Model):
             for k, pump in enumerate(floor.pumps):
                 add("equipment", pump.name, "floors", i, "pumps", k, "name")
             for k, checkpoint in enumerate(floor.checkpoints):
-                add("checkpoint", checkpoint.id, "floors", i, "checkpoints", k, "id")
+                path = ("floors", i, "checkpoints", k)
+                add("checkpoint", checkpoint.id, *path, "id")
+                for n, tag in enumerate(checkpoint.tags):
+                    add("tag", tag.upper(), *path, "tags", n)
         return paths

@@ -2,7 +2,7 @@
 
 import re
 from bisect import bisect_right
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NoReturn, TypeVar
@@ -31,6 +31,8 @@ class Source:
 
     text: str
     name: str = "script"
+    expanded: "Mapping[int, ScriptText]" = field(default_factory=dict, compare=False)
+    """lines in which short forms are replaced by what they stand for, by their numbers"""
 
     @cached_property
     def lines(self) -> tuple[str, ...]:
@@ -61,7 +63,9 @@ class Source:
         return self.lines[first.line - 1][first.column - 1 : end.column - 1 + end.length]
 
     def line_text(self, number: int) -> "ScriptText":
-        """Line `number`, counted from 1, without its end."""
+        """Line `number`, counted from 1, without its end, and with its short forms replaced."""
+        if number in self.expanded:
+            return self.expanded[number]
         start, end = self._bounds[number - 1]
         return ScriptText(self.text[start:end], range(start, end), self)
 

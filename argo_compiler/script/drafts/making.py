@@ -28,7 +28,7 @@ _OF_OPTIONS = frozenset(["script.area-choice", "script.area-conflict", "script.a
 _UNREAD = frozenset(
     [
         *("script.not-understood", "script.unfinished", "script.unknown-label", "script.row"),
-        *("script.duration", "script.field", "script.question"),
+        *("script.duration", "script.field", "script.ambiguous-duration", "script.question"),
     ]
 )
 """codes of errors of a piece that the grammar does not take; others are questions"""
@@ -78,7 +78,7 @@ def import_script(
         reading = _read(text, catalog, source_name, areas, said)
     errors = _errors_by_piece(reading)
     unread = {at for at, error in errors.items() if error.code in _UNREAD and at not in said}
-    proposals = propose(reading.script, unread, catalog)
+    proposals = propose(reading.script, unread, catalog, start_area)
     proposed = {at: p.sentences for at, p in proposals.items() if _reads(p)}
     if proposed:
         reading = _read(text, catalog, source_name, areas, {**said, **proposed})
@@ -107,7 +107,8 @@ def _read(
 ) -> _Reading:
     places = [place.name for place in catalog.places]
     names = [checkpoint.name for checkpoint in catalog.checkpoints]
-    script = parse(text, places, source_name, names, decided)
+    tags = {tag: (c.id, c.name) for c in catalog.checkpoints for tag in c.tags}
+    script = parse(text, places, source_name, names, decided, tags)
     try:
         resolved = resolve_script(script, catalog, *areas)
     except DiagnosticError as error:
@@ -184,6 +185,8 @@ def _known(
         aside = decision.act is Act.SET_ASIDE
         found = {"state": LineState.SET_ASIDE if aside else LineState.UNDERSTOOD}
         found |= {"act": decision.act, "sentences": decision.sentences}
+    elif decision is None and proposal is not None and proposal.doubt:
+        found["state"], found["reason"] = LineState.OPEN, proposal.doubt
     if error is not None:
         doubt = "" if proposal is None else proposal.doubt
         found |= {"state": LineState.OPEN, "reason": doubt or error.message}

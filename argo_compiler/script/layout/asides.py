@@ -99,6 +99,10 @@ class Asides:
             begins(self.prose.greeting).match(content) or begins(self.prose.closing).match(content)
         )
 
+    def retracts(self, content: str) -> bool:
+        """Whether a line takes back what stands above it: `sorry, not R25 but R12`."""
+        return begins(self.prose.cues["retracting"]).match(content) is not None
+
     def greeting(self, text: ScriptText) -> int:
         """Where a greeting at the beginning of a text ends; 0 if there is none."""
         found = begins(self.prose.greeting).match(text.content)

@@ -9,6 +9,7 @@ down to the label do not end the sentence, and the text beside the label does no
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 from argo_compiler.script.documents.source import ScriptText, join
 from argo_compiler.script.layout.fields import ScriptFields
@@ -16,6 +17,8 @@ from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.loading import pattern
 
 _WORD = re.compile(r"[\w'-]+(?!\s*:)\b")
+_MOST_WORDS = 3
+"""of the first half of a label"""
 _WORD_COLON = re.compile(r"[\w'-]+\s*:")
 _MARKED = r"\s*(?:[-*+•#]\s|(?:<step>\s+)?[0-9]{1,6}\s*[.):])"
 """the mark of a line that is a step"""
@@ -43,7 +46,11 @@ class Cells:
     def joined(self, lines: Sequence[ScriptText]) -> list[ScriptText]:
         """The lines, those of a cell in the line of its label, their own lines empty."""
         found = list(lines)
-        cells = [i for i, line in enumerate(lines) if self.fields.is_cell(line.strip())]
+        cells = [
+            i
+            for i, line in enumerate(lines)
+            if self.fields.is_cell(line.strip()) or self._halves(lines, i) is not None
+        ]
         above: _Cell | None = None
         waiting: list[int] = []
         first, last = (max(0, cells[0] - 4), cells[-1] + 4) if cells else (0, 0)
@@ -87,13 +94,14 @@ class Cells:
         if i + 1 >= len(lines):
             return None
         first, second = lines[i].strip(), lines[i + 1].strip()
-        word, behind = _WORD.match(first.content), _WORD_COLON.match(second.content)
-        if word is None or behind is None or self.label.match(second.content):
+        behind = _WORD_COLON.match(second.content)
+        if behind is None or self.label.match(second.content):
             return None
-        label = join([first[: word.end()], second[: behind.end()]])
-        if not self.fields.is_cell(label):
-            return None
-        return label, first[word.end() :].strip(), second[behind.end() :].strip()
+        for words in islice(_WORD.finditer(first.content), _MOST_WORDS):
+            label = join([first[: words.end()], second[: behind.end()]])
+            if ":" not in label.content[:-1] and self.fields.is_cell(label):
+                return label, first[words.end() :].strip(), second[behind.end() :].strip()
+        return None
 
     def _is_loose(self, lines: Sequence[ScriptText], i: int, above: _Cell | None) -> bool:
         """Whether a line may belong to a cell: it has neither label nor mark, and makes no sense by

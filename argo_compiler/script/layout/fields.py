@@ -62,6 +62,8 @@ class ScriptFields:
     understanding: Understanding
     diagnostics: Diagnostics
     header: ScriptHeader = field(default_factory=ScriptHeader)
+    count: int = 0
+    """how many fields were read, or sentences that say what fields say"""
     lists: bool = False
     """whether `Checkpoints:` stands above"""
     first: list[Sentence] = field(default_factory=list)
@@ -195,6 +197,7 @@ class ScriptFields:
 
     def _is_new(self, name: str, key: Any, value: ScriptText) -> bool:
         """Whether a field is said for the first time; another value than before is an error."""
+        self.count += 1
         known, before = self._said.setdefault(name, (key, value))
         if known == key:
             return before is value

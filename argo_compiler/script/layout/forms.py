@@ -84,10 +84,13 @@ _CUTS = {
     "|": re.compile(r"\|"),
     "\t": re.compile(r"\t+"),
     ";": re.compile(";"),
+    ",": re.compile(","),
     "  ": re.compile(r"\s{2,}|\t"),
 }
 _RULE = re.compile(r"[\s|:=+-]*-[\s|:=+-]*")
 _SENTENCE = re.compile(r"[a-zäöüß)][.!?]\s{2,}[A-ZÄÖÜ]")
+_ENDED = re.compile(r"[!?]$|\w{4,}\.$")
+"""at the end of a sentence, rather than of `n. a.`"""
 _LONGEST = 2000
 """characters of a row"""
 _DEEP = 8
@@ -132,8 +135,8 @@ def forms(
                 rows[number] = FormRow(line.strip(), tuple(found), is_heading=True)
             elif (field := _field(found, prose)) is not None:
                 texts[number] = field
-            elif cut == "\t" and headless:
-                continue  # text recognition cuts words by tabs
+            elif cut in ("\t", ",") and headless:
+                continue  # text recognition cuts words by tabs, and sentences have commas
             elif columns is not None or not is_plain(line):
                 rows[number] = _row(line, _with_roles(found, columns, cut), cut)
     for number in range(1, len(source.lines) + 1):
@@ -212,7 +215,7 @@ def _groups(source: Source, taken: Mapping[int, ScriptText]) -> Iterator[tuple[l
     group: list[int] = []
     cut = ""
     for number in range(1, len(source.lines) + 2):
-        line = source.lines[number - 1] if number <= len(source.lines) else ""
+        line = source.line_text(number).content if number <= len(source.lines) else ""
         here = "" if number in taken else _cut_of(line)
         rule = cut == "|" and line.strip() and _RULE.fullmatch(line)
         deep = cut == "  " and line.strip() and len(line) - len(line.lstrip()) >= _DEEP
@@ -232,8 +235,10 @@ def _cut_of(line: str) -> str:
         return "|"
     if "\t" in inner:
         return "\t"
-    if inner.count(";") >= 1 and not inner.endswith((".", "!", "?")) and "; " not in inner:
+    if inner.count(";") >= 1 and not _ENDED.search(inner) and "; " not in inner:
         return ";"
+    if inner.count(",") >= 2 and not re.search(r",\s", inner) and not inner.endswith("."):
+        return ","
     if _LEADER.search(inner) and re.match(r"[^\W\d].*?\s*\.{4,}\s*\S", inner):
         return "."
     return "  " if '"' not in inner and re.search(r"\S\s{2,}\S", inner) else ""
@@ -261,14 +266,18 @@ def _cells(line: ScriptText, cut: str) -> list[Cell]:
 def _headings(cells: Sequence[Cell], prose: Prose) -> Columns | None:
     """Return the columns, if a line has their headings."""
     said = [cell for cell in cells if cell.text.content]
-    roles = [prose.role(cell.text.content) for cell in said]
+    roles = [_role(cell, prose) for cell in said]
     known = sum(role is not None for role in roles)
     if len(said) < 2 or known < 2 or 2 * known < len(said):
         return None
-    return [
-        (cell.text.first, CellRole(prose.role(cell.text.content) or CellRole.OTHER))
-        for cell in cells
-    ]
+    return [(cell.text.first, CellRole(_role(cell, prose) or CellRole.OTHER)) for cell in cells]
+
+
+def _role(cell: Cell, prose: Prose) -> str | None:
+    """Return what the column of a heading holds; of `Tag / point` what its first known part is."""
+    heading = cell.text.content
+    parts = [heading, *heading.split("/")]
+    return next((role for part in parts if (role := prose.role(part)) is not None), None)
 
 
 def _with_roles(cells: Sequence[Cell], columns: Columns | None, cut: str) -> list[Cell]:

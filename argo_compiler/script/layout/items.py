@@ -87,6 +87,8 @@ _LONGEST_STRANGE = 300
 _DEEPEST = 20
 """items that are nested; what lies deeper is taken to lie there"""
 _LAST_HALF = re.compile(r"([^\W\d_]+)-$")
+_SEPARATOR = re.compile(r"([-=_*~])\1{2,}.+\1{3,}$")
+"""`-----Original Message-----`"""
 _FIRST_HALF = re.compile(r"[^\W\d_]+")
 
 
@@ -107,7 +109,8 @@ class LineSense:
         content = text.content
         asides = self.asides
         numbered = content[-1:].isdigit() and asides.is_explicit_title(text)
-        alone = numbered or asides.is_remark(content) or asides.opens(content)
+        apart = _SEPARATOR.match(content) is not None or asides.retracts(content)
+        alone = numbered or apart or asides.is_remark(content) or asides.opens(content)
         return alone or self.fields.is_field(text)
 
     def is_broken(self, line: str, below: ScriptText) -> bool:
@@ -288,7 +291,8 @@ def _are_one(item: LineItem, line: ScriptLine, sense: LineSense) -> bool:
     if not whole:
         broken = sense.is_broken(item.last_line, below)
         return indented or broken or last.content.endswith("-")
-    return (indented or not marked) and sense.is_fragment(rest, indented)
+    broken = indented or sense.is_broken(item.last_line, below)
+    return (indented or (broken and not marked)) and sense.is_fragment(rest, indented)
 
 
 def _ends_in_number(item: LineItem, line: ScriptLine, sense: LineSense) -> bool:

@@ -15,6 +15,7 @@ from argo_compiler.script.layout.asides import Asides
 from argo_compiler.script.layout.cells import Cells
 from argo_compiler.script.layout.fields import Field, ScriptFields
 from argo_compiler.script.layout.forms import ROW, FormRow, forms
+from argo_compiler.script.layout.glossary import Tags, explain
 from argo_compiler.script.layout.items import LineItem, LineSense, items_of
 from argo_compiler.script.layout.lines import LineMark, lines_of, sentences, stamped, unmarked
 from argo_compiler.script.layout.lists import Lists, on_floors
@@ -29,6 +30,7 @@ from argo_compiler.script.sentences.tree.script import Said, ScriptStep, Unread
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.language import Language
 from argo_compiler.script.sentences.words.lexicon import Lexicon
+from argo_compiler.script.sentences.words.prose import cue_pattern
 from argo_compiler.script.sentences.words.unknown import UnknownError, UnknownFigure
 
 MAX_LINES = 120_000
@@ -45,12 +47,14 @@ def parse(
     source_name: str = "script",
     names: Collection[str] = (),
     decided: Mapping[int, Sequence[str]] = MappingProxyType({}),
+    tags: Tags = MappingProxyType({}),
 ) -> Script:
     """The syntax tree of the script, with all that was found on the way in its `diagnostics`.
 
     `places` and `names` are those of the site's places and checkpoints. `decided` has the sentences
     that a person has decided on for pieces of the script, none for one that is set aside; its keys
-    are the offsets at which these pieces begin in the text. Raises DiagnosticError for what is no
+    are the offsets at which these pieces begin in the text. `tags` are the site's plant tags, with
+    the checkpoints that have them. Raises DiagnosticError for what is no
     script at all.
     """
     source = Source(normalize("NFC", text), source_name)
@@ -59,12 +63,14 @@ def parse(
     language = Language.of(text, places)
     words = frozenset(word for name in (*names, *places) for word in name.lower().split())
     understanding = Understanding(language, words, diagnostics)
+    explained = explain(source, understanding, tags, diagnostics)
     asides = Asides(understanding)
     fields = ScriptFields(understanding, diagnostics)
     reader = SentenceReader(understanding, asides, fields, diagnostics)
     known = repeats(language.lexicon, words)
     parser = _Parser(understanding, asides, fields, diagnostics, reader, known, decided=decided)
-    return parser.script()
+    parser.pieces += map(Piece, explained.explanations)
+    return parser.script(explained.source)
 
 
 def _require_size(source: Source) -> None:
@@ -124,8 +130,8 @@ class _Parser:
     forms: Mapping[int, FormRow] = field(default_factory=dict)
     """the rows of sheets, by the numbers of their lines"""
 
-    def script(self) -> Script:
-        source = self.diagnostics.source
+    def script(self, source: Source) -> Script:
+        """Return the tree of a script, whose short forms are replaced."""
         language = self.understanding.language
         found = tables(source, self.understanding, self.diagnostics)
         self.pieces += [Piece(text, COLUMN_HEADINGS) for text in found.headings]
@@ -146,7 +152,11 @@ class _Parser:
         steps = list(self._steps(lists.told(items)))
         PlacingCheck(self.diagnostics).steps(steps)
         _ask_of_title(steps, self.diagnostics)
-        _ask_of_quotes(steps, self.diagnostics)
+        refers = cue_pattern("referring", language.prose.cues["referring"])
+        if not any(
+            refers.search(line) for line in source.lines if not line.lstrip().startswith(">")
+        ):
+            _ask_of_quotes(steps, self.diagnostics)
         first = [_step_of(sentence) for sentence in self.fields.first]
         last = [_step_of(sentence) for sentence in self.fields.last]
         return Script(
@@ -193,7 +203,7 @@ class _Parser:
         """What an item says; kept, if it says so wherever it stands."""
         if item.text.content == ROW:
             return self._row(item)
-        before = len(self.diagnostics.entries)
+        before, read = len(self.diagnostics.entries), self.fields.count
         plain = self._is_plain(item)  # now: what is said first hangs on being first
         said, text = self._without_letter(item)
         text = self.fields.relabelled(text)
@@ -217,6 +227,7 @@ class _Parser:
         whole = text is item.text and len(said) == len(parts)
         whole = whole and len(self.diagnostics.entries) == before
         plain = plain and whole and not self.understanding.unknown and self._is_plain(item)
+        plain = plain and self.fields.count == read  # else it says more than its orders
         plain = plain and not self.decided  # else it may not be what the text itself says
         if plain and not any(isinstance(s, Unread) for s in said):
             self.repeats.keep(text, said, lambda text, unknown: self._again(item, text, unknown))

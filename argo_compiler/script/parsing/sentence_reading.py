@@ -99,8 +99,11 @@ class SentenceReader:
             else:
                 self.note(text, "a heading")  # `Pressure gauges` over steps
             return []
-        if not self.ordered and self.fields.whole_mission(text):
+        whole = text.content == item.text.content.rstrip(".! ") and text.content[-1] != ":"
+        alone = whole and item.line.mark is LineMark.NONE and not item.items
+        if (not self.ordered or alone) and self.fields.whole_mission(text):
             return []
+        text = self._behind_limit(text)
         reading = self.understanding.read(text)
         if isinstance(reading, StumbleError) or "WORD" in self.understanding.types(text):
             respelled = self.understanding.respelled(text)
@@ -140,6 +143,19 @@ class SentenceReader:
             self.diagnostics.error("stray-clause", message, text.span(), hint)
             return [Unread(span=text.span())]
         return [node]
+
+    def _behind_limit(self, text: ScriptText) -> ScriptText:
+        """Read what a sentence says of the mission as a whole before `then`, and return the rest:
+        `20 min max, then back to its dock`."""
+        words = self.understanding.words(text)
+        joint = next((i for i, word in enumerate(words) if word.type == "NEXT"), 0)
+        if not joint or words[joint - 1].type != "MOST_TIME" or joint + 1 == len(words):
+            return text
+        head, rest = text[: words[joint - 1].end], text[words[joint + 1].start :]
+        if not self.fields.says_whole(head) or not self.understanding.fits(rest):
+            return text
+        self.fields.whole_mission(head)
+        return rest
 
     def read_decided(self, text: ScriptText) -> list[Said]:
         """Read a sentence that a person has decided on: it has no title, and no slips."""

@@ -1,7 +1,8 @@
 """What of a text the mission language has words for: checkpoints, places, times, verbs, signals."""
 
+import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.script.documents.source import ScriptText
@@ -10,7 +11,8 @@ from argo_compiler.script.sentences.doubts import is_question
 from argo_compiler.script.sentences.grammar.parser import StumbleError
 from argo_compiler.script.sentences.tree.nouns import AllOf, Nouns, Pronoun
 from argo_compiler.script.sentences.understanding import Understanding
-from argo_compiler.script.sentences.words.prose import cue_pattern
+from argo_compiler.script.sentences.words.amounts import Length
+from argo_compiler.script.sentences.words.prose import begins, cue_pattern
 from argo_compiler.script.sentences.words.without_effect import HARMLESS, MISPLACED
 from argo_compiler.script.sentences.words.word import Word
 
@@ -36,10 +38,28 @@ _WEAK = frozenset(
     ]
 )
 """types of words that only join others"""
+OF_FORMS = frozenset(
+    [
+        *("MEASURE", "BE_MEASURED", "NUMBER", "TIME_WORD", "OF", "pronoun", "question", "past"),
+        *("GREATER", "LESS", "STATE", "DONE", "QUANTITY", "REPORT", "MODE", "IN_BETWEEN", "PERSON"),
+    ]
+)
+"""kinds that have no effect on a mission beside the name of nothing that it has"""
+_BETWEEN = ("AND_", "JOINT", "TO", "DASH", "BUT", "LATEST")
+"""how types of words begin that stand between two limits"""
+_FIGURE = re.compile(r"[0-9]+(?:[.,][0-9]+)?")
 _LONGEST = 24
 """words of a noun phrase"""
-_APART = frozenset(["subject", "stating", "asking", "clause"])
+_APART = frozenset(
+    [
+        *("subject", "stating", "asking", "clause", "answer", "wondering", "people", "of_others"),
+        *("needless", "likewise", "retracting", "too_high", "too_low", "in_case"),
+        *("by_then", "at_time"),
+    ]
+)
 """cues that are no mentions, but part a text or tell statements"""
+_IDLE = ("courtesy", "sequence", "referring")
+"""cues that have no effect by themselves"""
 _OPENING = frozenset(["question", "sequence"])
 """cues that mean something only where a text begins"""
 
@@ -53,6 +73,8 @@ class Mention:
     start: int
     end: int
     value: object = None
+    limits_s: tuple[float, float] = (0.0, 0.0)
+    """of a time between two limits"""
 
 
 @dataclass(frozen=True)
@@ -61,6 +83,10 @@ class Mentions:
 
     mentions: tuple[Mention, ...]
     unknown: tuple[Word, ...]
+    joining: frozenset[str] = frozenset()
+    """types of words that were passed over, as they only join others"""
+    occasion: int = 0
+    """where the words end that say what the text is for: `For the acceptance`"""
 
     def of(self, *kinds: str) -> tuple[Mention, ...]:
         """Return the parts of these kinds."""
@@ -76,7 +102,7 @@ class Mentions:
     def without(self, *kinds: str) -> "Mentions":
         """Return these mentions without those of some kinds."""
         kept = tuple(mention for mention in self.mentions if mention.kind not in kinds)
-        return Mentions(kept, self.unknown)
+        return replace(self, mentions=kept)
 
 
 def mentions_in(text: ScriptText, understanding: Understanding) -> Mentions:
@@ -85,11 +111,14 @@ def mentions_in(text: ScriptText, understanding: Understanding) -> Mentions:
     phrases = dict(_phrases(words, text, understanding))
     named = [m for m in phrases.values() if m.kind != "pronoun"]
     cues = [cue for cue in _cues(text.content, understanding) if not _overlaps(cue, named)]
-    found = [cue for cue in cues if cue.kind not in ("courtesy", "sequence")]
+    found = [cue for cue in cues if cue.kind not in _IDLE]
     if is_question(text, understanding.language.lexicon):
         end = len(text.content)
         found.append(Mention("question", end, end))
+    occasion = begins(understanding.language.prose.occasion).match(text.content)
+    named_first = min((m.start for m in (*cues, *named)), default=0)
     unknown: list[Word] = []
+    joining = {cue.kind for cue in cues if cue.kind == "courtesy"}
     i = 0
     while i < len(words):
         word = words[i]
@@ -105,9 +134,13 @@ def mentions_in(text: ScriptText, understanding: Understanding) -> Mentions:
             continue
         if word.type == "WORD":
             unknown.append(word)
-        elif misplaced or word.type not in _WEAK:
+        elif word.type in _WEAK and not misplaced:
+            joining.add(word.type)
+        else:
             found.append(Mention(word.type, word.start, word.end, word.value))
-    return Mentions(tuple(sorted(found, key=lambda m: m.start)), tuple(unknown))
+    in_order = tuple(sorted(found, key=lambda m: m.start))
+    behind = named_first if occasion is not None else 0
+    return Mentions(in_order, tuple(unknown), frozenset(joining), behind)
 
 
 def _overlaps(mention: Mention, others: Sequence[Mention]) -> bool:
@@ -132,6 +165,8 @@ def _phrase(
     words: Sequence[Word], i: int, text: ScriptText, understanding: Understanding
 ) -> tuple[Mention, int] | None:
     """Return the longest noun phrase or place that begins at a word, and the index behind it."""
+    if (span := _span(words, i, text)) is not None:
+        return span
     first = words[i].type
     starts = [name for name, types in (("nouns", _NOUNS), ("location", _PLACES)) if first in types]
     for start in starts:
@@ -145,8 +180,38 @@ def _phrase(
             kind = "place"
             if start == "nouns":
                 kind = _kind_of(node)
+                if kind == "checkpoints" and isinstance((*node.nouns, *node.but)[-1], Pronoun):
+                    continue  # `all valves except R7, that one is locked out`
             return Mention(kind, words[i].start, words[behind - 1].end, node), behind
     return None
+
+
+def _span(words: Sequence[Word], i: int, text: ScriptText) -> tuple[Mention, int] | None:
+    """Return a time between two limits after something, in seconds, and the index behind it: `at
+    least 5 but at most 8 minutes after`."""
+    first = i + (words[i].type in ("AT_LEAST", "BETWEEN", "FROM", "EARLIEST"))
+    second = first + 1
+    while second < len(words) and words[second].type.startswith(_BETWEEN):
+        second += 1
+    types = [word.type for word in words[first : second + 2]]
+    if len(types) < 3 or types[-1] != "AFTER" or types[0] not in ("NUMBER", "DURATION"):
+        return None
+    most = words[second]
+    said = _FIGURE.search(text.content[most.start : most.end])
+    if (
+        most.type not in ("DURATION", "MOST_TIME")
+        or said is None
+        or not isinstance(most.value, Length)
+    ):
+        return None
+    most_s = most.value.seconds
+    least = words[first].value
+    unit_s = most_s / float(said[0].replace(",", "."))
+    least_s = least.seconds if isinstance(least, Length) else least.value * unit_s
+    if not 0 < least_s < most_s:
+        return None
+    end = words[second + 1].end
+    return Mention("SPAN", words[i].start, end, limits_s=(least_s, most_s)), second + 2
 
 
 def _kind_of(nouns: Nouns) -> str:
@@ -170,7 +235,7 @@ def _cues(content: str, understanding: Understanding) -> Iterator[Mention]:
             if name not in _OPENING or opening:
                 found.append(Mention(name, *match.span()))
     behind = 0
-    for cue in sorted(found, key=lambda m: (m.start, -m.end)):
+    for cue in sorted(found, key=lambda m: (m.start, -m.end, m.kind == "forbidding")):
         if cue.start >= behind:
             behind = cue.end
             yield cue

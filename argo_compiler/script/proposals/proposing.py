@@ -4,12 +4,26 @@ import re
 from bisect import bisect_right
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import suppress
+from dataclasses import replace
 
 from argo_compiler.base.catalog import Catalog
-from argo_compiler.script.documents.source import Diagnostics, RefusedError, Source
+from argo_compiler.script.documents.signs import CLOCK
+from argo_compiler.script.documents.source import Diagnostics, RefusedError, ScriptText, Source
 from argo_compiler.script.parsing.script import Piece, Script
+from argo_compiler.script.proposals.clock import (
+    NO_DATES,
+    find_plan,
+    has_date,
+    timed,
+    wait_until,
+    waits,
+    windowed,
+)
 from argo_compiler.script.proposals.composing import Composer, Proposal
-from argo_compiler.script.proposals.mentions import Mention
+from argo_compiler.script.proposals.evidence import is_name
+from argo_compiler.script.proposals.frames import floor_names
+from argo_compiler.script.proposals.known import Known
+from argo_compiler.script.proposals.mentions import Mention, Mentions, mentions_in
 from argo_compiler.script.proposals.rows import propose_row
 from argo_compiler.script.sentences.tree.orders import Measure, Sentence
 from argo_compiler.script.sentences.tree.script import ScriptStep
@@ -21,11 +35,17 @@ MAX_PROPOSED = 2000
 """pieces of a script; no more are looked at"""
 _FIRST = 4
 """pieces of a letter in which a name alone is a greeting"""
+_NUMBERED = re.compile(r"checkpoint ([0-9]+)")
+_OF_NAMES = frozenset(["WORD", "SIGN", "UNIT", "UNIT_S"])
+"""types of words that initials and names may be taken for"""
+_LAST = 3
+"""pieces at the end of a script in which a name alone is a signature"""
 _NAME = re.compile(r"[^\W\d_a-zäöü][^\W\d_A-ZÄÖÜ]+,")
-_CLOCK = re.compile(r"\s*[0-9]{1,2}[:.][0-9]{2}\b")
 
 
-def propose(script: Script, unread: Collection[int], catalog: Catalog) -> dict[int, Proposal]:
+def propose(
+    script: Script, unread: Collection[int], catalog: Catalog, start_area: int | None = None
+) -> dict[int, Proposal]:
     """Return what is proposed for the unread pieces; by the offset at which a piece begins."""
     if not unread:
         return {}
@@ -33,30 +53,143 @@ def propose(script: Script, unread: Collection[int], catalog: Catalog) -> dict[i
     places = [place.name for place in catalog.places]
     language = Language.of(script.source_text, places)
     understanding = Understanding(language, frozenset(), Diagnostics(source))
-    composer = Composer(understanding, catalog)
-    measured = _measured(script.steps, script.pieces)
-    found: dict[int, Proposal] = {}
-    in_log = False
-    for i, piece in enumerate(script.pieces):
-        start = piece.text.first
-        content = piece.text.content
-        if content.isupper() and start not in script.rows:
-            logs = understanding.language.prose.form["logs"]
-            in_log = cue_pattern("logs", logs).fullmatch(content.strip(" :")) is not None
-        if start in unread and len(found) < MAX_PROPOSED:
-            row = script.rows.get(start)
-            if in_log and _CLOCK.match(content if row is None else row.place.content):
-                found[start] = Proposal(aside="an entry of a log")
-            elif row is not None:
-                found[start] = propose_row(row, composer, first=i == 0)
-            elif i < _FIRST and _NAME.fullmatch(content):
-                found[start] = Proposal(aside="a greeting")
-            else:
-                found[start] = composer.propose(piece.text)
-        for mention in measured.get(start, ()):
+    known = Known(understanding, catalog)
+    known.start_area = _start_area(script) or start_area
+    return _Proposer(script, unread, Composer(understanding, known)).all()
+
+
+class _Proposer:
+    """Goes through the pieces of a script. Mutable: what one means depends on those before it."""
+
+    def __init__(self, script: Script, unread: Collection[int], composer: Composer) -> None:
+        self.script = script
+        self.unread = unread
+        self.composer = composer
+        self.understanding = composer.understanding
+        texts = (self._whole(p) for p in script.pieces if p.text.first in unread)
+        self.plan = find_plan(texts, composer.understanding)
+        self.in_log = False
+        self.found: dict[int, Proposal] = {}
+
+    def all(self) -> dict[int, Proposal]:
+        """Return the proposals of all pieces."""
+        measured = _measured(self.script.steps, self.script.pieces)
+        for named in measured.values():
             with suppress(RefusedError):
-                composer.measured(composer.checkpoints([mention]))
-    return found
+                ids = {c.id for c in self.composer.known.checkpoints(named)}
+                self.composer.known.asked |= ids
+        self.composer.known.excepted.clear()
+        for i, piece in enumerate(self.script.pieces):
+            start = piece.text.first
+            self._note_heading(piece)
+            named = measured.get(start, [])
+            proposal: Proposal | None = None
+            if start in self.unread and len(self.found) < MAX_PROPOSED:
+                proposal = self._proposal(piece, i)
+            elif self.plan is not None and has_date(piece.text) and not named:
+                proposal = Proposal(choices=((),), doubt=NO_DATES)
+            elif named and self._is_spared(named):
+                proposal = Proposal(aside="left out, as another line says")
+            if proposal is not None and self._is_left_out(proposal):
+                proposal = Proposal(aside="left out, as another line says")
+            if proposal is not None:
+                self.found[start] = proposal
+            else:
+                self._remember(named)
+            said = proposal.sentences if proposal is not None else ()
+            self.composer.before = said[-1] if said else piece.text.content
+        return self.found
+
+    def _whole(self, piece: Piece) -> ScriptText:
+        row = self.script.rows.get(piece.text.first)
+        return piece.text if row is None else row.place
+
+    def _note_heading(self, piece: Piece) -> None:
+        content = piece.text.content
+        if content.isupper() and piece.text.first not in self.script.rows:
+            logs = self.understanding.language.prose.form["logs"]
+            self.in_log = cue_pattern("logs", logs).fullmatch(content.strip(" :")) is not None
+
+    def _proposal(self, piece: Piece, i: int) -> Proposal:
+        whole = self._whole(piece)
+        if self.in_log and CLOCK.match(whole.content.lstrip()):
+            return Proposal(aside="an entry of a log")
+        if i < _FIRST and _NAME.fullmatch(piece.text.content):
+            return Proposal(aside="a greeting")
+        if self._is_signature(piece, i):
+            return Proposal(aside="a signature")
+        at_time = self._at_time(whole)
+        if at_time is not None:
+            return at_time
+        row = self.script.rows.get(piece.text.first)
+        if row is not None:
+            return propose_row(row, self.composer, first=i == 0)
+        return self.composer.propose(piece.text)
+
+    def _at_time(self, text: ScriptText) -> Proposal | None:
+        """Return what is done at a time of day; None if the text names none, or if it is not known
+        when the mission starts."""
+        said = timed(text, self.understanding) if self.plan is not None else None
+        if said is None or self.plan is None:
+            return None
+        minutes = self.plan.since_start(said)
+        found = mentions_in(said.text, self.understanding)
+        if said.until and waits(found):
+            return Proposal((wait_until(minutes),)) if self._is_here(found) else None
+        made = self.composer.propose(said.text)
+        sentences = windowed(made.sentences, minutes, said.until)
+        return None if sentences is None else replace(made, sentences=sentences, certain=False)
+
+    def _is_here(self, found: Mentions) -> bool:
+        """Return True if the places of a text are where the robot has measured last."""
+        here = {c.floor for c in self.composer.known.memory.last}
+        with suppress(RefusedError):
+            places = [self.composer.known.floors(floor_names(place)) for place in found.of("place")]
+            return all(here and here <= floors for floors in places)
+        return False
+
+    def _is_signature(self, piece: Piece, i: int) -> bool:
+        """Return True for a name at the end of the script, or of one that the header names, and
+        for the time behind initials."""
+        text, pieces = piece.text, self.script.pieces
+        if CLOCK.fullmatch(text.content) and i > 0:
+            before = pieces[i - 1].text
+            same_line = text.source.line_at(before.first) == text.source.line_at(text.first)
+            return same_line and self.found.get(before.first) == Proposal(aside="a signature")
+        if not is_name(text.content) or not {*self.understanding.types(text)} <= _OF_NAMES:
+            return False
+        ends = i >= len(pieces) - _LAST
+        header = text.source.lines[:_FIRST]
+        return ends or any(text.content in line and ":" in line for line in header)
+
+    def _is_spared(self, named: Sequence[Mention]) -> bool:
+        with suppress(RefusedError):
+            ids = {c.id for c in self.composer.known.checkpoints(named)}
+            return bool(ids) and ids <= self.composer.known.spared
+        return False
+
+    def _is_left_out(self, proposal: Proposal) -> bool:
+        """Return True if a proposal only checks what another line leaves out."""
+        checks = [sentence for sentence in proposal.sentences if sentence.startswith("Check ")]
+        named = {int(n) for sentence in checks for n in _NUMBERED.findall(sentence)}
+        return (
+            bool(named)
+            and len(checks) == len(proposal.sentences)
+            and named <= self.composer.known.spared
+        )
+
+    def _remember(self, named: Sequence[Mention]) -> None:
+        for mention in named:
+            with suppress(RefusedError):
+                self.composer.known.measured(self.composer.known.checkpoints([mention]))
+
+
+def _start_area(script: Script) -> int | None:
+    header = script.header
+    if header.start_area is not None:
+        return header.start_area.area
+    areas = header.initial_position.areas if header.initial_position is not None else ()
+    return areas[0] if len(areas) == 1 else None
 
 
 def _measured(steps: Sequence[ScriptStep], pieces: Sequence[Piece]) -> dict[int, list[Mention]]:

@@ -11,14 +11,25 @@ from dataclasses import dataclass, field
 
 from argo_compiler.base.catalog import CheckpointInfo, CheckpointKind
 from argo_compiler.script.documents.source import RefusedError, ScriptText
+from argo_compiler.script.documents.tags import count_tag, tag_of
 from argo_compiler.script.layout.forms import Cell, CellRole, FormRow
 from argo_compiler.script.proposals.composing import Composer, Proposal
-from argo_compiler.script.proposals.mentions import checkpoint_words, mentions_in
-from argo_compiler.script.proposals.tags import count_tag, tag_of
+from argo_compiler.script.proposals.evidence import is_name
+from argo_compiler.script.proposals.mentions import (
+    OF_FORMS,
+    Mention,
+    Mentions,
+    checkpoint_words,
+    mentions_in,
+)
 from argo_compiler.script.sentences.tree.places import FloorName
 from argo_compiler.script.sentences.words.prose import cue_pattern
 
 _FILL = re.compile(r"_{2,}|\.{3,}|…+|[□☐]|\[\s*\]|\(\s*y\s*/\s*n\s*\)|/", re.IGNORECASE)
+_TICK = re.compile(r"[xX✓✔☑☒]")
+_HASH = re.compile(r"#\d+")
+"""a checkpoint by its number, or by its tag, which was replaced by that"""
+_LABELLED = re.compile(r"[^:]{1,40}:\s*([^:]*)")
 _RANGE = re.compile(
     r"(?P<low>\d+(?:[.,]\d+)?)\s*(?:-|–|—|to|bis|\.\.)\s*(?P<high>\d+(?:[.,]\d+)?)\s*(?P<unit>[^\d\s]\S*)?"
 )
@@ -35,14 +46,6 @@ _ALL_UNITS = frozenset().union(*_UNITS.values())
 _POSITIONS = ("half", "open", "closed")
 _OPEN, _CLOSED = 70.0, 20.0
 """degrees from which a valve's normal position counts as open, and up to which as closed"""
-_OF_FORMS = frozenset(
-    [
-        *("MEASURE", "BE_MEASURED", "NUMBER", "TIME_WORD", "OF", "pronoun", "question", "past"),
-        "PERSON",
-        *("GREATER", "LESS", "STATE", "DONE", "QUANTITY", "REPORT", "MODE", "IN_BETWEEN"),
-    ]
-)
-"""what a field of a form may mention that has no effect on a mission"""
 _TICKED = "this row is ticked, or marked as done: it may be left out"
 
 
@@ -58,6 +61,10 @@ class _Row:
     tag: str = ""
     """a plant tag that is not known"""
     manner: str = ""
+    described: list[str] = field(default_factory=list)
+    """words of the service that a plant tag has: `contactor overhead`"""
+    together: bool = False
+    """whether a single cell names all of several checkpoints"""
 
 
 def propose_row(row: FormRow, composer: Composer, first: bool = False) -> Proposal:
@@ -69,60 +76,99 @@ def propose_row(row: FormRow, composer: Composer, first: bool = False) -> Propos
             return Proposal(choices=((),), doubt="these times can be rounds at these times of day")
         return Proposal(aside="the headings of columns")
     found = _Row()
+    tagged = any(_HASH.fullmatch(cell.text.content) for cell in row.cells)
     for cell in row.cells:
-        if not _read_sheet_cell(cell, found, composer):
-            _read_cell(cell.text, found, composer)
+        if _read_sheet_cell(cell, found, composer):
+            continue
+        before = len(found.unused)
+        _read_cell(cell.text, found, composer)
+        if cell.role is CellRole.NAME and tagged:
+            found.described += found.unused[before:]
     ids = {c.id: c for c in found.named}
     if not ids:
         return _without_checkpoint(row, composer, first)
-    if found.tag and len(ids) == 1 and _is_definition(row, found.tag):
-        composer.tags[found.tag] = next(iter(ids.values()))
-        return Proposal(certain=True)
+    if found.described and len(ids) == 1:
+        found.unused = [word for word in found.unused if word not in found.described]
     _compare(row.cells, next(iter(ids.values())), found, composer)
     words = checkpoint_words(list(ids.values()))
     check, spare = f"Check {words}{found.manner}.", f"Do not check {words}."
     if row.box is not None and row.box.strip():
         return Proposal(choices=((spare,), (check,)), doubt=_TICKED)
+    if found.tag and _may_explain(row, found.tag):
+        doubt = f"this can be a task, or only say what `{found.tag}` stands for"
+        return Proposal(choices=((check,), ()), doubt=doubt)
     if found.doubts:
         return Proposal(choices=((spare,), (check,)), doubt=found.doubts[0])
     if found.left_out:
         return Proposal((spare,), tuple(found.unused))
-    if len(ids) > 1 and len(row.cells) > 1:
+    if len(ids) > 1 and len(row.cells) > 1 and not (found.together and found.manner):
         return Proposal(choices=((check,), ()), doubt="this row names several checkpoints")
-    composer.measured(list(ids.values()))
+    composer.known.measured(list(ids.values()))
     unused = tuple(found.unused)
     return Proposal((check,), unused, differences=tuple(found.differences), certain=not unused)
 
 
-def _is_definition(row: FormRow, tag: str) -> bool:
-    """Whether a row only says which checkpoint a tag is, that the script uses elsewhere."""
+def _may_explain(row: FormRow, said: str) -> bool:
+    """Whether a row may only say which checkpoint a tag is, that the script uses elsewhere."""
     plain = len(row.cells) == 2 and row.box is None and not _FILL.search(row.place.content)
-    return plain and count_tag(tag, row.place.source.text) > 1
+    tag = tag_of(said)
+    return plain and tag is not None and count_tag(tag, row.place.source.text) > 1
 
 
 def _without_checkpoint(row: FormRow, composer: Composer, first: bool) -> Proposal:
     """Return what a row without a checkpoint is: a field to fill in, one that a mission does not
     have, an order such as to dock, or something to ask about."""
-    found = mentions_in(row.place, composer.understanding)
-    needed = [m for m in found.mentions if m.kind not in _OF_FORMS]
+    plain = row.box is None
+    if plain and first and _is_title(row.place, composer):
+        return Proposal(aside="the title")
     tags = [cell.text.content for cell in row.cells if tag_of(cell.text.content)]
     if tags:
         return Proposal(choices=((),), doubt=f"the tag `{tags[0]}` is not known")
     blank = _FILL.search(row.place.content) is not None
-    if first and row.box is None and not needed:
-        return Proposal(aside="the title")
-    if row.box is None and blank and not needed:
+    if plain and blank and not _needed(row.place, composer):
         return Proposal(aside="a field that a person fills in")
     labels = composer.understanding.language.prose.form["labels"]
     idle = cue_pattern("labels", labels).search(row.cells[0].text.content) is not None
-    if row.labelled and row.box is None and idle and not needed:
+    named = mentions_in(row.place, composer.understanding).has("checkpoints", "place")
+    if plain and ((row.labelled and idle and not named) or _names_people(row)):
         return Proposal(aside="a field that a mission does not have")
     roles = (CellRole.NAME, CellRole.ACTION, CellRole.OTHER)
     said = [cell.text for cell in row.cells if cell.role in roles]
-    if row.box is None and len(said) == 1 and said[0].content:
+    if len(said) > 1 and ((first and _is_title(said[0], composer)) or _is_label(row, composer)):
+        said = said[1:]
+    if plain and len(said) == 1 and said[0].content:
         inner = composer.propose(said[0])
         return inner if inner.sentences or len(row.cells) == 1 else Proposal(choices=((),))
     return Proposal(choices=((),))
+
+
+def _names_people(row: FormRow) -> bool:
+    """Return True if all cells are labels with the names of people: `Off-going: D. Brandt`."""
+    return all(
+        (found := _LABELLED.fullmatch(cell.text.content)) is not None and is_name(found[1])
+        for cell in row.cells
+    )
+
+
+def _is_label(row: FormRow, composer: Composer) -> bool:
+    return row.labelled and not _needed(row.cells[0].text, composer)
+
+
+def _needed(text: ScriptText, composer: Composer) -> list[Mention]:
+    """Return what a text mentions that has an effect on a mission."""
+    mentions = mentions_in(text, composer.understanding).mentions
+    return [mention for mention in mentions if mention.kind not in OF_FORMS]
+
+
+def _is_title(text: ScriptText, composer: Composer) -> bool:
+    """Return True if the first line of a sheet, or its first cell, can be the title: `WEEKLY
+    WALK-DOWN Floors 5 and 6`, `TIME PLAN RUN 12`."""
+    mentions = mentions_in(text, composer.understanding)
+    areas = [m for m in mentions.of("place") if not isinstance(m.value, tuple)]
+    if areas or mentions.has("checkpoints", "pronoun", "everything"):
+        return False
+    capitals = text.content.split("  ")[0].isupper()
+    return capitals or mentions.only(*OF_FORMS, "place", "LSQB", "RSQB")
 
 
 # ---- cells
@@ -133,16 +179,19 @@ def _read_sheet_cell(cell: Cell, found: _Row, composer: Composer) -> bool:
     text = cell.text.content
     form = composer.understanding.language.prose.form
     nothing = cue_pattern("nothing", form["nothing"]).fullmatch(text) is not None
+    if cue_pattern("done", form["done"]).fullmatch(text.strip(" .!")) or _TICK.fullmatch(text):
+        found.doubts.append(_TICKED)
+        return True
     if not nothing and _FILL.search(text) and not _without_fill(text, form):
         return True
     tag = tag_of(text)
     if tag is not None and cell.role in (CellRole.NAME, CellRole.CHECKPOINT, CellRole.OTHER):
-        if tag in composer.tags:
-            found.named.append(composer.tags[tag])
-        elif not mentions_in(cell.text, composer.understanding).has("checkpoints"):
-            found.tag = tag
-        else:
-            return False
+        with suppress(RefusedError):
+            named = mentions_in(cell.text, composer.understanding).of("checkpoints")
+            found.named += composer.known.checkpoints(named)
+            if named:
+                return True
+        found.tag = text
         return True
     match cell.role:
         case CellRole.NUMBER if _NUMBER.fullmatch(text):
@@ -162,11 +211,13 @@ def _read_sheet_cell(cell: Cell, found: _Row, composer: Composer) -> bool:
             if window is None:
                 found.doubts.append(f"`{text}` is not understood as minutes")
             else:
-                found.manner = f" between minute {window['low']} and minute {window['high']}"
+                low, high = (float(window[k].replace(",", ".")) for k in ("low", "high"))
+                latest = f" not later than {high:g} minutes after the start"
+                found.manner = f" between minute {low:g} and minute {high:g}" if low else latest
             return True
         case CellRole.CHECKPOINT if text.isdecimal():
-            found.named += [c for c in composer.catalog.checkpoints if c.id == int(text)]
-            if not any(c.id == int(text) for c in composer.catalog.checkpoints):
+            found.named += [c for c in composer.known.catalog.checkpoints if c.id == int(text)]
+            if not any(c.id == int(text) for c in composer.known.catalog.checkpoints):
                 found.doubts.append(f"there is no checkpoint {text}")
             return True
         case CellRole.FILL | CellRole.ACTION if nothing:
@@ -189,7 +240,9 @@ def _is_normal(text: str, form: Mapping[str, str]) -> bool:
 def _read_remark(text: ScriptText, found: _Row, composer: Composer) -> bool:
     cues = composer.understanding.language.prose.cues
     form = composer.understanding.language.prose.form
-    if cue_pattern("leave_out", form["leave_out"]).search(text.content):
+    if cue_pattern("nothing", form["nothing"]).fullmatch(text.content):
+        found.doubts.append(f"`{text.content}` can mean that this is left out")
+    elif cue_pattern("leave_out", form["leave_out"]).search(text.content):
         found.left_out = True
     elif cue_pattern("forbidding", cues["forbidding"]).search(text.content) or _asks(
         text, composer
@@ -233,23 +286,37 @@ def _read_cell(text: ScriptText, found: _Row, composer: Composer) -> None:
         for said in (form["leave_out"], cues["leave_out"])
     ):
         found.left_out = True
+    elif cue_pattern("done", form["done"]).search(left):
+        found.doubts.append(_TICKED)
     elif cue_pattern("forbidding", cues["forbidding"]).search(left):
         found.doubts.append(f"`{content}` can change what is done here")
     mentions = mentions_in(text, composer.understanding)
     named = mentions.of("checkpoints")
+    found.together = bool(named) and not found.named
     for mention in named:
         with suppress(RefusedError):
-            found.named += composer.checkpoints([mention])
+            found.named += composer.known.checkpoints([mention])
             continue
         said = content[mention.start : mention.end]
         found.doubts.append(f"it is not clear which checkpoint `{said}` is")
     if not named and _NUMBER.fullmatch(content):
         return
-    words = {content[w.start : w.end] for w in mentions.unknown}
-    found.unused += [w for w in sorted(words, key=content.index) if _without_fill(w, form)]
+    found.unused += _unused(content, mentions, form)
     others = mentions.of("DURATION", "TIMES", "EVENT", "UNTIL", "EXCEPT", "IF", "UNLESS")
-    if others:
+    asked = content.rstrip().endswith("?") and bool(others) and others[0].start == 0
+    if others and not asked:  # `Is valve R25 open?`
         found.doubts.append(f"`{content[others[0].start : others[0].end]}` is not understood here")
+
+
+def _unused(content: str, mentions: Mentions, form: Mapping[str, str]) -> Iterator[str]:
+    """Yield the words that say more than that a checkpoint is read, and in which state it should
+    be."""
+    words = [cue_pattern(name, form[name]) for name in (*_POSITIONS, "furniture", "asking")]
+    used = [m.span() for pattern in (_FILL, *words) for m in pattern.finditer(content)]
+    for word in mentions.unknown:
+        said = content[word.start : word.end]
+        if not any(a < word.end and word.start < b for a, b in used):
+            yield said
 
 
 # ---- what the site knows of the checkpoint
@@ -293,7 +360,7 @@ def _floors(text: ScriptText, composer: Composer) -> set[int]:
     for place in places:
         if isinstance(place.value, tuple):
             with suppress(RefusedError):
-                found |= composer.floors([f for f in place.value if isinstance(f, FloorName)])
+                found |= composer.known.floors([f for f in place.value if isinstance(f, FloorName)])
     return found
 
 

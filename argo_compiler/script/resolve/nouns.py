@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from typing import NoReturn
+from typing import NoReturn, TypeGuard
 
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.base.listing import listed
@@ -94,8 +94,14 @@ class NounResolver:
 
     def each(self, nouns: Nouns) -> list[CheckpointInfo]:
         """As `all`, for lists joined by `or` as well."""
-        parts = self.diagnostics.each(lambda one: self._noun(*one), _inheriting(nouns.nouns))
-        found = [checkpoint for part in parts for checkpoint in part]
+        found: list[CheckpointInfo] = []
+
+        def find(one: tuple[Noun, Kind | None, bool]) -> None:
+            # `checkpoint 14, position of the valve`
+            if not (found and _is_the_one(one[0]) and agrees(found[-1], one[0].kind)):
+                found.extend(self._noun(*one))
+
+        self.diagnostics.each(find, _inheriting(nouns.nouns))
         out: list[CheckpointInfo] = []
         for noun, kind, _ in _inheriting(nouns.but):
             excepted = self._left_out(noun, kind, found)
@@ -361,6 +367,10 @@ class NounResolver:
             raise RefusedError
         message = "nothing is measured before this, so it does not refer to a checkpoint"
         self.diagnostics.refuse("which-checkpoint", message, span, "name it: `checkpoint #1`")
+
+
+def _is_the_one(noun: Noun) -> TypeGuard[TheOne]:
+    return isinstance(noun, TheOne) and not noun.plural and not noun.floors
 
 
 def _inheriting(nouns: Iterable[Noun]) -> Iterator[tuple[Noun, Kind | None, bool]]:

@@ -179,14 +179,29 @@ def test_a_chat_is_read_without_its_time_stamps(catalog: Catalog) -> None:
             "Pressure gauge 3: two readings, ten minutes apart",
             ("Check checkpoint 6.", "Wait for 10 minutes.", "Check checkpoint 6."),
         ),
-        ("Danach soll er noch Manometer 5 auf der zweiten Ebene prüfen", ("Check checkpoint 8.",)),
+        ("I'd like to have valve R18", ("Check checkpoint 14.",)),
         ("danach ab ins Dock", ("Return to the docking station.",)),
+        ("Liegt der Wert ueber 5, auch", ()),
     ],
 )
 def test_what_a_line_proposes(line: str, sentences: tuple[str, ...], catalog: Catalog) -> None:
     draft = draft_of(f"Check valve R25.\n{line}", catalog)
     assert at(draft, 2).sentences == sentences
-    assert at(draft, 2).state is LineState.PROPOSED
+    assert at(draft, 2).state is (LineState.PROPOSED if sentences else LineState.OPEN)
+
+
+@pytest.mark.parametrize(
+    ("line", "sentences"),
+    [
+        ("Danach soll er noch Manometer 5 auf der zweiten Ebene prüfen", ("Check checkpoint 8.",)),
+    ],
+)
+def test_a_line_of_which_all_words_are_used_is_understood(
+    line: str, sentences: tuple[str, ...], catalog: Catalog
+) -> None:
+    draft = draft_of(f"Check valve R25.\n{line}", catalog)
+    assert at(draft, 2).sentences == sentences
+    assert at(draft, 2).state is LineState.UNDERSTOOD
 
 
 def test_a_list_without_items_is_no_box_to_tick(catalog: Catalog) -> None:

@@ -127,7 +127,8 @@ def combined(part: RulePart, manners: Iterable[Manner]) -> Manner | None:
             value = getattr(manner, field.name)
             if value == field.default:
                 continue
-            if field.name in values:
+            same = field.name == "order" and value == values.get(field.name)
+            if field.name in values and not same:
                 what = field.name.replace("_", " ")
                 part.error("repeated-limit", f"the {what} is given twice", "remove one of them")
             values[field.name] = value

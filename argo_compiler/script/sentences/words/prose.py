@@ -66,6 +66,9 @@ class Prose:
     """words that a table's columns stand for"""
     cues: Mapping[str, str]
     """words by which a line is proposed that the grammar does not take, by what they show"""
+    paraphrases: str
+    """phrases that a proposal replaces by others which the grammar takes: `is not open => is below
+    80 degrees`; `<n>` is an amount, `<k>` a word, `<x>` and `<y>` are any words"""
     samples: Mapping[str, str]
     """a sentence for each verb"""
     kinds: Mapping[str, str]

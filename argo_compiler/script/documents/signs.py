@@ -1,0 +1,19 @@
+"""Signs of forms and plans: blanks to fill in, boxes, rules, times of day, dates."""
+
+import re
+
+BLANK = re.compile(r"_{2,}|\.{4,}|…{2,}")
+"""to be filled in by a person"""
+BOX = re.compile(r"[□☐]|\[\s*\]")
+RULE = re.compile(r"[\s|:=+-]*-[\s|:=+-]*")
+"""a line between rows"""
+CLOCK = re.compile(
+    r"(?<![\d.:])(?P<hour>[0-9]{1,2})[:.](?P<minute>[0-9]{2})(?![\d:]|\.\d)(?:\s?(?:h|Uhr)\b)?"
+)
+"""a time of day"""
+DATE = re.compile(
+    r"\b(?:[0-9]{1,2}\.\s?(?:[0-9]{1,2}\.|[A-Z][a-zä]+)(?:\s?[0-9]{2,4})?|[0-9]{4}-[0-9]{2}-[0-9]{2}"
+    r"|[0-9]{1,2}/[0-9]{1,2}(?:/[0-9]{2,4})?"
+    r"|(?:[0-9]{1,2}(?:st|nd|rd|th)?\s+(?:of\s+)?(?:Jan|Feb|Mar|Apr|May|Jun|Jul|Aug|Sep|Oct|Nov|Dec)[a-z]*"
+    r"|(?:Jan|Feb|Mar|Apr|May|Jun|Jul|Aug|Sep|Oct|Nov|Dec)[a-z]*\s+[0-9]{1,2})\b)"
+)

@@ -1,0 +1,151 @@
+"""Positive evidence that a piece has no effect: what it is, and that it names nothing of a mission.
+
+A piece that is only unknown is never set aside.
+"""
+
+import re
+from collections.abc import Callable
+
+from argo_compiler.script.documents.source import ScriptText
+from argo_compiler.script.proposals.mentions import OF_FORMS, Mentions
+from argo_compiler.script.sentences.tree.places import DockLocation
+from argo_compiler.script.sentences.words.language import Language
+from argo_compiler.script.sentences.words.prose import cue_pattern
+
+STATEMENT = "a statement that names nothing of the mission"
+_SEPARATOR = re.compile(r"\W*([-=_*~])\1{2,}.*?\1{3,}\W*")
+_INITIALS = re.compile(r"(?:[A-ZÄÖÜ]\.?\s?){2,3}")
+_NAME = re.compile(r"(?:[^\W\d_a-zäöü][\w'-]*\.?\s?){1,3}")
+_LEAD_IN = re.compile(r"[^,]{3,60},\s+")
+_MOST_WORDS = 6
+"""of a heading in capitals"""
+_BLANK_LABELS = re.compile(r"(?:[^\W\d][\w .-]{0,20}:[\s_.]*)+")
+_FEW_WORDS = 3
+_FOR_PEOPLE = OF_FORMS | {
+    "IF",
+    "STATE",
+    "FAILS",
+    "OCCURS",
+    "NOT",
+    "forbidding",
+    "courtesy",
+    "again",
+    "EVENT",
+}
+"""what an instruction to people may mention"""
+_IN_PLACE = (
+    *("IN_BETWEEN", "BETWEEN", "TIME_WORD", "forbidding", "NOT", "home", "HOME", "DOCK", "GO"),
+    *("WAIT", "PAUSE", "pronoun", "place"),
+)
+"""what a text mentions that only says that the robot does not dock in between"""
+
+
+def evidence(text: ScriptText, found: Mentions, language: Language) -> str:
+    """Return why a piece has no effect; empty if nothing shows that it has none."""
+    for reason, is_such in _KINDS:
+        if is_such(text, found, language):
+            return reason
+    return ""
+
+
+def is_name(content: str) -> bool:
+    """Return True if a text can be a person's name or initials."""
+    return bool(_INITIALS.fullmatch(content) or _NAME.fullmatch(content))
+
+
+def is_question(text: ScriptText) -> bool:
+    """Return True if a question mark stands behind a piece."""
+    return text.source.text[text.last : text.last + 2].rstrip()[-1:] == "?"
+
+
+def _cue(name: str, language: Language) -> re.Pattern[str]:
+    return cue_pattern(name, language.prose.cues[name])
+
+
+def _separates(text: ScriptText, _: Mentions, __: Language) -> bool:
+    return _SEPARATOR.fullmatch(text.content) is not None
+
+
+def _heads(text: ScriptText, found: Mentions, _: Language) -> bool:
+    short = len(text.content.split()) <= _MOST_WORDS
+    return text.content.isupper() and short and found.only(*OF_FORMS)
+
+
+def _answers(text: ScriptText, _: Mentions, language: Language) -> bool:
+    said = re.split(r"[\s]*[.!,]+\s*", text.content.strip(" .!,"))
+    return all(_cue("answer", language).fullmatch(part) is not None for part in said)
+
+
+def _wonders(text: ScriptText, found: Mentions, language: Language) -> bool:
+    """`Sure, what should it look at?`"""
+    begun = text.content
+    answer = _cue("answer", language).match(begun)
+    begun = begun[answer.end() :].lstrip(" ,.-") if answer is not None else begun
+    asks = _cue("wondering", language).match(begun) is not None
+    return asks and is_question(text) and found.only(*OF_FORMS, "SHOULD", "IF", "question")
+
+
+def _for_people(text: ScriptText, found: Mentions, language: Language) -> bool:
+    """`Ping me if it gets stuck`"""
+    told = _cue("people", language).match(text.content)
+    return told is not None and found.only(*_FOR_PEOPLE)
+
+
+def _states(text: ScriptText, found: Mentions, language: Language) -> bool:
+    """A fact about a thing that is none of the mission's, which asks for nothing: `The crane is at
+    the dock`, `as announced, the demonstration takes place in the yard`."""
+    content = text.content
+    if _cue("asking", language).search(content) is not None:
+        return False
+    if _cue("of_others", language).match(content) is not None:
+        return found.only(*OF_FORMS, "place", "home", "start", "past", "last", "later")
+    lead_in = _LEAD_IN.match(content)
+    for begun in (0, lead_in.end() if lead_in is not None else 0):
+        begins = _cue("subject", language).match(content, begun)
+        verb = begins and _cue("stating", language).search(content, begins.end())
+        if begins and verb and found.only("pronoun"):
+            return any(begins.end() <= w.start < verb.start() for w in found.unknown)
+    return False
+
+
+def _refers(text: ScriptText, found: Mentions, language: Language) -> bool:
+    """`Same list as below please`"""
+    return _cue("referring", language).search(text.content) is not None and not found.mentions
+
+
+def _labels(text: ScriptText, found: Mentions, _: Language) -> bool:
+    """`Name:      Time:`"""
+    return _BLANK_LABELS.fullmatch(text.content) is not None and found.only(*OF_FORMS)
+
+
+def _is_none(text: ScriptText, found: Mentions, language: Language) -> bool:
+    """`None open`"""
+    nothing = cue_pattern("nothing", language.prose.form["nothing"]).match(text.content)
+    short = len(text.content.split()) <= _FEW_WORDS
+    return nothing is not None and short and found.only(*OF_FORMS)
+
+
+def _spares(text: ScriptText, found: Mentions, language: Language) -> bool:
+    """`No need to go upstairs`, `between the rounds it does not dock`"""
+    if _cue("needless", language).match(text.content) is not None:
+        return found.only("leave_out", "GO", "forbidding")
+    docks = [m for m in found.of("place") if isinstance(m.value, DockLocation)]
+    homewards = docks or found.has("home", "HOME", "DOCK")
+    between = found.has("IN_BETWEEN", "BETWEEN", "TIME_WORD") and len(docks) == len(
+        found.of("place")
+    )
+    return bool(homewards) and between and found.has("forbidding", "NOT") and found.only(*_IN_PLACE)
+
+
+_KINDS: tuple[tuple[str, Callable[[ScriptText, Mentions, Language], bool]], ...] = (
+    ("a separator", _separates),
+    ("a heading", _heads),
+    ("an answer", _answers),
+    ("a question that names nothing of the mission", _wonders),
+    ("for people, not for the robot", _for_people),
+    (STATEMENT, _states),
+    ("a field that a person fills in", _labels),
+    ("an entry that there is none", _is_none),
+    ("it refers to the lines below", _refers),
+    ("it states only what is not needed", _spares),
+)

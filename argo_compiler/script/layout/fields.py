@@ -7,6 +7,7 @@ mission as a whole what fields say as well: `In any order, please.`
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 from argo_compiler.base.listing import listed
@@ -27,6 +28,12 @@ from argo_compiler.script.sentences.words.word import VERBS, Word
 _ANY_LABEL = re.compile(r"[^\W\d_][\w'/-]*\.?(?:\s+[\w'/-]+){0,6}\s*:(?=\s|$)")
 _REPORTS = frozenset(["anomaly_specification", "real_time_reporting", "after_mission_report"])
 _CELLS = _REPORTS | {"initial_position", "end_of_mission"}
+_CHECKPOINTS = frozenset(
+    [("HASH", "NUMBER"), ("KIND", "NUMBER"), ("KIND", "IDENT"), ("KIND", "HASH")]
+)
+"""types of words, side by side, that name a checkpoint"""
+_RANGES = frozenset(["QUANTITY", "GREATER", "LESS", "BETWEEN", "AT_LEAST", "AT_MOST", "UPTO"])
+"""types of words of a range of values"""
 _PROSE_FIELDS = _REPORTS | {"designation", "site"}
 _SAME = {"start_area": "initial_position", "end_area": "end_of_mission"}
 """fields that say the same"""
@@ -239,9 +246,21 @@ class ScriptFields:
                 self._current(value)
             case "left_out":
                 self._left_out(value)
+            case "anomaly_specification" if self._names_checkpoint(value):
+                message = "this gives a checkpoint other normal values than the site has"
+                hint = "write a condition, such as `if #1 is below 2 or above 3, ...`; or set the "
+                hint += "line aside, to use the values of the site"
+                self.diagnostics.error("field", message, value.span(), hint)
             case _:
                 text = self._text(value)
                 self._set(name, text, value, text and text.text)
+
+    def _names_checkpoint(self, value: ScriptText) -> bool:
+        """Return True if a text has other normal values for a checkpoint: `#1: 2 to 3 bar`."""
+        if value.content.startswith('"'):
+            return False  # as it was written by `format_script`
+        types = self.understanding.types(value)
+        return bool({*pairwise(types)} & _CHECKPOINTS) and not _RANGES.isdisjoint(types)
 
     def _text(self, value: ScriptText) -> Text | None:
         said = " ".join(value.content.split())

@@ -289,7 +289,10 @@ class Reactions:
             message = "this does not say what to do if the event does not occur in this time"
             hint = "add `or else go on`, `or else end the mission` or `or else wait`"
             self.diagnostics.refuse("reaction", message, span, hint)
-        return replace(answer, on_limit=on_limit or Afterwards.RESUME)
+        afterwards = answer.afterwards
+        if answer.drives and answer.on_limit is Afterwards.RESUME:
+            afterwards = afterwards or Afterwards.RESUME  # `..., or else resume`
+        return replace(answer, on_limit=on_limit or Afterwards.RESUME, afterwards=afterwards)
 
     def _twice(self, span: Span) -> NoReturn:
         message = "this contradicts an earlier reaction to the same event"

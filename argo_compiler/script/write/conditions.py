@@ -56,6 +56,7 @@ _ON_LIMIT = {
 _AFTERWARDS = {
     Afterwards.RESUME: "and resume",
     Afterwards.WAIT: "and wait for the operator",
+    Afterwards.END: "and end the mission",
 }
 _DRIVES = (Response.RETURN, Response.SAFE_AREA)
 
@@ -130,7 +131,8 @@ def reaction_said(reaction: Reaction, places: Places) -> str:
         clauses[-1] += f" {holding}"
     if reaction.priority is not None:
         clauses.append(f"with priority {reaction.priority}")
-    if reaction.afterwards is not Afterwards.END:
+    resumes = reaction.on_limit is Afterwards.RESUME and reaction.response in _DRIVES
+    if reaction.afterwards is not Afterwards.END or resumes:
         clauses.append(_AFTERWARDS[reaction.afterwards])
     return ",\n".join(clauses)
 

@@ -131,7 +131,7 @@ class Composer:
         """Return what a text is in words that the grammar, or a frame, takes."""
         if self._changes(found):
             return None
-        said = rephrased(self._on_event(self._alike(text)), self.understanding)
+        said = rephrased(self._within(self._on_event(self._alike(text))), self.understanding)
         if said.text.content == text.content:
             return None
         if reads(said.text, self.understanding):
@@ -246,19 +246,14 @@ class Composer:
         return (*dict.fromkeys(choices), ())
 
     def _readings(self, text: ScriptText, found: Mentions) -> Iterator[Sentences]:
-        """Yield the text with each checkpoint that its pronoun may be, where it makes sense then;
-        of `too high` with the limit of that checkpoint."""
+        """Yield the text with each checkpoint that its pronoun may be, if it makes sense then."""
         pronouns = found.of("pronoun")[:1]
-        candidates = {c.id: c for c in self._candidates(pronouns)}
-        for checkpoint in candidates.values():
-            said = text
-            for mention in pronouns:
+        for mention in pronouns:
+            for checkpoint in {c.id: c for c in self._candidates(pronouns)}.values():
                 article = _ARTICLE.search(text.content[: mention.start])
                 start = mention.start if article is None else article.start()
-                said = said.replace(start, mention.end, f"checkpoint {checkpoint.id}")
-            said = self._within(said, checkpoint)
-            if said is not text:
-                said = rephrased(said, self.understanding).text
+                said = text.replace(start, mention.end, f"checkpoint {checkpoint.id}")
+                said = rephrased(self._within(said), self.understanding).text
                 if reads(said, self.understanding):
                     yield (sentence(said),)
 
@@ -271,15 +266,20 @@ class Composer:
             return self.known.memory.last
         return [c for c in self.known.memory.so_far.values() if c.kind is kind]
 
-    def _within(self, text: ScriptText, checkpoint: CheckpointInfo) -> ScriptText:
-        """Return a text with `too high` as a limit."""
+    def _within(self, text: ScriptText) -> ScriptText:
+        """Return a text with `too high` as a limit of the checkpoint that is named before it."""
         prose = self.understanding.language.prose
-        limits = (("too_high", checkpoint.nominal.high), ("too_low", checkpoint.nominal.low))
-        for name, limit in limits:
+        for name in ("too_high", "too_low"):
             found = cue_pattern(name, prose.cues[name]).search(text.content)
-            if found is not None:
-                said = prose.say[name].format(f"{limit:g}")
-                text = text.replace(*found.span(), said)
+            before = mentions_in(text[: found.start()], self.understanding) if found else None
+            named = before.of("checkpoints")[-1:] if before is not None else ()
+            with suppress(RefusedError):
+                checkpoints = self.known.checkpoints(named)
+                if found is None or len(checkpoints) != 1:
+                    continue
+                normal = checkpoints[0].nominal
+                limit = normal.high if name == "too_high" else normal.low
+                text = text.replace(*found.span(), prose.say[name].format(f"{limit:g}"))
         return text
 
     def _depends(self, text: ScriptText, found: Mentions) -> bool:

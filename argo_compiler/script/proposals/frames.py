@@ -174,7 +174,7 @@ def _check(found: Mentions, known: Known) -> Sentences | None:
         named = found.of("pronoun")
         if not named or not found.has("MEASURE", "again", "MORE"):
             return None
-    if _verb_before(found, named[-1]):
+    if _verb_before(found, named[-1]) or _words_between(found, named):
         return None
     with suppress(RefusedError):
         checkpoints = _placed(named, found.of("place"), known)
@@ -310,6 +310,12 @@ def _wait(found: Mentions, _: Known) -> Sentences | None:
 def _before_unknown(mention: Mention, found: Mentions) -> bool:
     """Whether an unknown word follows at once, as in `no ladder`."""
     return any(0 <= word.start - mention.end <= 1 for word in found.unknown)
+
+
+def _words_between(found: Mentions, named: Sequence[Mention]) -> bool:
+    """Whether an unknown word stands between two checkpoints: `valve R7 as long as R40 is open`."""
+    first, last = named[0].end, named[-1].start
+    return any(first <= word.start < last for word in found.unknown)
 
 
 def _verb_before(found: Mentions, last: Mention) -> bool:

@@ -4,15 +4,11 @@ import pytest
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.il import Mission, Order
-from argo_compiler.script import Draft, DraftLine, LineState, import_script
-from tests.argo_compiler.script.conftest import measured_in
+from argo_compiler.script import DraftLine, LineState
+from tests.argo_compiler.script.conftest import draft_of, measured_in
 
 OPEN, PROPOSED = LineState.OPEN, LineState.PROPOSED
 ASIDE, UNDERSTOOD = LineState.SET_ASIDE, LineState.UNDERSTOOD
-
-
-def draft_of(text: str, catalog: Catalog, decisions=()) -> Draft:
-    return import_script(text, catalog, start_area=1, decisions=decisions)
 
 
 def confirmed(text: str, catalog: Catalog) -> Mission:
@@ -40,6 +36,8 @@ def last(text: str, catalog: Catalog) -> DraftLine:
         ("Battery under 25 %: return to the dock.", "If Battery under 25 %, return to the dock."),
         ("Gas alarm: go home", "If Gas alarm, go home."),
         ("when 50 % is passed: read #4", "If it is above 50 %: read #4."),
+        ("If #6 is too high, check R12.", "If #6 is above 7, check R12."),
+        ("Between minute 5 and 10: R12", "Check R12 between minute 5 and minute 10."),
         ("Everything must be finished by minute 45", "Maximum duration: 45 minutes."),
         ("read it every 2 min, six readings", "Read it every 2 min, six times."),
     ],
@@ -80,6 +78,8 @@ def test_a_german_condition_likewise(line: str, sentence: str, catalog: Catalog)
         "In case of rain: return to the dock",
         "With the lid closed, read valve R12.",
         "If it rains, check valve R12.",
+        "Check liquid level gauge 4 as long as R40 is closed.",
+        "Check R9 and, provided the hatch is open, R12.",
         "Check valve R12 unless the gate is locked off.",
         "After three failures in all, come home.",
         "An abnormal reading is read again once; the run is not broken off.",

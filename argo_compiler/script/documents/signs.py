@@ -8,7 +8,7 @@ _BOX = re.compile(r"[□☐]")
 RULE = re.compile(r"[\s|:=+-]*-[\s|:=+-]*")
 """a line between rows"""
 CLOCK = re.compile(
-    r"(?<![\d.:])(?P<hour>[0-9]{1,2})[:.](?P<minute>[0-9]{2})(?![\d:]|\.\d)(?:\s?(?:h|Uhr)\b)?"
+    r"(?<![\d.:])(?P<hour>[0-9]{1,2})[:.](?P<minute>[0-9]{2})(?!\d|:\d|\.\d)(?:\s?(?:h|Uhr)\b)?"
 )
 """a time of day"""
 DATE = re.compile(

@@ -235,6 +235,8 @@ class Composer:
         for mention in found.of("checkpoints"):
             with suppress(RefusedError):
                 named |= {c.id: c for c in self.known.checkpoints([mention])}
+                continue
+            choices += [(f"Check checkpoint {c.id}.",) for c in self.known.alike(mention)]
         if 0 < len(named) <= _MOST_CHOSEN:
             words = checkpoint_words(list(named.values()))
             choices += [(f"Check {words}.",), (f"Do not check {words}.",)]

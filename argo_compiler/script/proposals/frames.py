@@ -167,6 +167,7 @@ def _check(found: Mentions, known: Known) -> Sentences | None:
         "OF",
         "VALUE",
         "each",
+        "IF_TIME",
     )
     if not found.only("checkpoints", "pronoun", "MORE", "again", *allowed):
         return None
@@ -196,13 +197,14 @@ def _checks(
     if len(counts) > 1 or not all(isinstance(count, Figure) for count in counts):
         return None
     times = counts[0].whole if counts and isinstance(counts[0], Figure) else 1
-    if times != 1 and len(checkpoints) > 1 and not found.has("each"):
+    if times != 1 and ((len(checkpoints) > 1 and not found.has("each")) or found.has("IF_TIME")):
         return None
     nouns = [n for m in named if isinstance(m.value, Nouns) for n in m.value.nouns]
     free = len(checkpoints) > 1 and any(isinstance(noun, AllOf) for noun in nouns)
     known.measured(checkpoints)
     if times == 1:
-        return (f"Check {checkpoint_words(checkpoints)}{' in any order' if free else ''}.",)
+        manner = " in any order" if free else " if there is time" if found.has("IF_TIME") else ""
+        return (f"Check {checkpoint_words(checkpoints)}{manner}.",)
     return tuple(f"Check checkpoint {c.id} {times} times." for c in checkpoints)
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from argo_compiler.base.catalog import Catalog, CheckpointInfo
 from argo_compiler.script.documents.source import Diagnostics
 from argo_compiler.script.proposals.mentions import Mention
-from argo_compiler.script.resolve.lookup import Lookup
+from argo_compiler.script.resolve.lookup import Lookup, agrees
 from argo_compiler.script.resolve.nouns import Memory, NounResolver
 from argo_compiler.script.sentences.tree.nouns import Labelled, Nouns
 from argo_compiler.script.sentences.tree.places import FloorName
@@ -62,6 +62,20 @@ class Known:
             last = (*nouns.nouns, *nouns.but)[-1]
             self.last_named = [*found, *excepted][-1] if isinstance(last, Labelled) else None
         return found
+
+    def alike(self, mention: Mention) -> list[CheckpointInfo]:
+        """Return the checkpoints that an unclear name may stand for: `gauge 8`, by name and by
+        number."""
+        nouns = mention.value.nouns if isinstance(mention.value, Nouns) else ()
+        noun = nouns[0] if len(nouns) == 1 else None
+        if not isinstance(noun, Labelled) or noun.kind is None:
+            return []
+        return [
+            c
+            for c in self.catalog.checkpoints
+            if agrees(c, noun.kind)
+            and (c.id == noun.label or c.name.lower().endswith(f" {noun.label}".lower()))
+        ]
 
     def floors(self, floors: Sequence[FloorName]) -> set[int]:
         """Return the numbers of floors. Raises RefusedError if one is not on the site."""

@@ -181,7 +181,7 @@ def _meant(found: re.Match[str], text: ScriptText, glossary: Glossary) -> list[t
     long = text[found.start("long") : found.end("long")]
     understanding = glossary.understanding
     types = understanding.types(long)
-    if not types or "WORD" in types:
+    if not types or "WORD" in types or short.lower() in understanding.names:
         return []
     named = bool({*types} & {"NUMBER", "IDENT", "STRING"})
     if _SHORT.fullmatch(short) is None and (not named or tag_of(short) is None):

@@ -49,10 +49,12 @@ _COMMA = re.compile(r"\s*[,;:]\s+|\s+-\s+")
 _PLAIN = frozenset(
     [
         *("AND_NOUN", "AND_DO", "AND_PLACE", "AND_ON", "NEXT", "COLON", "JOINT", "HE", "NAMELY"),
-        *("LPAR", "RPAR", "TO", "IN", "AT", "ON", "FOR", "IS"),
+        *("LPAR", "RPAR", "IS"),
     ]
 )
 """words that join others, of which none changes what a whole clause means"""
+_TOWARDS = frozenset(["TO", "IN", "AT", "ON", "FOR"])
+"""words that join a place"""
 _UNSURE = ("pronoun", "last", "first", "later", "again", "past", "over", "limit", "LESS", "WITHIN")
 """mentions beside which a proposal has to be confirmed"""
 _LIKE_CHECKS = re.compile(r"(?:Check|Order:|Maximum|Start|Return|End)")
@@ -182,7 +184,8 @@ class Composer:
             return Proposal(aside="a repetition of what is said above")
         unused = tuple(text.content[word.start : word.end] for word in found.unknown)
         bidden = found.has("MEASURE", "BE_MEASURED") or "courtesy" not in found.joining
-        plain = bidden and found.joining <= {*_PLAIN, "courtesy"}
+        towards = _TOWARDS if found.has("place") else frozenset()
+        plain = bidden and found.joining <= {*_PLAIN, *towards, "courtesy"}
         whole = plain and not unused and not found.has(*_UNSURE)
         certain = whole and all(map(_LIKE_CHECKS.match, sentences))
         return Proposal(sentences, unused, certain=certain)

@@ -47,10 +47,11 @@ def _leave_out(found: Mentions, known: Known) -> Sentences | None:
 def _spare(named: Sequence[CheckpointInfo], known: Known) -> Sentences:
     """Return how checkpoints are left out: those that are asked for above are deleted. Nothing
     is said of those that are left out by now."""
-    new = [c for c in named if c.id not in known.spared | known.excepted]
-    known.spared |= {c.id for c in new}
+    new = [c for c in named if c.id not in known.spared | known.deleted | known.excepted]
     above = [c for c in new if c.id in known.memory.so_far]
     others = [c for c in new if c.id not in known.memory.so_far]
+    known.deleted |= {c.id for c in above}
+    known.spared |= {c.id for c in others}
     pairs = (("Delete", above), ("Do not check", others))
     return tuple(f"{verb} {checkpoint_words(some)}." for verb, some in pairs if some)
 
@@ -177,6 +178,8 @@ def _check(found: Mentions, known: Known) -> Sentences | None:
             return None
     if _verb_before(found, named[-1]) or _words_between(found, named):
         return None
+    if found.has("first") and known.memory.so_far:
+        return None
     with suppress(RefusedError):
         checkpoints = _placed(named, found.of("place"), known)
         if checkpoints is None:
@@ -204,7 +207,8 @@ def _checks(
     known.measured(checkpoints)
     if times == 1:
         manner = " in any order" if free else " if there is time" if found.has("IF_TIME") else ""
-        return (f"Check {checkpoint_words(checkpoints)}{manner}.",)
+        check = f"heck {checkpoint_words(checkpoints)}{manner}."
+        return (f"At the end, c{check}" if found.has("last") else f"C{check}",)
     return tuple(f"Check checkpoint {c.id} {times} times." for c in checkpoints)
 
 

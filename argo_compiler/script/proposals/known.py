@@ -13,7 +13,7 @@ from argo_compiler.script.sentences.tree.nouns import Labelled, Nouns
 from argo_compiler.script.sentences.tree.places import FloorName
 from argo_compiler.script.sentences.understanding import Understanding
 
-State = tuple[Memory, CheckpointInfo | None, set[int], set[int]]
+State = tuple[Memory, CheckpointInfo | None, set[int], set[int], set[int]]
 
 
 class Known:
@@ -29,6 +29,8 @@ class Known:
         """the checkpoints that a list names as its exceptions"""
         self.asked: set[int] = set()
         """the checkpoints that lines of the script ask for that need no proposal"""
+        self.deleted: set[int] = set()
+        """the checkpoints that were asked for and taken back"""
         self.spared: set[int] = set()
         """the checkpoints that are to be left out"""
         self.start_area: int | None = None
@@ -38,11 +40,11 @@ class Known:
         """Return what `reset` goes back to."""
         memory = copy(self.memory)
         memory.so_far = dict(memory.so_far)
-        return memory, self.last_named, {*self.excepted}, {*self.spared}
+        return memory, self.last_named, {*self.excepted}, {*self.deleted}, {*self.spared}
 
     def reset(self, state: State) -> None:
         """Forget what was measured and left out since a state."""
-        self.memory, self.last_named, self.excepted, self.spared = state
+        self.memory, self.last_named, self.excepted, self.deleted, self.spared = state
 
     def measured(self, checkpoints: Sequence[CheckpointInfo]) -> None:
         """Remember what was measured, as an earlier line says."""

@@ -88,7 +88,7 @@ class _Proposer:
                 proposal = self._proposal(piece, i)
             elif self.plan is not None and has_date(piece.text) and not named:
                 proposal = Proposal(choices=((),), doubt=NO_DATES)
-            elif named and self._is_spared(named):
+            elif named and self._is_spared(named, piece.text):
                 proposal = Proposal(aside="left out, as another line says")
             if proposal is not None and self._is_left_out(proposal):
                 proposal = Proposal(aside="left out, as another line says")
@@ -162,7 +162,11 @@ class _Proposer:
         header = text.source.lines[:_FIRST]
         return ends or any(text.content in line and ":" in line for line in header)
 
-    def _is_spared(self, named: Sequence[Mention]) -> bool:
+    def _is_spared(self, named: Sequence[Mention], text: ScriptText) -> bool:
+        """Return True for an item of a list that a line above it leaves out; an order of its own
+        contradicts that line."""
+        if "MEASURE" in self.understanding.types(text):
+            return False
         with suppress(RefusedError):
             ids = {c.id for c in self.composer.known.checkpoints(named)}
             return bool(ids) and ids <= self.composer.known.spared

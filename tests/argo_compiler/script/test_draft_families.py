@@ -70,6 +70,17 @@ def test_a_german_condition_likewise(line: str, sentence: str, catalog: Catalog)
         "Check liquid level gauge 4 as long as R40 is closed.",
         "Check R9 and, provided the hatch is open, R12.",
         "Check valve R12 unless the gate is locked off.",
+        "R12 once R25 was read",
+        "R12 - out of order?",
+        "R12 = R31",
+        "back to the dock, but not before R12 was read",
+        "ten minutes later R12 if the hatch is open",
+        "R12: two readings not ten minutes apart",
+        "everything finished by minute 45 except R12",
+        "sorry, not R25 but R12 or R31",
+        "do not leave out R12",
+        "there is no need for R12 to be skipped",
+        "any order is fine except R12 first",
         "After three failures in all, come home.",
         "An abnormal reading is read again once; the run is not broken off.",
         "Be back in the dock before the tea break.",
@@ -163,6 +174,25 @@ def test_a_line_is_not_set_aside_because_it_is_unknown(line: str, catalog: Catal
     draft = draft_of(f"Check #1.\n\n{line}\n\nCheck #4.\nCheck #8.\nGo home.", catalog)
     (first, *_) = [one.state for one in draft.lines if one.line == 3]
     assert first is not ASIDE
+
+
+@pytest.mark.parametrize("line", ["R12 last", "R12 on", "R12 maybe", "R12 in the morning"])
+def test_a_line_with_a_word_that_may_mean_more_has_to_be_confirmed(
+    line: str, catalog: Catalog
+) -> None:
+    assert last(f"Check #1.\n{line}", catalog).state is PROPOSED
+
+
+def test_what_comes_last_is_last(catalog: Catalog) -> None:
+    text = "pressure gauge 1\nR12 last\n"
+    assert measured_in(confirmed(text, catalog)) == ["1", "5"]
+    draft = draft_of(f"{text}R31\n", catalog)
+    assert draft.lines[1].state is OPEN
+
+
+def test_an_order_of_its_own_contradicts_what_leaves_it_out(catalog: Catalog) -> None:
+    draft = draft_of("R12 is out of service.\nCheck #1.\nCheck R12.", catalog)
+    assert draft_of("R12 is out of service.\nCheck #1.\nCheck R12.", catalog, draft.confirm()).left
 
 
 def test_no_line_becomes_the_title_when_the_one_above_it_is_set_aside(catalog: Catalog) -> None:

@@ -209,7 +209,7 @@ class Composer:
             for k in range(len(starts) - 1, i, -1):
                 part = text[starts[i] : starts[k]].strip()
                 found = mentions_in(part, self.understanding)
-                if evidence(part, found, self.understanding.language):
+                if evidence(part, found, self.understanding.language, clause=True):
                     unused.append(part.content)
                     break
                 made = self._composed(part, found)

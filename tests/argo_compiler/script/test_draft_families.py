@@ -71,6 +71,7 @@ def test_a_german_condition_likewise(line: str, sentence: str, catalog: Catalog)
         "Check R9 and, provided the hatch is open, R12.",
         "Check valve R12 unless the gate is locked off.",
         "R12 once R25 was read",
+        "Done today: R12, R31",
         "R12 - out of order?",
         "R12 = R31",
         "back to the dock, but not before R12 was read",
@@ -146,6 +147,7 @@ def test_a_correction_of_what_is_not_asked_for_is_asked_about(catalog: Catalog) 
         "None open",
         "-----Original Message-----",
         "Name:        Date:",
+        "Team: Blue       Trial: 2",
     ],
 )
 def test_a_line_that_asks_for_nothing_is_set_aside_with_a_reason(

@@ -40,6 +40,9 @@ _UNREAD = frozenset(
 )
 """codes of errors of a piece that the grammar does not take; others are questions"""
 
+_UNCLEAR = "script.ambiguous-"
+"""how codes of errors of a piece begin that has more than one meaning"""
+
 _LONGEST_SHOWN = 60
 """characters of a text that a message shows"""
 
@@ -85,7 +88,8 @@ def import_script(
         reading = _read(text, catalog, source_name, areas, said)
     errors = _errors_by_piece(reading)
     unread = {at for at, error in errors.items() if error.code in _UNREAD and at not in said}
-    proposals = propose(reading.script, unread, catalog, start_area)
+    unclear = {at for at, e in errors.items() if e.code.startswith(_UNCLEAR) and at not in said}
+    proposals = propose(reading.script, unread, unclear - unread, catalog, start_area)
     proposed = {at: p.sentences for at, p in proposals.items() if _reads(p)}
     if proposed:
         reading = _read(text, catalog, source_name, areas, {**said, **proposed})

@@ -112,6 +112,10 @@ class Composer:
             made = self._of_clauses(text, found)
         return made if made is not None else Proposal(choices=self._choices(text, found))
 
+    def ask(self, text: ScriptText) -> Proposal:
+        """Return only the choices of a text."""
+        return Proposal(choices=self._choices(text, mentions_in(text, self.understanding)))
+
     def _joined(self, text: ScriptText) -> Proposal | None:
         """Return what a text is with its figures put together, `#1 3` as `#13`, if then number and
         name are of one checkpoint."""
@@ -252,15 +256,16 @@ class Composer:
 
     def _readings(self, text: ScriptText, found: Mentions) -> Iterator[Sentences]:
         """Yield the text with each checkpoint that its pronoun may be, if it makes sense then."""
-        pronouns = found.of("pronoun")[:1]
-        for mention in pronouns:
-            for checkpoint in {c.id: c for c in self._candidates(pronouns)}.values():
+        pronouns = [m for m in found.of("pronoun") if _is_single(m)]
+        for checkpoint in {c.id: c for c in self._candidates(pronouns)}.values():
+            said = text
+            for mention in reversed(pronouns):
                 article = _ARTICLE.search(text.content[: mention.start])
                 start = mention.start if article is None else article.start()
-                said = text.replace(start, mention.end, f"checkpoint {checkpoint.id}")
-                said = rephrased(self._within(said), self.understanding).text
-                if reads(said, self.understanding):
-                    yield (sentence(said),)
+                said = said.replace(start, mention.end, f"checkpoint {checkpoint.id}")
+            said = rephrased(self._within(said), self.understanding).text
+            if pronouns and reads(said, self.understanding):
+                yield (sentence(said),)
 
     def _candidates(self, pronouns: Sequence[Mention]) -> Sequence[CheckpointInfo]:
         """Return what a pronoun may be: `the pressure` is that of any gauge that was read."""
@@ -294,3 +299,9 @@ class Composer:
         if begins is None or not found.unknown or found.occasion:
             return False
         return all(mention.start > found.unknown[0].start for mention in found.mentions)
+
+
+def _is_single(mention: Mention) -> bool:
+    """Return True for a pronoun that means one checkpoint: `it`, `the level`."""
+    nouns = mention.value.nouns if isinstance(mention.value, Nouns) else ()
+    return all(isinstance(noun, Pronoun) and not noun.every for noun in nouns)

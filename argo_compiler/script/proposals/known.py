@@ -1,11 +1,12 @@
 """What a script has named, measured and left out so far, for what is proposed next."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from copy import copy
 from dataclasses import replace
 
 from argo_compiler.base.catalog import Catalog, CheckpointInfo
-from argo_compiler.script.documents.source import Diagnostics
+from argo_compiler.script.documents.source import Diagnostics, RefusedError
 from argo_compiler.script.proposals.mentions import Mention
 from argo_compiler.script.resolve.lookup import Lookup, agrees
 from argo_compiler.script.resolve.nouns import Memory, NounResolver
@@ -66,10 +67,15 @@ class Known:
         return found
 
     def alike(self, mention: Mention) -> list[CheckpointInfo]:
-        """Return the checkpoints that an unclear name may stand for: `gauge 8`, by name and by
-        number."""
-        nouns = mention.value.nouns if isinstance(mention.value, Nouns) else ()
-        noun = nouns[0] if len(nouns) == 1 else None
+        """Return the checkpoints that unclear words may stand for: `gauge 8`, by name and by
+        number; `R40 or R9`."""
+        nouns = mention.value
+        if not isinstance(nouns, Nouns):
+            return []
+        if nouns.either:  # `R40 or R9`
+            with suppress(RefusedError):
+                return self.resolver().each(nouns)
+        noun = nouns.nouns[0] if len(nouns.nouns) == 1 else None
         if not isinstance(noun, Labelled) or noun.kind is None:
             return []
         return [

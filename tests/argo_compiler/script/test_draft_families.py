@@ -278,6 +278,29 @@ def test_figures_are_left_where_number_and_name_differ(catalog: Catalog) -> None
 
 
 @pytest.mark.parametrize(
+    ("line", "choices"),
+    [
+        (
+            "If it is out of range, read it again.",
+            [
+                "If checkpoint 9 is out of range, read checkpoint 9 again.",
+                "If checkpoint 13 is out of range, read checkpoint 13 again.",
+            ],
+        ),
+        ("Check gauge 8.", ["Check checkpoint 8.", "Check checkpoint 18."]),
+        ("R40 or R9", ["Check checkpoint 17.", "Check checkpoint 19."]),
+        ("R12 -- done by hand, leave out", ["Check checkpoint 5.", "Do not check checkpoint 5."]),
+    ],
+)
+def test_what_has_several_meanings_has_them_as_choices(
+    line: str, choices: list[str], catalog: Catalog
+) -> None:
+    found = last(f"Check pressure gauge 4 and pressure gauge 6.\n{line}", catalog)
+    assert found.state is OPEN
+    assert {(choice,) for choice in choices} | {()} <= {*found.choices}
+
+
+@pytest.mark.parametrize(
     ("text", "chosen"),
     [
         ("If it is too high, check valve R7.", "If checkpoint 13 is above 7, check valve R7."),

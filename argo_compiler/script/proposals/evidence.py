@@ -155,10 +155,10 @@ _OF_LINES: tuple[tuple[str, _Test], ...] = (
     ("a field that a person fills in", _labels),
     ("a field that a mission does not have", _idle_fields),
     ("an entry that there is none", _is_none),
-    ("it states only what is not needed", _spares),
+    ("a statement of what is not needed", _spares),
 )
 _OF_CLAUSES: tuple[tuple[str, _Test], ...] = (
     ("for people, not for the robot", _for_people),
     (STATEMENT, _states),
-    ("it refers to the lines below", _refers),
+    ("a reference to the lines below", _refers),
 )

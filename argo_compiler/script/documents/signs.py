@@ -4,11 +4,11 @@ import re
 
 BLANK = re.compile(r"_{2,}|\.{4,}|…{2,}")
 """to be filled in by a person"""
-BOX = re.compile(r"[□☐]|\[\s*\]")
+_BOX = re.compile(r"[□☐]")
 RULE = re.compile(r"[\s|:=+-]*-[\s|:=+-]*")
 """a line between rows"""
 CLOCK = re.compile(
-    r"(?<![\d.:])(?P<hour>[0-9]{1,2})[:.](?P<minute>[0-9]{2})(?![\d:]|\.\d)(?:\s?(?:h|Uhr)\b)?"
+    r"(?<![\d.:])(?P<hour>[0-9]{1,2})[:.](?P<minute>[0-9]{2})(?!\d|:\d|\.\d)(?:\s?(?:h|Uhr)\b)?"
 )
 """a time of day"""
 DATE = re.compile(
@@ -17,3 +17,8 @@ DATE = re.compile(
     r"|(?:[0-9]{1,2}(?:st|nd|rd|th)?\s+(?:of\s+)?(?:Jan|Feb|Mar|Apr|May|Jun|Jul|Aug|Sep|Oct|Nov|Dec)[a-z]*"
     r"|(?:Jan|Feb|Mar|Apr|May|Jun|Jul|Aug|Sep|Oct|Nov|Dec)[a-z]*\s+[0-9]{1,2})\b)"
 )
+
+
+def is_to_fill(content: str) -> bool:
+    """Return True if a text has a blank or a box for a person to fill in."""
+    return BLANK.search(content) is not None or _BOX.search(content) is not None

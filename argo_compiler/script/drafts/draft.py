@@ -1,7 +1,7 @@
 """The draft of a mission: what each piece of a script becomes, and what is left to decide."""
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
@@ -212,23 +212,27 @@ def decisions_of(
 ) -> tuple[LineDecision, ...]:
     """Return the decisions on the lines of a script, given by text, act and sentences."""
     all_ = tuple(lines)
-    total = Counter(text for text, _, _ in all_)
-    met: Counter[str] = Counter()
-    found: list[LineDecision] = []
-    for text, act, sentences in all_:
-        met[text] += 1
-        if act is not None:
-            said = () if act is Act.SET_ASIDE else sentences
-            found.append(
-                LineDecision(
-                    text=text,
-                    act=act,
-                    sentences=said,
-                    occurrence=met[text],
-                    occurrences=total[text],
-                )
-            )
-    return tuple(found)
+    places = occurrences([text for text, _, _ in all_])
+    return tuple(
+        LineDecision(
+            text=text,
+            act=act,
+            sentences=() if act is Act.SET_ASIDE else sentences,
+            occurrence=occurrence,
+            occurrences=count,
+        )
+        for (text, act, sentences), (occurrence, count) in zip(all_, places, strict=True)
+        if act is not None
+    )
+
+
+def occurrences(items: Sequence[Hashable]) -> Iterator[tuple[int, int]]:
+    """Yield of each item which of its equals it is, from 1, and how many there are."""
+    total = Counter(items)
+    met: Counter[Hashable] = Counter()
+    for item in items:
+        met[item] += 1
+        yield met[item], total[item]
 
 
 class IncompleteDraft(DiagnosticError):

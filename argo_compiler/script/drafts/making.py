@@ -1,7 +1,6 @@
 """Script text to draft: the script is read, and what is left is proposed or asked about."""
 
 from bisect import bisect_right
-from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -16,7 +15,15 @@ from argo_compiler.diagnostics import (
     with_excerpts,
 )
 from argo_compiler.il import Mission
-from argo_compiler.script.drafts.draft import Act, Draft, DraftLine, LineDecision, LineState
+from argo_compiler.script.documents.source import Source
+from argo_compiler.script.drafts.draft import (
+    Act,
+    Draft,
+    DraftLine,
+    LineDecision,
+    LineState,
+    occurrences,
+)
 from argo_compiler.script.parsing.parser import parse
 from argo_compiler.script.parsing.script import Piece, Script
 from argo_compiler.script.proposals.composing import Proposal
@@ -32,6 +39,9 @@ _UNREAD = frozenset(
     ]
 )
 """codes of errors of a piece that the grammar does not take; others are questions"""
+
+_UNCLEAR = "script.ambiguous-"
+"""how codes of errors of a piece begin that has more than one meaning"""
 
 _LONGEST_SHOWN = 60
 """characters of a text that a message shows"""
@@ -78,7 +88,8 @@ def import_script(
         reading = _read(text, catalog, source_name, areas, said)
     errors = _errors_by_piece(reading)
     unread = {at for at, error in errors.items() if error.code in _UNREAD and at not in said}
-    proposals = propose(reading.script, unread, catalog, start_area)
+    unclear = {at for at, e in errors.items() if e.code.startswith(_UNCLEAR) and at not in said}
+    proposals = propose(reading.script, unread, unclear - unread, catalog, start_area)
     proposed = {at: p.sentences for at, p in proposals.items() if _reads(p)}
     if proposed:
         reading = _read(text, catalog, source_name, areas, {**said, **proposed})
@@ -126,13 +137,10 @@ def _match(decisions: Sequence[LineDecision], pieces: Sequence[Piece]) -> dict[i
         return {}
     by_line = {(decision.text, decision.occurrence): decision for decision in decisions}
     texts = [text_of(piece) for piece in pieces]
-    total = Counter(texts)
-    met: Counter[str] = Counter()
     found: dict[int, LineDecision] = {}
-    for text, piece in zip(texts, pieces, strict=True):
-        met[text] += 1
-        decision = by_line.get((text, met[text]))
-        if decision is not None and decision.occurrences == total[text]:
+    for text, piece, (nth, count) in zip(texts, pieces, occurrences(texts), strict=True):
+        decision = by_line.get((text, nth))
+        if decision is not None and decision.occurrences == count:
             found[piece.text.first] = decision
     return found
 
@@ -151,16 +159,14 @@ def _lines(
 ) -> Iterator[DraftLine]:
     pieces = reading.script.pieces
     spans = [_lines_of(piece) for piece in pieces]
-    counts = Counter(first for first, _ in spans)
-    met: Counter[int] = Counter()
-    for piece, (first, last) in zip(pieces, spans, strict=True):
-        met[first] += 1
+    parts = occurrences([first for first, _ in spans])
+    for piece, (first, last), (part, count) in zip(pieces, spans, parts, strict=True):
         at = piece.text.first
         line = DraftLine(
             line=first,
             last_line=last,
-            part=met[first],
-            parts=counts[first],
+            part=part,
+            parts=count,
             text=text_of(piece),
             state=LineState.SET_ASIDE if piece.aside else LineState.UNDERSTOOD,
             reason=piece.aside,
@@ -209,7 +215,7 @@ def _asides(reading: _Reading, proposals: Mapping[int, Proposal]) -> tuple[Diagn
         for message in proposal.differences:
             hint = "correct one of the two; the mission uses that of the site"
             found.append(diagnostic_of("script.other-range", message, hint, span=span))
-    return with_excerpts(found, reading.script.source_text.split("\n"))
+    return with_excerpts(found, Source(reading.script.source_text).lines)
 
 
 def _shown(text: str) -> str:

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from functools import cache
 from itertools import islice, pairwise
 
+from argo_compiler.script.documents.signs import CLOCK
 from argo_compiler.script.documents.source import Diagnostics, ScriptText, join
 from argo_compiler.script.sentences.grammar.parser import StumbleError
 from argo_compiler.script.sentences.understanding import Understanding
@@ -48,7 +49,6 @@ _PLACES = frozenset(["AREA", "DOCK", "PLACE", "FLOOR", "FLOOR_NAME", "LPAR", "X"
 """where one may come from; `from` is no order beside anything else"""
 _SINGLE = frozenset((verb,) for verb in VERBS)
 _JOINTS = ("JOINT", "NEXT", "AND_", "OR_", "COLON")
-_CLOCK = re.compile(r"\b[0-9]{1,2}[:.][0-9]{2}\b(?!\.)")
 _TOKEN = re.compile(r"[\w'-]+|[^\w\s]")
 _SAYING = _NAMED | {*VERBS, *_ASKING, "PLACE", "FLOOR_NAME", "EVENT", "IT", "THEM", "ALL"}
 _HEADING = frozenset(["WORD", "NUMBER", "ORDINAL", "FLOOR", "FLOOR_NAME", "TIME_WORD", "STEP"])
@@ -340,7 +340,7 @@ class Asides:
     def sets_aside(self, heading: ScriptText) -> bool:
         """Return True if a heading may exclude the lines below it, always or in some cases."""
         types = self.understanding.types(heading)
-        timed = types[:1] in (("BEFORE",), ("AFTER",)) or _CLOCK.search(heading.content) is not None
+        timed = types[:1] in (("BEFORE",), ("AFTER",)) or CLOCK.search(heading.content) is not None
         return timed or _limits(heading, "set_aside", "past")
 
     def corrects(self, remark: ScriptText) -> bool:

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
+from argo_compiler.script.documents.signs import BLANK, RULE
 from argo_compiler.script.documents.source import ScriptText, Source, join
 from argo_compiler.script.sentences.words.prose import Prose
 
@@ -70,8 +71,6 @@ class FormRow:
 
 Columns = list[tuple[int, CellRole]]
 """where the headings of columns begin, as offsets in the source, and what the columns hold"""
-_BLANK = re.compile(r"_{2,}|\.{4,}|…{2,}")
-"""to be filled in by a person"""
 _BOXES = re.compile(r"[□☐]|\[\s+\]")
 """within a line, where `[]` may be a list without items: `with joints []`"""
 _QUOTED = re.compile(r'"[^"]*"')
@@ -87,7 +86,6 @@ _CUTS = {
     ",": re.compile(","),
     "  ": re.compile(r"\s{2,}|\t"),
 }
-_RULE = re.compile(r"[\s|:=+-]*-[\s|:=+-]*")
 _SENTENCE = re.compile(r"[a-zäöüß)][.!?]\s{2,}[A-ZÄÖÜ]")
 _ENDED = re.compile(r"[!?]$|\w{4,}\.$")
 """at the end of a sentence, rather than of `n. a.`"""
@@ -124,13 +122,14 @@ def forms(
         lines = [(number, _cells(source.line_text(number), cut)) for number in group]
         if cut == "  ":
             lines = list(_wrapped(lines, source, texts))
-        headless = not any(_headings(found, prose) for _, found in lines)
+        heads = [_headings(found, prose) for _, found in lines]
+        headless = not any(heads)
         columns: Columns | None = None
-        for number, found in lines:
+        for (number, found), headings in zip(lines, heads, strict=True):
             line = source.line_text(number)
-            if _RULE.fullmatch(line.content):
+            if RULE.fullmatch(line.content):
                 texts[number] = line[:0]
-            elif (headings := _headings(found, prose)) is not None:
+            elif headings is not None:
                 columns = headings
                 rows[number] = FormRow(line.strip(), tuple(found), is_heading=True)
             elif (field := _field(found, prose)) is not None:
@@ -147,7 +146,7 @@ def forms(
             continue
         boxed, struck = _BOX.match(content), _STRUCK.match(content)
         ticked = boxed and not _OPEN_BOX.match(content)
-        blank = _BLANK.search(_QUOTED.sub("", content))
+        blank = BLANK.search(_QUOTED.sub("", content))
         boxes = _OPEN_BOX.match(content) or _BOXES.search(content)
         if blank or ticked or struck or (boxes and not is_plain(line)):
             rows[number] = _row(line, _cells(line, "  "), "  ")
@@ -217,7 +216,7 @@ def _groups(source: Source, taken: Mapping[int, ScriptText]) -> Iterator[tuple[l
     for number in range(1, len(source.lines) + 2):
         line = source.line_text(number).content if number <= len(source.lines) else ""
         here = "" if number in taken else _cut_of(line)
-        rule = cut == "|" and line.strip() and _RULE.fullmatch(line)
+        rule = cut == "|" and line.strip() and RULE.fullmatch(line)
         deep = cut == "  " and line.strip() and len(line) - len(line.lstrip()) >= _DEEP
         if group and (here == cut or rule or deep):
             group.append(number)

@@ -25,6 +25,8 @@ _EQUATION = re.compile(r"\s*(?P<short>[\w-]+(?: [\w-]+)?)\s*(?:=|:=)\s*(?P<long>
 _LISTED = re.compile(
     r"\s*(?:[-*•]\s+)?(?P<short>[\w-]+(?: [\w-]+)?)(?:\s{2,}|\s*[\t|:;=]\s*)(?P<long>\S.*?)\s*"
 )
+_PARTED = re.compile(r"[=\t|:;]|\S\s{2,}\S|^\s+$")
+"""a line without this explains nothing"""
 _BETWEEN = re.compile(r"[,;|]\s*|\s{2,}|\t")
 _LONGEST = 200
 """characters of a line that explains"""
@@ -127,13 +129,16 @@ def _lines(source: Source, glossary: Glossary) -> Iterator[tuple[int, ScriptText
     glossary; None for one that may be a task as well: `HV-025  valve R25` without a heading."""
     headed = False
     heading: tuple[int, ScriptText] | None = None
-    phrases = glossary.understanding.language.prose.form["glossary"]
+    is_heading = cue_pattern("glossary", glossary.understanding.language.prose.form["glossary"])
     for number, line in enumerate(source.lines, start=1):
+        if line and _PARTED.search(line) is None and not is_heading.match(line.lstrip()):
+            headed, heading = False, None
+            continue
         text = source.line_text(number).strip()
         if not text.content or len(line) > _LONGEST or len(glossary.meanings) > _MOST_MEANINGS:
             headed = headed and not text.content and not source.lines[number - 2].strip(" =-:")
             continue
-        if cue_pattern("glossary", phrases).fullmatch(text.content.rstrip(" :")):
+        if is_heading.fullmatch(text.content.rstrip(" :")):
             headed, heading = True, (number, text)
             continue
         found = _equations(text, glossary)
@@ -181,7 +186,7 @@ def _meant(found: re.Match[str], text: ScriptText, glossary: Glossary) -> list[t
     long = text[found.start("long") : found.end("long")]
     understanding = glossary.understanding
     types = understanding.types(long)
-    if not types or "WORD" in types:
+    if not types or "WORD" in types or short.lower() in understanding.names:
         return []
     named = bool({*types} & {"NUMBER", "IDENT", "STRING"})
     if _SHORT.fullmatch(short) is None and (not named or tag_of(short) is None):

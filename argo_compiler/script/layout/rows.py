@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from argo_compiler.script.documents.signs import RULE, is_to_fill
 from argo_compiler.script.documents.source import Diagnostics, ScriptText, Source, quotes
 from argo_compiler.script.layout.asides import Asides, ask_of_remark
 from argo_compiler.script.sentences.understanding import Understanding
@@ -16,8 +17,6 @@ from argo_compiler.script.sentences.words.prose import Prose
 
 COLUMN_HEADINGS = "column headings"
 """what the line of a table's headings is taken for"""
-_RULE = re.compile(r"[\s|:=+-]*-[\s|:=+-]*")
-_TO_FILL = re.compile(r"_{2,}|[□☐]|\.{4,}")
 _NUMBER = re.compile(r"[0-9]{1,6}")
 _NOT_APPLICABLE = frozenset(["n/a", "na", "n.a.", "entfällt", "entf."])
 _MOST_COLUMNS = 12
@@ -70,7 +69,7 @@ def tables(source: Source, understanding: Understanding, diagnostics: Diagnostic
     headings: list[_Heading] | None = None
     cut = ""
     for number, line in enumerate(source.lines, start=1):
-        if headings is not None and not (cut in line or _RULE.fullmatch(line)):
+        if headings is not None and not (cut in line or RULE.fullmatch(line)):
             headings = None
         if headings is None:
             cut = _cut_of(line)
@@ -78,7 +77,7 @@ def tables(source: Source, understanding: Understanding, diagnostics: Diagnostic
                 text = source.line_text(number)
                 headings = rows.headings(text, cut)
                 below = _below(source, number, cut)
-                if headings is not None and any(_TO_FILL.search(row.content) for row in below):
+                if headings is not None and any(is_to_fill(row.content) for row in below):
                     headings = None  # a sheet that a person fills in
                 if headings is not None:
                     found[number] = text[:0]
@@ -89,7 +88,7 @@ def tables(source: Source, understanding: Understanding, diagnostics: Diagnostic
             span = source.line_text(number).span()
             diagnostics.error("too-long", message, span, "split the mission into several scripts")
             break
-        elif _RULE.fullmatch(line):
+        elif RULE.fullmatch(line):
             found[number] = source.line_text(number)[:0]
         else:
             found[number] = rows.sentence(source.line_text(number), headings, cut)

@@ -258,6 +258,7 @@ class _Parser:
         own = _own_part(text, item)
         decided = self.decided.get(own.first) if self.decided else None
         if decided is not None:
+            self.reader.begun = True  # what is decided on is no title, and none comes behind it
             self.pieces.append(Piece(own, "" if decided else BY_HAND))
             return [said for sentence in decided for said in self._decided(sentence, own)]
         self.reader.noted = None

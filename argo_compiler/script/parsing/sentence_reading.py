@@ -101,6 +101,7 @@ class SentenceReader:
             return []
         whole = text.content == item.text.content.rstrip(".! ") and text.content[-1] != ":"
         alone = whole and item.line.mark is LineMark.NONE and not item.items
+        alone = alone and self.understanding.types(text)[:1] == ("MOST_TIME",)
         if (not self.ordered or alone) and self.fields.whole_mission(text):
             return []
         text = self._behind_limit(text)

@@ -49,10 +49,12 @@ _COMMA = re.compile(r"\s*[,;:]\s+|\s+-\s+")
 _PLAIN = frozenset(
     [
         *("AND_NOUN", "AND_DO", "AND_PLACE", "AND_ON", "NEXT", "COLON", "JOINT", "HE", "NAMELY"),
-        *("LPAR", "RPAR", "TO", "IN", "AT", "ON", "FOR", "IS"),
+        *("LPAR", "RPAR", "IS"),
     ]
 )
 """words that join others, of which none changes what a whole clause means"""
+_TOWARDS = frozenset(["TO", "IN", "AT", "ON", "FOR"])
+"""words that join a place"""
 _UNSURE = ("pronoun", "last", "first", "later", "again", "past", "over", "limit", "LESS", "WITHIN")
 """mentions beside which a proposal has to be confirmed"""
 _LIKE_CHECKS = re.compile(r"(?:Check|Order:|Maximum|Start|Return|End)")
@@ -110,6 +112,10 @@ class Composer:
             made = self._of_clauses(text, found)
         return made if made is not None else Proposal(choices=self._choices(text, found))
 
+    def ask(self, text: ScriptText) -> Proposal:
+        """Return only the choices of a text."""
+        return Proposal(choices=self._choices(text, mentions_in(text, self.understanding)))
+
     def _joined(self, text: ScriptText) -> Proposal | None:
         """Return what a text is with its figures put together, `#1 3` as `#13`, if then number and
         name are of one checkpoint."""
@@ -131,7 +137,7 @@ class Composer:
         """Return what a text is in words that the grammar, or a frame, takes."""
         if self._changes(found):
             return None
-        said = rephrased(self._on_event(self._alike(text)), self.understanding)
+        said = rephrased(self._within(self._on_event(self._alike(text))), self.understanding)
         if said.text.content == text.content:
             return None
         if reads(said.text, self.understanding):
@@ -182,7 +188,8 @@ class Composer:
             return Proposal(aside="a repetition of what is said above")
         unused = tuple(text.content[word.start : word.end] for word in found.unknown)
         bidden = found.has("MEASURE", "BE_MEASURED") or "courtesy" not in found.joining
-        plain = bidden and found.joining <= {*_PLAIN, "courtesy"}
+        towards = _TOWARDS if found.has("place") else frozenset()
+        plain = bidden and found.joining <= {*_PLAIN, *towards, "courtesy"}
         whole = plain and not unused and not found.has(*_UNSURE)
         certain = whole and all(map(_LIKE_CHECKS.match, sentences))
         return Proposal(sentences, unused, certain=certain)
@@ -206,7 +213,7 @@ class Composer:
             for k in range(len(starts) - 1, i, -1):
                 part = text[starts[i] : starts[k]].strip()
                 found = mentions_in(part, self.understanding)
-                if evidence(part, found, self.understanding.language):
+                if evidence(part, found, self.understanding.language, clause=True):
                     unused.append(part.content)
                     break
                 made = self._composed(part, found)
@@ -235,6 +242,8 @@ class Composer:
         for mention in found.of("checkpoints"):
             with suppress(RefusedError):
                 named |= {c.id: c for c in self.known.checkpoints([mention])}
+                continue
+            choices += [(f"Check checkpoint {c.id}.",) for c in self.known.alike(mention)]
         if 0 < len(named) <= _MOST_CHOSEN:
             words = checkpoint_words(list(named.values()))
             choices += [(f"Check {words}.",), (f"Do not check {words}.",)]
@@ -246,21 +255,17 @@ class Composer:
         return (*dict.fromkeys(choices), ())
 
     def _readings(self, text: ScriptText, found: Mentions) -> Iterator[Sentences]:
-        """Yield the text with each checkpoint that its pronoun may be, where it makes sense then;
-        of `too high` with the limit of that checkpoint."""
-        pronouns = found.of("pronoun")[:1]
-        candidates = {c.id: c for c in self._candidates(pronouns)}
-        for checkpoint in candidates.values():
+        """Yield the text with each checkpoint that its pronoun may be, if it makes sense then."""
+        pronouns = [m for m in found.of("pronoun") if _is_single(m)]
+        for checkpoint in {c.id: c for c in self._candidates(pronouns)}.values():
             said = text
-            for mention in pronouns:
+            for mention in reversed(pronouns):
                 article = _ARTICLE.search(text.content[: mention.start])
                 start = mention.start if article is None else article.start()
                 said = said.replace(start, mention.end, f"checkpoint {checkpoint.id}")
-            said = self._within(said, checkpoint)
-            if said is not text:
-                said = rephrased(said, self.understanding).text
-                if reads(said, self.understanding):
-                    yield (sentence(said),)
+            said = rephrased(self._within(said), self.understanding).text
+            if pronouns and reads(said, self.understanding):
+                yield (sentence(said),)
 
     def _candidates(self, pronouns: Sequence[Mention]) -> Sequence[CheckpointInfo]:
         """Return what a pronoun may be: `the pressure` is that of any gauge that was read."""
@@ -271,15 +276,20 @@ class Composer:
             return self.known.memory.last
         return [c for c in self.known.memory.so_far.values() if c.kind is kind]
 
-    def _within(self, text: ScriptText, checkpoint: CheckpointInfo) -> ScriptText:
-        """Return a text with `too high` as a limit."""
+    def _within(self, text: ScriptText) -> ScriptText:
+        """Return a text with `too high` as a limit of the checkpoint that is named before it."""
         prose = self.understanding.language.prose
-        limits = (("too_high", checkpoint.nominal.high), ("too_low", checkpoint.nominal.low))
-        for name, limit in limits:
+        for name in ("too_high", "too_low"):
             found = cue_pattern(name, prose.cues[name]).search(text.content)
-            if found is not None:
-                said = prose.say[name].format(f"{limit:g}")
-                text = text.replace(*found.span(), said)
+            before = mentions_in(text[: found.start()], self.understanding) if found else None
+            named = before.of("checkpoints")[-1:] if before is not None else ()
+            with suppress(RefusedError):
+                checkpoints = self.known.checkpoints(named)
+                if found is None or len(checkpoints) != 1:
+                    continue
+                normal = checkpoints[0].nominal
+                limit = normal.high if name == "too_high" else normal.low
+                text = text.replace(*found.span(), prose.say[name].format(f"{limit:g}"))
         return text
 
     def _depends(self, text: ScriptText, found: Mentions) -> bool:
@@ -289,3 +299,9 @@ class Composer:
         if begins is None or not found.unknown or found.occasion:
             return False
         return all(mention.start > found.unknown[0].start for mention in found.mentions)
+
+
+def _is_single(mention: Mention) -> bool:
+    """Return True for a pronoun that means one checkpoint: `it`, `the level`."""
+    nouns = mention.value.nouns if isinstance(mention.value, Nouns) else ()
+    return all(isinstance(noun, Pronoun) and not noun.every for noun in nouns)

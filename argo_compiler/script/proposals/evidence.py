@@ -40,9 +40,10 @@ _IN_PLACE = (
 """what a text mentions that only says that the robot does not dock in between"""
 
 
-def evidence(text: ScriptText, found: Mentions, language: Language) -> str:
-    """Return why a piece has no effect; empty if nothing shows that it has none."""
-    for reason, is_such in _KINDS:
+def evidence(text: ScriptText, found: Mentions, language: Language, clause: bool = False) -> str:
+    """Return why a piece, or a clause of one, has no effect; empty if nothing shows that it has
+    none."""
+    for reason, is_such in _OF_CLAUSES if clause else (*_OF_LINES, *_OF_CLAUSES):
         if is_such(text, found, language):
             return reason
     return ""
@@ -118,6 +119,14 @@ def _labels(text: ScriptText, found: Mentions, _: Language) -> bool:
     return _BLANK_LABELS.fullmatch(text.content) is not None and found.only(*OF_FORMS)
 
 
+def _idle_fields(text: ScriptText, found: Mentions, language: Language) -> bool:
+    """`Team: Blue      Trial: 2`"""
+    labels = cue_pattern("labels", language.prose.form["labels"])
+    heads = [part.partition(":") for part in re.split(r"\s{2,}", text.content)]
+    idle = all(colon and labels.fullmatch(label.strip()) for label, colon, _ in heads)
+    return idle and not found.has("checkpoints", "place")
+
+
 def _is_none(text: ScriptText, found: Mentions, language: Language) -> bool:
     """`None open`"""
     nothing = cue_pattern("nothing", language.prose.form["nothing"]).match(text.content)
@@ -137,15 +146,19 @@ def _spares(text: ScriptText, found: Mentions, language: Language) -> bool:
     return bool(homewards) and between and found.has("forbidding", "NOT") and found.only(*_IN_PLACE)
 
 
-_KINDS: tuple[tuple[str, Callable[[ScriptText, Mentions, Language], bool]], ...] = (
+_Test = Callable[[ScriptText, Mentions, Language], bool]
+_OF_LINES: tuple[tuple[str, _Test], ...] = (
     ("a separator", _separates),
     ("a heading", _heads),
     ("an answer", _answers),
     ("a question that names nothing of the mission", _wonders),
+    ("a field that a person fills in", _labels),
+    ("a field that a mission does not have", _idle_fields),
+    ("an entry that there is none", _is_none),
+    ("a statement of what is not needed", _spares),
+)
+_OF_CLAUSES: tuple[tuple[str, _Test], ...] = (
     ("for people, not for the robot", _for_people),
     (STATEMENT, _states),
-    ("a field that a person fills in", _labels),
-    ("an entry that there is none", _is_none),
-    ("it refers to the lines below", _refers),
-    ("it states only what is not needed", _spares),
+    ("a reference to the lines below", _refers),
 )

@@ -47,10 +47,11 @@ def _leave_out(found: Mentions, known: Known) -> Sentences | None:
 def _spare(named: Sequence[CheckpointInfo], known: Known) -> Sentences:
     """Return how checkpoints are left out: those that are asked for above are deleted. Nothing
     is said of those that are left out by now."""
-    new = [c for c in named if c.id not in known.spared | known.excepted]
-    known.spared |= {c.id for c in new}
+    new = [c for c in named if c.id not in known.spared | known.deleted | known.excepted]
     above = [c for c in new if c.id in known.memory.so_far]
     others = [c for c in new if c.id not in known.memory.so_far]
+    known.deleted |= {c.id for c in above}
+    known.spared |= {c.id for c in others}
     pairs = (("Delete", above), ("Do not check", others))
     return tuple(f"{verb} {checkpoint_words(some)}." for verb, some in pairs if some)
 
@@ -167,6 +168,7 @@ def _check(found: Mentions, known: Known) -> Sentences | None:
         "OF",
         "VALUE",
         "each",
+        "IF_TIME",
     )
     if not found.only("checkpoints", "pronoun", "MORE", "again", *allowed):
         return None
@@ -174,7 +176,9 @@ def _check(found: Mentions, known: Known) -> Sentences | None:
         named = found.of("pronoun")
         if not named or not found.has("MEASURE", "again", "MORE"):
             return None
-    if _verb_before(found, named[-1]):
+    if _verb_before(found, named[-1]) or _words_between(found, named):
+        return None
+    if found.has("first") and known.memory.so_far:
         return None
     with suppress(RefusedError):
         checkpoints = _placed(named, found.of("place"), known)
@@ -196,13 +200,15 @@ def _checks(
     if len(counts) > 1 or not all(isinstance(count, Figure) for count in counts):
         return None
     times = counts[0].whole if counts and isinstance(counts[0], Figure) else 1
-    if times != 1 and len(checkpoints) > 1 and not found.has("each"):
+    if times != 1 and ((len(checkpoints) > 1 and not found.has("each")) or found.has("IF_TIME")):
         return None
     nouns = [n for m in named if isinstance(m.value, Nouns) for n in m.value.nouns]
     free = len(checkpoints) > 1 and any(isinstance(noun, AllOf) for noun in nouns)
     known.measured(checkpoints)
     if times == 1:
-        return (f"Check {checkpoint_words(checkpoints)}{' in any order' if free else ''}.",)
+        manner = " in any order" if free else " if there is time" if found.has("IF_TIME") else ""
+        check = f"heck {checkpoint_words(checkpoints)}{manner}."
+        return (f"At the end, c{check}" if found.has("last") else f"C{check}",)
     return tuple(f"Check checkpoint {c.id} {times} times." for c in checkpoints)
 
 
@@ -310,6 +316,12 @@ def _wait(found: Mentions, _: Known) -> Sentences | None:
 def _before_unknown(mention: Mention, found: Mentions) -> bool:
     """Whether an unknown word follows at once, as in `no ladder`."""
     return any(0 <= word.start - mention.end <= 1 for word in found.unknown)
+
+
+def _words_between(found: Mentions, named: Sequence[Mention]) -> bool:
+    """Whether an unknown word stands between two checkpoints: `valve R7 as long as R40 is open`."""
+    first, last = named[0].end, named[-1].start
+    return any(first <= word.start < last for word in found.unknown)
 
 
 def _verb_before(found: Mentions, last: Mention) -> bool:

@@ -1,19 +1,20 @@
 """What a script has named, measured and left out so far, for what is proposed next."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from copy import copy
 from dataclasses import replace
 
 from argo_compiler.base.catalog import Catalog, CheckpointInfo
-from argo_compiler.script.documents.source import Diagnostics
+from argo_compiler.script.documents.source import Diagnostics, RefusedError
 from argo_compiler.script.proposals.mentions import Mention
-from argo_compiler.script.resolve.lookup import Lookup
+from argo_compiler.script.resolve.lookup import Lookup, agrees
 from argo_compiler.script.resolve.nouns import Memory, NounResolver
 from argo_compiler.script.sentences.tree.nouns import Labelled, Nouns
 from argo_compiler.script.sentences.tree.places import FloorName
 from argo_compiler.script.sentences.understanding import Understanding
 
-State = tuple[Memory, CheckpointInfo | None, set[int], set[int]]
+State = tuple[Memory, CheckpointInfo | None, set[int], set[int], set[int]]
 
 
 class Known:
@@ -29,6 +30,8 @@ class Known:
         """the checkpoints that a list names as its exceptions"""
         self.asked: set[int] = set()
         """the checkpoints that lines of the script ask for that need no proposal"""
+        self.deleted: set[int] = set()
+        """the checkpoints that were asked for and taken back"""
         self.spared: set[int] = set()
         """the checkpoints that are to be left out"""
         self.start_area: int | None = None
@@ -38,11 +41,11 @@ class Known:
         """Return what `reset` goes back to."""
         memory = copy(self.memory)
         memory.so_far = dict(memory.so_far)
-        return memory, self.last_named, {*self.excepted}, {*self.spared}
+        return memory, self.last_named, {*self.excepted}, {*self.deleted}, {*self.spared}
 
     def reset(self, state: State) -> None:
         """Forget what was measured and left out since a state."""
-        self.memory, self.last_named, self.excepted, self.spared = state
+        self.memory, self.last_named, self.excepted, self.deleted, self.spared = state
 
     def measured(self, checkpoints: Sequence[CheckpointInfo]) -> None:
         """Remember what was measured, as an earlier line says."""
@@ -62,6 +65,25 @@ class Known:
             last = (*nouns.nouns, *nouns.but)[-1]
             self.last_named = [*found, *excepted][-1] if isinstance(last, Labelled) else None
         return found
+
+    def alike(self, mention: Mention) -> list[CheckpointInfo]:
+        """Return the checkpoints that unclear words may stand for: `gauge 8`, by name and by
+        number; `R40 or R9`."""
+        nouns = mention.value
+        if not isinstance(nouns, Nouns):
+            return []
+        if nouns.either:  # `R40 or R9`
+            with suppress(RefusedError):
+                return self.resolver().each(nouns)
+        noun = nouns.nouns[0] if len(nouns.nouns) == 1 else None
+        if not isinstance(noun, Labelled) or noun.kind is None:
+            return []
+        return [
+            c
+            for c in self.catalog.checkpoints
+            if agrees(c, noun.kind)
+            and (c.id == noun.label or c.name.lower().endswith(f" {noun.label}".lower()))
+        ]
 
     def floors(self, floors: Sequence[FloorName]) -> set[int]:
         """Return the numbers of floors. Raises RefusedError if one is not on the site."""

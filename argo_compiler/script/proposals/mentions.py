@@ -110,6 +110,7 @@ def mentions_in(text: ScriptText, understanding: Understanding) -> Mentions:
     words = understanding.words(text)
     phrases = dict(_phrases(words, text, understanding))
     named = [m for m in phrases.values() if m.kind != "pronoun"]
+    named += [Mention(w.type, w.start, w.end) for w in words if w.type == "IF_TIME"]
     cues = [cue for cue in _cues(text.content, understanding) if not _overlaps(cue, named)]
     found = [cue for cue in cues if cue.kind not in _IDLE]
     if is_question(text, understanding.language.lexicon):
@@ -129,7 +130,7 @@ def mentions_in(text: ScriptText, understanding: Understanding) -> Mentions:
                 i += 1
             continue
         i += 1
-        misplaced = word.type == MISPLACED and word.value not in HARMLESS
+        misplaced = word.type == MISPLACED and word.value not in (*HARMLESS, "ADDITION")
         if not misplaced and any(cue.start < word.end and word.start < cue.end for cue in cues):
             continue
         if word.type == "WORD":

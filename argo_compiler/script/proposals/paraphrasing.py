@@ -15,6 +15,8 @@ from argo_compiler.script.sentences.words.lexicon import expand
 
 _LONGEST = 300
 """characters of a text that is paraphrased"""
+_ALONE = (("AREA", "NUMBER"),)
+"""what can be where a mission starts, or where it ends"""
 _BLANKS = re.compile(r"\s{2,}|\s(?=[,;])")
 _PART = {"n": r"[-\d.,]*\d(?:\s?(?:%|°|[a-z]{1,8}))?", "k": r"[\w-]+", "x": r".+?", "y": r".+"}
 """what stands for a slot: an amount, a word, or any words"""
@@ -49,6 +51,8 @@ def reads(text: ScriptText, understanding: Understanding) -> bool:
     """Return True if the grammar takes a text as a whole."""
     text = text[: len(text.content.rstrip(" .!"))]
     if not text.content or understanding.unfinished(text) is not None:
+        return False
+    if understanding.types(text) in _ALONE:
         return False
     reading = understanding.read(text)
     return not isinstance(reading, StumbleError) and "WORD" not in understanding.types(text)

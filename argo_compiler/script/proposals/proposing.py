@@ -44,10 +44,15 @@ _NAME = re.compile(r"[^\W\d_a-zäöü][^\W\d_A-ZÄÖÜ]+,")
 
 
 def propose(
-    script: Script, unread: Collection[int], catalog: Catalog, start_area: int | None = None
+    script: Script,
+    unread: Collection[int],
+    unclear: Collection[int],
+    catalog: Catalog,
+    start_area: int | None = None,
 ) -> dict[int, Proposal]:
-    """Return what is proposed for the unread pieces; by the offset at which a piece begins."""
-    if not unread:
+    """Return what is proposed for the unread pieces, and the choices of those that are unclear; by
+    the offset at which a piece begins."""
+    if not unread and not unclear:
         return {}
     source = Source(script.source_text, script.source_name)
     places = [place.name for place in catalog.places]
@@ -55,15 +60,22 @@ def propose(
     understanding = Understanding(language, frozenset(), Diagnostics(source))
     known = Known(understanding, catalog)
     known.start_area = _start_area(script) or start_area
-    return _Proposer(script, unread, Composer(understanding, known)).all()
+    return _Proposer(script, unread, unclear, Composer(understanding, known)).all()
 
 
 class _Proposer:
     """Goes through the pieces of a script. Mutable: what one means depends on those before it."""
 
-    def __init__(self, script: Script, unread: Collection[int], composer: Composer) -> None:
+    def __init__(
+        self,
+        script: Script,
+        unread: Collection[int],
+        unclear: Collection[int],
+        composer: Composer,
+    ) -> None:
         self.script = script
         self.unread = unread
+        self.unclear = unclear
         self.composer = composer
         self.understanding = composer.understanding
         texts = (self._whole(p) for p in script.pieces if p.text.first in unread)
@@ -86,9 +98,11 @@ class _Proposer:
             proposal: Proposal | None = None
             if start in self.unread and len(self.found) < MAX_PROPOSED:
                 proposal = self._proposal(piece, i)
+            elif start in self.unclear and len(self.found) < MAX_PROPOSED:
+                proposal = self.composer.ask(piece.text)
             elif self.plan is not None and has_date(piece.text) and not named:
                 proposal = Proposal(choices=((),), doubt=NO_DATES)
-            elif named and self._is_spared(named):
+            elif named and self._is_spared(named, piece.text):
                 proposal = Proposal(aside="left out, as another line says")
             if proposal is not None and self._is_left_out(proposal):
                 proposal = Proposal(aside="left out, as another line says")
@@ -162,7 +176,11 @@ class _Proposer:
         header = text.source.lines[:_FIRST]
         return ends or any(text.content in line and ":" in line for line in header)
 
-    def _is_spared(self, named: Sequence[Mention]) -> bool:
+    def _is_spared(self, named: Sequence[Mention], text: ScriptText) -> bool:
+        """Return True for an item of a list that a line above it leaves out; an order of its own
+        contradicts that line."""
+        if "MEASURE" in self.understanding.types(text):
+            return False
         with suppress(RefusedError):
             ids = {c.id for c in self.composer.known.checkpoints(named)}
             return bool(ids) and ids <= self.composer.known.spared

@@ -10,6 +10,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 
 from argo_compiler.base.catalog import CheckpointInfo, CheckpointKind
+from argo_compiler.script.documents.signs import CLOCK
 from argo_compiler.script.documents.source import RefusedError, ScriptText
 from argo_compiler.script.documents.tags import count_tag, tag_of
 from argo_compiler.script.layout.forms import Cell, CellRole, FormRow
@@ -35,7 +36,6 @@ _RANGE = re.compile(
 )
 _NUMBER = re.compile(r"\d+(?:\.\d+)*\.?")
 _PLAIN = re.compile(r"\d+(?:[.,]\d+)?")
-_CLOCK = re.compile(r"\b\d{1,2}[:.]\d{2}\b")
 _BAR = {"bar": 1.0, "kpa": 0.01, "mbar": 0.001, "psi": 0.0689476, "mpa": 10.0}
 _UNITS = {
     CheckpointKind.PRESSURE_GAUGE: frozenset([*_BAR, "barg", "bar g"]),
@@ -71,7 +71,7 @@ def propose_row(row: FormRow, composer: Composer, first: bool = False) -> Propos
     """Return what a row proposes; `certain` if every cell agrees with the site. `first`: it is the
     first line of the script, and may be its title."""
     if row.is_heading:
-        times = [c for c in row.cells if _CLOCK.fullmatch(c.text.content)]
+        times = [c for c in row.cells if CLOCK.fullmatch(c.text.content)]
         if len(times) > 1:
             return Proposal(choices=((),), doubt="these times can be rounds at these times of day")
         return Proposal(aside="the headings of columns")
@@ -238,18 +238,32 @@ def _is_normal(text: str, form: Mapping[str, str]) -> bool:
 
 
 def _read_remark(text: ScriptText, found: _Row, composer: Composer) -> bool:
-    cues = composer.understanding.language.prose.cues
-    form = composer.understanding.language.prose.form
-    if cue_pattern("nothing", form["nothing"]).fullmatch(text.content):
-        found.doubts.append(f"`{text.content}` can mean that this is left out")
-    elif cue_pattern("leave_out", form["leave_out"]).search(text.content):
+    if not _read_doubts(text.content, found, composer):
+        if _asks(text, composer):
+            found.doubts.append(f"`{text.content}` can change what is done here")
+        else:
+            found.unused.append(text.content)
+    return True
+
+
+def _read_doubts(content: str, found: _Row, composer: Composer) -> bool:
+    """Return True if a cell says that the row is left out, or may say so."""
+    prose = composer.understanding.language.prose
+    left = _without_fill(content, prose.form)
+
+    def has(cues: Mapping[str, str], name: str) -> bool:
+        return cue_pattern(name, cues[name]).search(left) is not None
+
+    if cue_pattern("nothing", prose.form["nothing"]).fullmatch(content):
+        found.doubts.append(f"`{content}` can mean that this is left out")
+    elif has(prose.form, "leave_out") or has(prose.cues, "leave_out"):
         found.left_out = True
-    elif cue_pattern("forbidding", cues["forbidding"]).search(text.content) or _asks(
-        text, composer
-    ):
-        found.doubts.append(f"`{text.content}` can change what is done here")
+    elif has(prose.form, "done"):
+        found.doubts.append(_TICKED)
+    elif has(prose.cues, "forbidding"):
+        found.doubts.append(f"`{content}` can change what is done here")
     else:
-        found.unused.append(text.content)
+        return False
     return True
 
 
@@ -272,24 +286,14 @@ def _without_fill(text: str, form: Mapping[str, str]) -> str:
 
 def _read_cell(text: ScriptText, found: _Row, composer: Composer) -> None:
     """Read a cell by what it contains."""
-    prose = composer.understanding.language.prose
-    form, cues = prose.form, prose.cues
+    form = composer.understanding.language.prose.form
     content = text.content
-    if cue_pattern("nothing", form["nothing"]).fullmatch(content):
-        found.doubts.append(f"`{content}` can mean that this is left out")
+    nothing = cue_pattern("nothing", form["nothing"]).fullmatch(content) is not None
+    if not nothing and (not _without_fill(content, form) or _RANGE.fullmatch(content)):
         return
-    left = _without_fill(content, form)
-    if not left or _RANGE.fullmatch(content):
+    _read_doubts(content, found, composer)
+    if nothing:
         return
-    if any(
-        cue_pattern("leave_out", said).search(left)
-        for said in (form["leave_out"], cues["leave_out"])
-    ):
-        found.left_out = True
-    elif cue_pattern("done", form["done"]).search(left):
-        found.doubts.append(_TICKED)
-    elif cue_pattern("forbidding", cues["forbidding"]).search(left):
-        found.doubts.append(f"`{content}` can change what is done here")
     mentions = mentions_in(text, composer.understanding)
     named = mentions.of("checkpoints")
     found.together = bool(named) and not found.named

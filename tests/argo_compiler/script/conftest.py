@@ -1,7 +1,7 @@
 """A made-up site with the checkpoints of the competition's kind, and where the scripts lie."""
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import pytest
@@ -18,7 +18,7 @@ from argo_compiler.base.catalog import (
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity
 from argo_compiler.il import Mission
-from argo_compiler.script import Resolved
+from argo_compiler.script import Draft, LineDecision, Resolved, import_script
 from tests.mission_writing import unplaced
 from tests.whole_scripts import import_whole
 
@@ -67,6 +67,13 @@ def make_catalog() -> Catalog:
 
 
 CATALOG = make_catalog()
+
+
+def draft_of(
+    text: str, catalog: Catalog = CATALOG, decisions: Iterable[LineDecision] = ()
+) -> Draft:
+    """Return the draft of a script for starting area 1."""
+    return import_script(text, catalog, start_area=1, decisions=decisions)
 
 
 def findings(text: str, catalog: Catalog, **areas: int) -> tuple[Diagnostic, ...]:

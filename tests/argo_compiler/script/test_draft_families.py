@@ -4,15 +4,11 @@ import pytest
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.il import Mission, Order
-from argo_compiler.script import Draft, DraftLine, LineState, import_script
-from tests.argo_compiler.script.conftest import measured_in
+from argo_compiler.script import DraftLine, LineState
+from tests.argo_compiler.script.conftest import draft_of, measured_in
 
 OPEN, PROPOSED = LineState.OPEN, LineState.PROPOSED
 ASIDE, UNDERSTOOD = LineState.SET_ASIDE, LineState.UNDERSTOOD
-
-
-def draft_of(text: str, catalog: Catalog, decisions=()) -> Draft:
-    return import_script(text, catalog, start_area=1, decisions=decisions)
 
 
 def confirmed(text: str, catalog: Catalog) -> Mission:
@@ -28,18 +24,13 @@ def last(text: str, catalog: Catalog) -> DraftLine:
 @pytest.mark.parametrize(
     ("line", "sentence"),
     [
-        ("If valve R25 is not open, go home.", "If valve R25 is below 80 degrees, go home."),
-        ("If R25 is closed, check R12.", "If R25 is below 10 degrees, check R12."),
-        ("If R25 isn't fully open, check R12", "If R25 is below 80 degrees, check R12."),
-        (
-            "Check R12 unless R25 is half open.",
-            "Check R12 unless R25 is between 35 and 55 degrees.",
-        ),
         ("Skip R12 unless #1 is above 6 bar.", "If #1 is above 6 bar, check R12."),
         ("Leave out R12 if #1 is above 6 bar.", "Check R12 unless #1 is above 6 bar."),
         ("Battery under 25 %: return to the dock.", "If Battery under 25 %, return to the dock."),
         ("Gas alarm: go home", "If Gas alarm, go home."),
         ("when 50 % is passed: read #4", "If it is above 50 %: read #4."),
+        ("If #6 is too high, check R12.", "If #6 is above 7, check R12."),
+        ("Between minute 5 and 10: R12", "Check R12 between minute 5 and minute 10."),
         ("Everything must be finished by minute 45", "Maximum duration: 45 minutes."),
         ("read it every 2 min, six readings", "Read it every 2 min, six times."),
     ],
@@ -54,10 +45,6 @@ def test_a_condition_in_other_words_is_proposed_whole(
 @pytest.mark.parametrize(
     ("line", "sentence"),
     [
-        (
-            "Wenn Ventil R25 nicht offen ist, prüfe Ventil R12.",
-            "Wenn Ventil R25 unter 80 Grad liegt, prüfe Ventil R12.",
-        ),
         (
             "Bei Gasalarm sofort ins Dock.",
             "Wenn ein Gasleck erkannt wird, kehre zur Dockingstation zurück.",
@@ -80,7 +67,21 @@ def test_a_german_condition_likewise(line: str, sentence: str, catalog: Catalog)
         "In case of rain: return to the dock",
         "With the lid closed, read valve R12.",
         "If it rains, check valve R12.",
+        "Check liquid level gauge 4 as long as R40 is closed.",
+        "Check R9 and, provided the hatch is open, R12.",
         "Check valve R12 unless the gate is locked off.",
+        "R12 once R25 was read",
+        "Done today: R12, R31",
+        "R12 - out of order?",
+        "R12 = R31",
+        "back to the dock, but not before R12 was read",
+        "ten minutes later R12 if the hatch is open",
+        "R12: two readings not ten minutes apart",
+        "everything finished by minute 45 except R12",
+        "sorry, not R25 but R12 or R31",
+        "do not leave out R12",
+        "there is no need for R12 to be skipped",
+        "any order is fine except R12 first",
         "After three failures in all, come home.",
         "An abnormal reading is read again once; the run is not broken off.",
         "Be back in the dock before the tea break.",
@@ -146,6 +147,7 @@ def test_a_correction_of_what_is_not_asked_for_is_asked_about(catalog: Catalog) 
         "None open",
         "-----Original Message-----",
         "Name:        Date:",
+        "Team: Blue       Trial: 2",
     ],
 )
 def test_a_line_that_asks_for_nothing_is_set_aside_with_a_reason(
@@ -174,6 +176,32 @@ def test_a_line_is_not_set_aside_because_it_is_unknown(line: str, catalog: Catal
     draft = draft_of(f"Check #1.\n\n{line}\n\nCheck #4.\nCheck #8.\nGo home.", catalog)
     (first, *_) = [one.state for one in draft.lines if one.line == 3]
     assert first is not ASIDE
+
+
+@pytest.mark.parametrize("line", ["R12 last", "R12 on", "R12 maybe", "R12 in the morning"])
+def test_a_line_with_a_word_that_may_mean_more_has_to_be_confirmed(
+    line: str, catalog: Catalog
+) -> None:
+    assert last(f"Check #1.\n{line}", catalog).state is PROPOSED
+
+
+def test_what_comes_last_is_last(catalog: Catalog) -> None:
+    text = "pressure gauge 1\nR12 last\n"
+    assert measured_in(confirmed(text, catalog)) == ["1", "5"]
+    draft = draft_of(f"{text}R31\n", catalog)
+    assert draft.lines[1].state is OPEN
+
+
+def test_an_order_of_its_own_contradicts_what_leaves_it_out(catalog: Catalog) -> None:
+    draft = draft_of("R12 is out of service.\nCheck #1.\nCheck R12.", catalog)
+    assert draft_of("R12 is out of service.\nCheck #1.\nCheck R12.", catalog, draft.confirm()).left
+
+
+def test_no_line_becomes_the_title_when_the_one_above_it_is_set_aside(catalog: Catalog) -> None:
+    text = "Photograph the pump.\narea 1 as always\nCheck #1."
+    draft = draft_of(text, catalog)
+    aside = draft_of(text, catalog, draft.set_aside(["1"]))
+    assert [line.state for line in aside.lines] == [ASIDE, OPEN, UNDERSTOOD]
 
 
 def test_a_reply_takes_the_list_that_it_quotes(catalog: Catalog) -> None:
@@ -247,6 +275,29 @@ def test_figures_are_put_together_where_number_and_name_agree(
 def test_figures_are_left_where_number_and_name_differ(catalog: Catalog) -> None:
     line = last("Check #1.\nCheckpoint #1 3: read the value on pressure gauge 5", catalog)
     assert line.state is OPEN
+
+
+@pytest.mark.parametrize(
+    ("line", "choices"),
+    [
+        (
+            "If it is out of range, read it again.",
+            [
+                "If checkpoint 9 is out of range, read checkpoint 9 again.",
+                "If checkpoint 13 is out of range, read checkpoint 13 again.",
+            ],
+        ),
+        ("Check gauge 8.", ["Check checkpoint 8.", "Check checkpoint 18."]),
+        ("R40 or R9", ["Check checkpoint 17.", "Check checkpoint 19."]),
+        ("R12 -- done by hand, leave out", ["Check checkpoint 5.", "Do not check checkpoint 5."]),
+    ],
+)
+def test_what_has_several_meanings_has_them_as_choices(
+    line: str, choices: list[str], catalog: Catalog
+) -> None:
+    found = last(f"Check pressure gauge 4 and pressure gauge 6.\n{line}", catalog)
+    assert found.state is OPEN
+    assert {(choice,) for choice in choices} | {()} <= {*found.choices}
 
 
 @pytest.mark.parametrize(

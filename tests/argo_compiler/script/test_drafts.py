@@ -10,10 +10,9 @@ from argo_compiler.script import (
     IncompleteDraft,
     LineState,
     draft_text,
-    import_script,
     read_decisions,
 )
-from tests.argo_compiler.script.conftest import measured_in
+from tests.argo_compiler.script.conftest import draft_of, measured_in
 
 MAIL = """\
 Hi Lena,
@@ -26,10 +25,6 @@ The crane is at the gate.
 Thanks
 Marek
 """
-
-
-def draft_of(text: str, catalog: Catalog, decisions=()) -> Draft:
-    return import_script(text, catalog, start_area=1, decisions=decisions)
 
 
 def state(draft: Draft, label: str) -> LineState:

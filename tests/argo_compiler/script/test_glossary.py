@@ -3,12 +3,8 @@
 import pytest
 
 from argo_compiler.base.catalog import Catalog
-from argo_compiler.script import Draft, LineState, import_script
-from tests.argo_compiler.script.conftest import measured_in
-
-
-def draft_of(text: str, catalog: Catalog) -> Draft:
-    return import_script(text, catalog, start_area=1)
+from argo_compiler.script import LineState
+from tests.argo_compiler.script.conftest import draft_of, measured_in
 
 
 def tagged(catalog: Catalog, **tags: int) -> Catalog:

@@ -4,13 +4,9 @@ import pytest
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.script import Draft, DraftLine, LineState, import_script
-from tests.argo_compiler.script.conftest import measured_in
+from tests.argo_compiler.script.conftest import draft_of, measured_in
 
 HEADINGS = "Item   Description              Normal       Unit   Reading    Initials\n"
-
-
-def draft_of(text: str, catalog: Catalog, decisions=()) -> Draft:
-    return import_script(text, catalog, start_area=1, decisions=decisions)
 
 
 def at(draft: Draft, line: int) -> DraftLine:

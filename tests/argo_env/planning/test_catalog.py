@@ -15,6 +15,7 @@ from argo_env.files.parts import Parts
 from argo_env.navigation import Navigator
 from argo_env.planning.catalog import load_catalog, make_catalog
 from argo_env.planning.inspection_views import inspection_views_by_object_id
+from argo_env.site import make_site
 from tests.whole_scripts import import_whole
 from tests.yard import site_of
 
@@ -29,6 +30,15 @@ def test_checkpoints_are_the_sites(catalog, umad):
         checkpoint = umad.checkpoint(info.id)
         for name in ("kind", "name", "floor", "unit", "range", "nominal"):
             assert getattr(info, name) == getattr(checkpoint, name)
+
+
+def test_plant_tags_of_the_site_are_in_the_catalogue(umad, navigator):
+    spec = umad.spec.model_dump(mode="json")
+    spec["floors"][0]["checkpoints"][0]["tags"] = ["20-PI-1034A"]
+    site = make_site(type(umad.spec).model_validate(spec))
+    (first, *others) = load_catalog(site, navigator.parts).checkpoints
+    assert first.tags == ("20-PI-1034A",)
+    assert not any(one.tags for one in others)
 
 
 def test_areas_and_places(catalog, umad):

@@ -107,6 +107,8 @@ def change(description, where, value):
         (("floors", 2, "colour"), "red", "floors[2].colour"),
         (("floors", 1, "number"), 7, "numbered"),
         (("floors", 1, "checkpoints", 0, "id"), 1, "checkpoint 1 occurs twice"),
+        (("floors", 1, "checkpoints", 0, "tags"), ["PI-1", "pi-1"], "tag PI-1 occurs twice"),
+        (("floors", 1, "checkpoints", 0, "tags"), "PI-1", "floors[1].checkpoints[0].tags"),
         (("floors", 1, "checkpoints", 0, "kind"), "lever", "floors[1].checkpoints[0].kind"),
         (
             ("floors", 1, "checkpoints", 0, "nominal", "low"),

@@ -143,7 +143,7 @@ export class MissionImport extends PageElement {
           headers: { "Content-Type": "application/octet-stream" },
         }),
       );
-      location.hash = `#/missions/${made.id}`;
+      location.hash = "lines" in made ? `#/drafts/${made.id}` : `#/missions/${made.id}`;
     } catch (error) {
       const open = error instanceof Refusal ? openAreas(error) : null;
       if (open === null) this.tellImport(file.name, error);

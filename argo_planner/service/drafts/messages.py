@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field
 
-from argo_compiler.base.errors import Invalid
+from argo_compiler.base.errors import Invalid, Remedy
 from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.script.drafts.draft import Act, Draft, DraftLine, LineDecision, LineState
@@ -137,6 +137,8 @@ class DraftState(DraftSummary):
     start_area: int | None = None
     """area that a person has chosen; None: none"""
     end_area: int | None = None
+    areas_to_choose: tuple[Literal["start", "end"], ...] = ()
+    """areas that the script leaves open"""
     lines: tuple[DraftedLine, ...]
     diagnostics: tuple[Diagnostic, ...] = ()
     """warnings and notes, and the errors that are not about one of the open lines"""
@@ -155,6 +157,16 @@ def drafted_lines(draft: Draft, steps: Mapping[int, tuple[str, ...]]) -> tuple[D
         fields |= {"label": line.label, "steps": tuple(said) if own else ()}
         found.append(DraftedLine.model_construct(**fields))
     return tuple(found)
+
+
+def areas_to_choose(
+    draft: Draft, problems: Iterable[Diagnostic]
+) -> tuple[Literal["start", "end"], ...]:
+    """Return which areas a script leaves open."""
+    remedies = {remedy for one in (*draft.diagnostics, *problems) for remedy in one.remedies}
+    start: tuple[Literal["start"], ...] = ("start",) if Remedy.CHOOSE_START in remedies else ()
+    end: tuple[Literal["end"], ...] = ("end",) if Remedy.CHOOSE_END in remedies else ()
+    return (*start, *end)
 
 
 def other_messages(draft: Draft, problems: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:

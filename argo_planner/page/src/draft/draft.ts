@@ -1,5 +1,6 @@
 /** The draft of a script: its lines and what they become, in two columns. Everything works by keyboard. */
 
+import { computed } from "@preact/signals-core";
 import { guard } from "lit/directives/guard.js";
 import { repeat } from "lit/directives/repeat.js";
 
@@ -176,7 +177,7 @@ export class DraftView extends PageElement {
     const texts = t().draft;
     const may = mayPlan();
     const lines = shownLines.value;
-    const notes = notesByLine(draft);
+    const notes = notesByLine.value;
     const spoken = language.value;
     return html`<main class="page">
       ${this.head(draft, may)} ${this.areas(draft, may)} ${this.messages(draft)}
@@ -257,9 +258,9 @@ export class DraftView extends PageElement {
   /** Render the choice of areas that the script leaves open. */
   private areas(draft: DraftState, may: boolean) {
     const texts = t().draft;
-    const remedies = draft.diagnostics.flatMap((one) => (one.code === "script.area-choice" ? [one.message] : []));
-    const chosen = typeof draft.start_area === "number" || typeof draft.end_area === "number";
-    if (remedies.length === 0 && !chosen) return nothing;
+    const [start, end] = [draft.start_area ?? null, draft.end_area ?? null];
+    const asks = { start: draft.areas_to_choose.includes("start"), end: draft.areas_to_choose.includes("end") };
+    if (!asks.start && !asks.end && start === null && end === null) return nothing;
     const all = [["", texts.leftOpen] as const, ...(world.value?.docks ?? []).map(({ area }) => [String(area), area] as const)];
     const numberOf = (text: string) => (text === "" ? null : Number(text));
     const choice = (id: string, label: string, value: number | null | undefined, choose: (text: string) => void) =>
@@ -269,12 +270,15 @@ export class DraftView extends PageElement {
           ${options(all, typeof value === "number" ? String(value) : "")}
         </select>
       </label>`;
-    const [start, end] = [draft.start_area ?? null, draft.end_area ?? null];
     return html`<section class="told" aria-label=${texts.areas}>
       <p>${texts.areas}</p>
       <div class="areas">
-        ${choice("start-area", texts.startArea, start, (text) => void chooseAreas(numberOf(text), end))}
-        ${choice("end-area", texts.endArea, end, (text) => void chooseAreas(start, numberOf(text)))}
+        ${asks.start || start !== null
+          ? choice("start-area", texts.startArea, start, (text) => void chooseAreas(numberOf(text), end))
+          : nothing}
+        ${asks.end || end !== null
+          ? choice("end-area", texts.endArea, end, (text) => void chooseAreas(start, numberOf(text)))
+          : nothing}
       </div>
     </section>`;
   }
@@ -461,9 +465,11 @@ function indexOf(event: Event): number | null {
   return row === null ? null : Number(row.dataset["index"]);
 }
 
-/** Return the warnings and notes about each line, by its label. */
-function notesByLine(draft: DraftState): Map<string, Diagnostic[]> {
+/** The warnings and notes about each line, by its label. */
+const notesByLine = computed(() => {
   const found = new Map<string, Diagnostic[]>();
+  const draft = openedDraft.value;
+  if (draft === null) return found;
   const told = draft.diagnostics.filter((one) => one.severity !== "error" && one.span);
   for (const note of told) {
     const at = note.span?.line ?? 0;
@@ -471,4 +477,4 @@ function notesByLine(draft: DraftState): Map<string, Diagnostic[]> {
     if (line) found.set(line.label, [...(found.get(line.label) ?? []), note]);
   }
   return found;
-}
+});

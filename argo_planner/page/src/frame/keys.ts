@@ -88,8 +88,8 @@ export class PageKeys extends PageElement {
     const key = event.key.toLowerCase();
     const command = event.ctrlKey || event.metaKey;
     if (key === "?" && !command) keysShown.value = true;
-    else if (command && mayPlan() && key === "z") void (event.shiftKey ? redo() : undo());
-    else if (command && mayPlan() && key === "y") void redo();
+    else if (command && planId.value !== null && mayPlan() && key === "z") void (event.shiftKey ? redo() : undo());
+    else if (command && planId.value !== null && mayPlan() && key === "y") void redo();
     else if (key === "f8" && planId.value !== null) openRun();
     else if (key === "f9" && !event.repeat && canTakeOver()) void takeOver();
     else if (key === "escape" && tool.value !== "select") {

@@ -23,7 +23,7 @@ MAX_SENTENCE_LENGTH = 1_000
 MOST_SENTENCES = 20
 MAX_AREA = 1_000
 
-_OF_ASIDES = frozenset(["script.set-aside", "script.no-effect"])
+OF_ASIDES = frozenset(["script.set-aside", "script.no-effect"])
 """codes of messages whose text is the reason why a line is set aside"""
 
 Label = Annotated[str, Field(pattern=r"^[0-9]{1,9}(\.[0-9]{1,6})?$")]
@@ -188,7 +188,7 @@ def other_messages(draft: Draft, problems: Iterable[Diagnostic]) -> tuple[Diagno
         number = 0 if diagnostic.span is None else diagnostic.span.line
         if diagnostic.severity is Severity.ERROR:
             return (number, diagnostic.message) not in reasons
-        return not (diagnostic.code in _OF_ASIDES and number in aside)
+        return not (diagnostic.code in OF_ASIDES and number in aside)
 
     found = filter(is_other, draft.diagnostics)
     return tuple(dict.fromkeys([*problems, *found]))[:MOST_MESSAGES]

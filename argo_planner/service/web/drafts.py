@@ -3,7 +3,12 @@
 from fastapi import Response
 
 from argo_compiler.base.model import Model
-from argo_planner.service.drafts.messages import ActsOnDraft, DraftState, DraftSummary
+from argo_planner.service.drafts.messages import (
+    OF_ASIDES,
+    ActsOnDraft,
+    DraftState,
+    DraftSummary,
+)
 from argo_planner.service.storage.outline import PlanSummary
 from argo_planner.service.web.bodies import JsonBody
 from argo_planner.service.web.missions import MISSION_LINKS, create_plan
@@ -70,8 +75,9 @@ async def complete_draft(
     422 with the code `incomplete` if lines are left to decide on.
     """
     stored, imported = await service.drafts.complete_mission(id, made_on, visitor.key)
-    mission, notes = imported.mission, imported.diagnostics
-    answer = await create_plan(service, stored.name, mission, notes, stored.text)
+    # What lines are set aside, people have seen in the draft.
+    notes = tuple(note for note in imported.diagnostics if note.code not in OF_ASIDES)
+    answer = await create_plan(service, stored.name, imported.mission, notes, stored.text)
     await service.drafts.delete(id)
     return answer
 

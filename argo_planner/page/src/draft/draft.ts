@@ -230,7 +230,7 @@ export class DraftView extends PageElement {
                 .join(", ")}
         </span>
         <span class="dim" id="saved">${actsSaved.value ? texts.saved : texts.saving}</span>
-        ${may && confirming > 0
+        ${may && confirming > 1
           ? html`<button id="confirm-all" title="Shift+C" @click=${this.confirmAll}>
               ${icon("check", 16)} ${texts.confirmAll(confirming)}
             </button>`

@@ -2,6 +2,7 @@
 
 import { signal } from "@preact/signals-core";
 
+import { openedDraft } from "../draft/state";
 import { PropertiesPanel } from "../forms/properties";
 import { redo, undo } from "../state/commands";
 import { dismissNewest, notices } from "../state/notices";
@@ -103,7 +104,9 @@ export class PageKeys extends PageElement {
   };
 
   override render() {
-    const groups = keysShown.value ? Object.values(t().keys) : [];
+    const { draft, ...others } = t().keys;
+    const all = openedDraft.value === null ? [...Object.values(others), draft] : [draft, ...Object.values(others)];
+    const groups = keysShown.value ? all : [];
     return html`<dialog
       aria-labelledby="title"
       @close=${() => (keysShown.value = false)}

@@ -51,7 +51,6 @@ export class ImportedScript extends PageElement {
     .text {
       padding: 6px 8px 6px 0;
       font: 13px/1.6 ui-monospace, "DejaVu Sans Mono", monospace;
-      white-space: pre-wrap;
       overflow-wrap: anywhere;
       outline-offset: -2px;
     }
@@ -59,6 +58,9 @@ export class ImportedScript extends PageElement {
       display: grid;
       grid-template-columns: 34px minmax(0, 1fr);
       gap: 8px;
+    }
+    .line > span:last-child {
+      white-space: pre-wrap;
     }
     .line > span:first-child {
       color: var(--dim);
@@ -97,7 +99,7 @@ export class ImportedScript extends PageElement {
 
   override render() {
     const entries = missionSentences.value?.reading.entries ?? [];
-    this.lines = linesWithWords(importedText.value, entries);
+    this.lines = linesWithWords(importedText.value.trimEnd(), entries);
     const chosen = new Set(selection.value.map(nameOfKey));
     const active = nameOfKey(selection.value.at(-1) ?? "");
     const hasActive = this.names().includes(active);

@@ -13,7 +13,7 @@ from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.script.drafts.draft import Act, Draft, DraftLine, LineDecision, LineState
 
-MOST_ACTS = 1_000
+MOST_ACTS = 500
 """acts in one request"""
 MOST_LINES = 5_000
 """lines of a draft; longer scripts are decided on with the command line"""

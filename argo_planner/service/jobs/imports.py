@@ -3,23 +3,43 @@
 import asyncio
 import os
 from collections import Counter, defaultdict
-from collections.abc import AsyncIterable
+from collections.abc import AsyncIterable, AsyncIterator, Callable, Mapping
 from contextlib import AsyncExitStack
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any, TypeVar
 
 from argo_compiler.base.errors import ArgoError, Invalid, Unavailable
 from argo_compiler.base.limited_process import CallLimits, LimitExceeded, limited, limits_for_size
 from argo_compiler.base.operating_system import niceness, set_niceness
+from argo_compiler.diagnostics import Diagnostic, DiagnosticError
 from argo_compiler.il import Mission
 from argo_compiler.ros.bags import suffix_by_first_bytes
 from argo_compiler.ros.recognition import first_bytes_if_readable, is_bag_content
+from argo_compiler.script.documents.reading import decode_script
+from argo_compiler.script.drafts.draft import (
+    Draft,
+    IncompleteDraft,
+    LineDecision,
+    LineState,
+)
 from argo_env.files.checked_lines import write_all
-from argo_env.planning.opening import open_site
+from argo_env.planning.opening import OpenedSite, open_site
 from argo_planner.service.core.change import mission_change
 from argo_planner.service.core.plan_limits import require_within_limits
 from argo_planner.service.processes.job_process import JobProcess, ReportProgress
-from argo_planner.use_cases.importing import ImportedMission, Upload, import_mission
+from argo_planner.use_cases.explaining import explain_mission
+from argo_planner.use_cases.importing import (
+    ImportedMission,
+    SourceKind,
+    Upload,
+    guess_source_kind,
+    import_mission,
+    load_draft,
+)
+
+Result = TypeVar("Result")
 
 MOST_IMPORTS = 2
 """imports that are read at the same time; each visitor has at most one of them"""
@@ -27,6 +47,38 @@ MOST_OF_VISITOR = 8
 """imports of one visitor that are read or wait, as each is stored meanwhile"""
 _LOWER_PRIORITY = 10
 """niceness that is added, so that edits come first"""
+
+
+@dataclass(frozen=True)
+class DraftReading:
+    """A draft, and its mission once it is complete."""
+
+    draft: Draft
+    imported: ImportedMission | None = None
+    """the mission; None: lines are left, or the mission as a whole has errors"""
+    problems: tuple[Diagnostic, ...] = ()
+    """errors of the mission as a whole"""
+    steps: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
+    """the steps of the mission by the line that asks for them, if no line is open"""
+
+
+@dataclass(frozen=True)
+class ReadUpload:
+    """The mission in an upload, or the draft of a script that is not complete."""
+
+    imported: ImportedMission | None
+    """the mission; None: lines of the draft are left to decide on"""
+    script: str | None
+    """the text, if the upload is a script"""
+    reading: DraftReading | None = None
+    """the draft; None unless lines are left"""
+
+    def require_mission(self) -> ImportedMission:
+        """Return the mission; raises IncompleteDraft if lines are left."""
+        if self.imported is None:
+            assert self.reading is not None, "there is a mission or a draft"
+            raise IncompleteDraft(self.reading.draft)
+        return self.imported
 
 
 class Imports:
@@ -48,7 +100,7 @@ class Imports:
         visitor: str,
         start_area: int | None = None,
         end_area: int | None = None,
-    ) -> ImportedMission:
+    ) -> ReadUpload:
         """Read and check the mission in an upload, as `import_mission` does.
 
         Args:
@@ -59,10 +111,37 @@ class Imports:
             end_area: Area to end in, likewise.
 
         Raises:
-            ArgoError: As `import_mission` does, if the mission is too large for a plan, if reading
-                it exceeds the limits of time and memory, or if too many imports of the visitor
-                are under way.
+            ArgoError: As `import_mission` does (but for IncompleteDraft), if the mission is too
+                large for a plan, if reading it exceeds the limits of time and memory, or if too
+                many imports of the visitor are under way.
         """
+        arguments = (start_area, end_area)
+        return await self._store_and_read(import_file, name, content, visitor, arguments)
+
+    async def read_draft(
+        self,
+        name: str,
+        text: str,
+        visitor: str,
+        areas: tuple[int | None, int | None],
+        decisions: tuple[LineDecision, ...],
+    ) -> DraftReading:
+        """Read the draft of a script with decisions; raises the errors of `import_upload`."""
+
+        async def content() -> AsyncIterator[bytes]:
+            yield text.encode(errors="replace")
+
+        arguments = (*areas, decisions)
+        return await self._store_and_read(read_draft_file, name, content(), visitor, arguments)
+
+    async def _store_and_read(
+        self,
+        work: Callable[..., Result],
+        name: str,
+        content: AsyncIterable[bytes],
+        visitor: str,
+        arguments: tuple[Any, ...],
+    ) -> Result:
         if self._under_way[visitor] >= MOST_OF_VISITOR:
             raise Unavailable(
                 f"{MOST_OF_VISITOR} imports with this token are under way: try again when some of "
@@ -70,18 +149,18 @@ class Imports:
             )
         self._under_way[visitor] += 1
         try:
-            return await self._store_and_read(name, content, visitor, start_area, end_area)
+            return await self._in_turn(work, name, content, visitor, arguments)
         finally:
             self._under_way[visitor] -= 1
 
-    async def _store_and_read(
+    async def _in_turn(
         self,
+        work: Callable[..., Result],
         name: str,
         content: AsyncIterable[bytes],
         visitor: str,
-        start_area: int | None,
-        end_area: int | None,
-    ) -> ImportedMission:
+        arguments: tuple[Any, ...],
+    ) -> Result:
         try:
             folder = TemporaryDirectory(prefix="argo-import-", ignore_cleanup_errors=True)
         except OSError as error:
@@ -92,18 +171,18 @@ class Imports:
             async with AsyncExitStack() as stack:
                 await stack.enter_async_context(self._visitors[visitor])
                 await stack.enter_async_context(self._turns)
-                return await self._read(name, path, limits_for_size(size), start_area, end_area)
+                return await self._read(work, name, path, limits_for_size(size), arguments)
 
     async def _read(
         self,
+        work: Callable[..., Result],
         name: str,
         path: Path,
         limits: CallLimits,
-        start_area: int | None,
-        end_area: int | None,
-    ) -> ImportedMission:
-        process = JobProcess[ImportedMission](
-            import_file, self._site, name, path, limits, start_area, end_area, limits=limits
+        arguments: tuple[Any, ...],
+    ) -> Result:
+        process = JobProcess[Result](
+            work, self._site, name, path, limits, *arguments, limits=limits
         )
         try:
             return await process.start_and_wait(lambda _: None)
@@ -140,7 +219,7 @@ def import_file(
     start_area: int | None,
     end_area: int | None,
     _: ReportProgress,
-) -> ImportedMission:
+) -> ReadUpload:
     """Read and check the mission in a file within limits, as the work of a process.
 
     `site` is a reference that `open_site` takes, `name` that of the file in messages. Raises the
@@ -156,7 +235,79 @@ def import_file(
             upload = Upload(name, bag)
         else:
             upload = Upload(name, path.read_bytes())
-        imported = import_mission(upload, opened, start_area, end_area)
-        mission = imported.mission
-        require_within_limits(mission, mission_change(Mission(tasks=()), mission))
-        return imported
+        script = _script_of(upload)
+        try:
+            imported = import_mission(upload, opened, start_area, end_area)
+        except IncompleteDraft as error:
+            reading = _read_steps(upload, opened, (start_area, end_area), error.draft)
+            return ReadUpload(None, script, reading)
+        _require_plan_size(imported)
+        return ReadUpload(imported, script)
+
+
+def read_draft_file(
+    site: str,
+    name: str,
+    path: Path,
+    limits: CallLimits,
+    start_area: int | None,
+    end_area: int | None,
+    decisions: tuple[LineDecision, ...],
+    _: ReportProgress,
+) -> DraftReading:
+    """Read the draft of a script in a file within limits, as the work of a process.
+
+    The arguments and errors are those of `import_file`. Errors of the mission as a whole are not
+    raised, but are problems of the reading.
+    """
+    opened = open_site(site)
+    set_niceness(niceness() + _LOWER_PRIORITY)
+    with limited(limits):
+        upload = Upload(name, path.read_bytes(), decisions)
+        draft = load_draft(upload, opened.catalog, start_area, end_area)
+        return _read_steps(upload, opened, (start_area, end_area), draft)
+
+
+def _read_steps(
+    upload: Upload, site: OpenedSite, areas: tuple[int | None, int | None], draft: Draft
+) -> DraftReading:
+    """Return the draft of an upload with its mission, and with the steps of its lines.
+
+    Of a draft whose lines are only to be confirmed, the steps are those once they are.
+    """
+    if any(line.state is LineState.OPEN for line in draft.lines):
+        return DraftReading(draft)
+    confirmed = draft
+    if draft.left:
+        confirmed = load_draft(upload, site.catalog, *areas, decisions=draft.confirm())
+    try:
+        imported = import_mission(replace(upload, draft=confirmed), site, *areas)
+        _require_plan_size(imported)
+    except DiagnosticError as error:
+        problems = () if draft.left else error.diagnostics
+        return DraftReading(draft, None, problems)
+    return DraftReading(draft, None if draft.left else imported, (), _steps_of(imported, site))
+
+
+def _steps_of(imported: ImportedMission, site: OpenedSite) -> dict[int, tuple[str, ...]]:
+    """Return the sentences of a mission by the line of the script that asks for them."""
+    try:
+        reading = explain_mission(imported, site)
+    except DiagnosticError:  # no script can express a part of it
+        return {}
+    found: defaultdict[int, tuple[str, ...]] = defaultdict(tuple)
+    for entry in reading.entries:
+        if entry.source is not None:
+            found[entry.source.line] += entry.sentences
+    return dict(found)
+
+
+def _script_of(upload: Upload) -> str | None:
+    if not isinstance(upload.content, bytes) or guess_source_kind(upload) is not SourceKind.SCRIPT:
+        return None
+    return decode_script(upload.content, upload.name)
+
+
+def _require_plan_size(imported: ImportedMission) -> None:
+    mission = imported.mission
+    require_within_limits(mission, mission_change(Mission(tasks=()), mission))

@@ -24,7 +24,7 @@ MOST_PLANS = 2_000
 PLAN_ID = r"[0-9a-f]{12}"
 """regular expression for the id of a plan"""
 _BIN = "bin"
-_SUBFOLDERS = (_BIN, "evaluations", "notes", "orders", "runs")
+_SUBFOLDERS = (_BIN, "drafts", "evaluations", "notes", "orders", "runs")
 _SUFFIX = ".plan"
 
 

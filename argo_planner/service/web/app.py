@@ -15,6 +15,7 @@ from argo_planner.service.rooms.messages import RoomMessage
 from argo_planner.service.runs.state import RunMessage
 from argo_planner.service.web import (
     commands,
+    drafts,
     evaluations,
     jobs,
     live,
@@ -116,7 +117,7 @@ def make_app(open_service: OpenService) -> FastAPI:
     install_problem_handlers(app)
     app.openapi = partial(_make_document, app)  # type: ignore[method-assign]
     parts = (
-        page, missions, versions, commands, jobs, evaluations, world, runs, live,
+        page, missions, drafts, versions, commands, jobs, evaluations, world, runs, live,
     )  # fmt: skip
     for part in (router, *(one.router for one in parts), runs.socket_router):
         app.include_router(part)

@@ -80,11 +80,13 @@ async def write_script(
 ) -> Response:
     """Replace the mission by that of a script, as a command that can be undone."""
     room = await service.rooms.open(id)
-    imported = await service.scripts.import_upload("script", _parts(given.script), visitor.key)
+    read = await service.scripts.import_upload("script", _parts(given.script), visitor.key)
+    imported = read.require_mission()
     command = ReplacePlan.model_construct(id=given.id, mission=imported.mission, about="a script")
     answer = await execute_command(room, command, visitor.author, made_on)
     revision = room.document.plan.revision
-    await asyncio.to_thread(store_import_notes, service.folder, id, revision, imported.diagnostics)
+    notes = (imported.diagnostics, given.script)
+    await asyncio.to_thread(store_import_notes, service.folder, id, revision, *notes)
     return answer
 
 

@@ -22,11 +22,13 @@ from argo_planner.service.core.change import mission_change
 from argo_planner.service.core.commands import Revision
 from argo_planner.service.core.document import PlanDocument
 from argo_planner.service.core.plan_limits import require_within_limits
+from argo_planner.service.drafts.messages import DraftState
 from argo_planner.service.rooms.messages import PlanState
 from argo_planner.service.storage.folder import summarize_plan
 from argo_planner.service.storage.import_notes import (
     delete_import_notes,
     load_import_notes,
+    load_imported_script,
     store_import_notes,
 )
 from argo_planner.service.storage.outline import PlanSummary
@@ -59,14 +61,20 @@ MISSION_LINKS = openapi_links(
     "list_versions",
     "read_back",
     "read_analysis",
+    "read_imported_script",
     "write_script",
     "suggest_order",
     "start_run",
     id="$response.body#/id",
 )
+DRAFT_LINKS = openapi_links(
+    "read_draft", "decide_draft", "complete_draft", "delete_draft", id="$response.body#/id"
+)
 ETAG = "$response.header.ETag"
 for _name in ("carry_out_command", "keep_version", "write_script", "start_run"):
     MISSION_LINKS[_name]["parameters"]["If-Match"] = ETAG
+for _name in ("decide_draft", "complete_draft"):
+    DRAFT_LINKS[_name]["parameters"]["If-Match"] = ETAG
 
 router = make_router("missions")
 
@@ -98,6 +106,14 @@ class ImportNotes(Model):
     notes: tuple[Diagnostic, ...]
 
 
+class ImportedScript(Model):
+    """Script that a mission was imported from."""
+
+    revision: int
+    """revision of the mission that the import made; 0 if there is no script"""
+    text: str
+
+
 @router.get("/missions", operation_id="list_missions", response_model=PlanList)
 async def list_missions(service: Service, _: Viewer) -> Response:
     """Return a summary of each mission, except for those in the bin."""
@@ -119,7 +135,7 @@ async def create_mission(service: Service, _: Planner, new: JsonBody[NewMission]
         if has_errors(diagnostics):
             raise DiagnosticError(new.name, diagnostics)
     mission = new.mission or Mission(tasks=(), site=service.site.name)
-    return await _create(service, new.name, mission)
+    return await create_plan(service, new.name, mission)
 
 
 @router.post(
@@ -127,7 +143,10 @@ async def create_mission(service: Service, _: Planner, new: JsonBody[NewMission]
     operation_id="import_mission",
     status_code=201,
     response_model=PlanSummary,
-    responses={201: created_response(PlanSummary, MISSION_LINKS)},
+    responses={
+        201: created_response(PlanSummary, MISSION_LINKS),
+        202: created_response(DraftState, DRAFT_LINKS) | {"description": "A draft was created"},
+    },
     openapi_extra={
         "requestBody": {
             "required": True,
@@ -148,13 +167,22 @@ async def import_a_mission(
     start_area: Annotated[int | None, Query(ge=-1000, le=1000)] = None,
     end_area: Annotated[int | None, Query(ge=-1000, le=1000)] = None,
 ) -> Response:
-    """Create a mission from the body: a script, a mission in JSON, a ROS bag or an isar mission."""
+    """Create a mission from the body: a script, a mission in JSON, a ROS bag or an isar mission.
+
+    202 if lines of a script are left to decide on: then a draft is created instead.
+    """
     file = os.path.basename(filename) or "mission"
-    imported = await service.imports.import_upload(
+    read = await service.imports.import_upload(
         file, request.stream(), visitor.key, start_area, end_area
     )
     name = name or os.path.splitext(file)[0]
-    return await _create(service, name, imported.mission, imported.diagnostics)
+    if read.imported is None and read.reading is not None and read.script is not None:
+        areas = (start_area, end_area)
+        state = await service.drafts.create(name, file, read.script, read.reading, areas)
+        location = f"/api/drafts/{state.id}"
+        return json_response(state, 202, revision=state.revision, location=location)
+    imported = read.require_mission()
+    return await create_plan(service, name, imported.mission, imported.diagnostics, read.script)
 
 
 @router.get("/missions/{id}", operation_id="read_mission", response_model=PlanState)
@@ -186,7 +214,7 @@ async def duplicate_mission(
 ) -> Response:
     """Create a copy of the present state of a mission, without its revisions and versions."""
     room = await service.rooms.open(id)
-    return await _create(service, given.name, room.document.plan.mission)
+    return await create_plan(service, given.name, room.document.plan.mission)
 
 
 @router.delete(
@@ -291,6 +319,30 @@ async def read_import_notes(service: Service, _: Viewer, id: PlanId) -> Response
     return json_response(ImportNotes(revision=revision, notes=notes))
 
 
+@router.get(
+    "/missions/{id}/imported-script",
+    operation_id="read_imported_script",
+    response_model=ImportedScript,
+)
+async def read_imported_script(service: Service, _: Viewer, id: PlanId) -> Response:
+    """Return the script that the mission was imported from, or that has replaced it last.
+
+    The places of tasks (`source`) are in this text. It is empty if there is none, or if the
+    mission was replaced by another one since.
+    """
+    plan = (await service.rooms.open(id)).document.plan
+    revision, text = load_imported_script(service.folder, id)
+    since = plan.revisions_after(revision)
+    if since is None or any(_replaces(one, revision) for one in since):
+        return json_response(ImportedScript(revision=0, text=""))
+    return json_response(ImportedScript(revision=revision, text=text))
+
+
+def _replaces(later: Revision, imported: int) -> bool:
+    """Return True if a later revision replaces the imported mission, or undoes its import."""
+    return later.kind == "replace" or (later.reverts is not None and later.reverts <= imported)
+
+
 def unchecked_mission(document: PlanDocument) -> ImportedMission:
     """Return the mission of a plan, with no diagnostics: it is not checked and may have errors."""
     return ImportedMission(document.plan.mission, document.name, (), ())
@@ -318,15 +370,23 @@ def require_valid_mission(document: PlanDocument, site: OpenedSite) -> ImportedM
     return unchecked_mission(document)
 
 
-async def _create(
-    service: Service, name: str, mission: Mission, notes: tuple[Diagnostic, ...] = ()
+async def create_plan(
+    service: Service,
+    name: str,
+    mission: Mission,
+    notes: tuple[Diagnostic, ...] = (),
+    script: str | None = None,
 ) -> Response:
+    """Create a mission, and return the response that has its summary.
+
+    `notes` are those of its import, `script` the text that it was imported from, if any.
+    """
     require_within_limits(mission, mission_change(Mission(tasks=()), mission))
     room = await service.rooms.create(name, mission)
     document = room.document
-    if notes:
-        revision = document.plan.revision
-        await asyncio.to_thread(store_import_notes, service.folder, document.id, revision, notes)
+    if notes or script is not None:
+        imported = (document.id, document.plan.revision, notes, script)
+        await asyncio.to_thread(store_import_notes, service.folder, *imported)
     return json_response(
         summarize_plan(document),
         201,

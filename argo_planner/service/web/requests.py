@@ -17,12 +17,14 @@ from argo_compiler.base.errors import Invalid
 from argo_compiler.base.extensions import InstalledExtension
 from argo_compiler.base.model import Model
 from argo_env.planning.opening import OpenedSite
+from argo_planner.service.drafts.drafts import Drafts
 from argo_planner.service.evaluations.evaluations import Evaluations
 from argo_planner.service.jobs.imports import Imports
 from argo_planner.service.jobs.jobs import Jobs
 from argo_planner.service.jobs.order_searches import OrderSearches
 from argo_planner.service.rooms.rooms import PlanRooms
 from argo_planner.service.runs.host import RunHost
+from argo_planner.service.storage.draft_folder import DRAFT_ID
 from argo_planner.service.storage.folder import PLAN_ID
 from argo_planner.service.web.access import AccessRole, Visitor
 from argo_planner.service.web.problems import RevisionMissing, problem_responses
@@ -50,6 +52,7 @@ class PlanningService:
     """uploads"""
     scripts: Imports
     """scripts that people edit, which don't wait for uploads"""
+    drafts: Drafts
     evaluations: Evaluations
     runs: RunHost
     obstacles: ObstacleStore
@@ -98,6 +101,7 @@ Viewer = Annotated[Visitor, _visitor_with(AccessRole.VIEW)]
 Planner = Annotated[Visitor, _visitor_with(AccessRole.PLAN)]
 Operator = Annotated[Visitor, _visitor_with(AccessRole.OPERATE)]
 PlanId = Annotated[str, Path(pattern=f"^{PLAN_ID}$", description="id of the mission")]
+DraftId = Annotated[str, Path(pattern=f"^{DRAFT_ID}$", description="id of the draft")]
 
 # The guard checks these before any route; here they only serve the OpenAPI document.
 AUTHENTICATION = [

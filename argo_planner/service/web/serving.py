@@ -14,6 +14,7 @@ import uvicorn
 
 from argo_compiler.base.errors import Unavailable
 from argo_env.planning.opening import OpenedSite
+from argo_planner.service.drafts.drafts import Drafts
 from argo_planner.service.evaluations.evaluations import Evaluations
 from argo_planner.service.jobs.analysis import Analyst
 from argo_planner.service.jobs.imports import Imports
@@ -22,6 +23,7 @@ from argo_planner.service.jobs.jobs import Jobs
 from argo_planner.service.jobs.order_searches import OrderSearches
 from argo_planner.service.rooms.rooms import PlanRooms
 from argo_planner.service.runs.host import AfterRestart, RunHost
+from argo_planner.service.storage.draft_folder import DraftFolder
 from argo_planner.service.storage.folder import PlanFolder
 from argo_planner.service.web.access import TokenBook
 from argo_planner.service.web.app import OpenService, make_app
@@ -82,6 +84,9 @@ def make_service_opener(
             await runs.open()
             await evaluations.open()
             await orders.open()
+            scripts = Imports(site.reference)
+            drafts = Drafts(DraftFolder(plans.path / "drafts", new_id), scripts, _now)
+            await drafts.open()
             thread = ThreadPoolExecutor(1)
             try:
                 yield PlanningService(
@@ -91,7 +96,8 @@ def make_service_opener(
                     jobs=jobs,
                     orders=orders,
                     imports=Imports(site.reference),
-                    scripts=Imports(site.reference),
+                    scripts=scripts,
+                    drafts=drafts,
                     evaluations=evaluations,
                     runs=runs,
                     obstacles=obstacles,

@@ -289,7 +289,7 @@ def test_an_evaluation_with_links_or_pipes_is_refused(
         read_evaluation(tmp_path, ID)
 
 
-@pytest.mark.parametrize("name", ["bin", "evaluations", "notes", "orders", "runs"])
+@pytest.mark.parametrize("name", ["bin", "drafts", "evaluations", "notes", "orders", "runs"])
 @pytest.mark.parametrize("is_link", [True, False])
 def test_the_folders_of_a_service_are_no_links_and_no_files(
     tmp_path: Path, name: str, is_link: bool

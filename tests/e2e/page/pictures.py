@@ -67,6 +67,29 @@ def picture_planning(browsers: Browsers, service: Served, folder: Path) -> None:
     browsers.close_windows()
 
 
+DRAFT = """Hi Lena,
+Start in starting area 1.
+I'd like to have valve R25.
+Next one is checkpoint 3 obviously.
+Should it check R18 too?
+Check checkpoint 5.
+End in starting area 1.
+Thanks, Paul
+"""
+
+
+def picture_draft(browsers: Browsers, service: Served, folder: Path) -> None:
+    params = {"filename": "round.txt"}
+    draft = service.client.post("/api/imports", params=params, content=DRAFT).json()
+    ann = browsers.person(f"http://{service.address}/?token={ALL}", "Ann")
+    ann.open(f"/drafts/{draft['id']}")
+    expect(ann.page.locator("argo-draft .line:focus")).to_have_count(1)
+    ann.key("c")
+    expect(ann.page.locator("#saved")).to_have_text("Saved")
+    take_picture(ann, folder, "draft")
+    browsers.close_windows()
+
+
 def picture_run(browsers: Browsers, service: Served, folder: Path) -> None:
     id = import_mission(service)
     ann = open_mission(browsers, service, id)
@@ -124,6 +147,7 @@ def main(folder: Path) -> None:
     with tempfile.TemporaryDirectory() as missions, served(Path(missions), site) as service:
         browsers = Browsers()
         picture_planning(browsers, service, folder)
+        picture_draft(browsers, service, folder)
         picture_evaluation(browsers, service, folder)
         picture_run(browsers, service, folder)
         browsers.close()

@@ -44,13 +44,13 @@ def test_the_import_asks_for_areas_that_a_script_does_not_name(ann, service) -> 
     assert (mission["start_area"], mission["end_area"]) == (1, 2)
 
 
-def test_a_script_with_an_error_is_refused_with_its_message(ann, tmp_path) -> None:
-    wrong = tmp_path / "wrong.txt"
-    wrong.write_text("Steps\n1. Measure checkpoint 4711\n", encoding="utf-8")
+def test_a_mission_with_an_error_is_refused_with_its_message(ann, tmp_path) -> None:
+    wrong = tmp_path / "wrong.json"
+    wrong.write_text('{"version": 4, "tasks": [{"name": "A", "action": "DANCE"}]}', "utf-8")
     ann.page.set_input_files("#file", wrong)
     log = ann.page.get_by_role("log")
-    expect(log).to_contain_text("wrong.txt can't be imported")
-    expect(log).to_contain_text("4711")
+    expect(log).to_contain_text("wrong.json can't be imported")
+    expect(log).to_contain_text("tasks[0].action")
     assert ann.page.url.endswith("/")
 
 

@@ -64,3 +64,8 @@ type WebhookMessage<name extends keyof webhooks> =
   webhooks[name]["get"]["responses"][200]["content"]["application/json"];
 export type RoomMessage = WebhookMessage<"mission">;
 export type RunMessage = WebhookMessage<"robot">;
+
+export type DraftState = Schemas["DraftState"];
+export type DraftSummary = Schemas["DraftSummary"];
+export type DraftedLine = Schemas["DraftedLine"];
+export type DraftAct = Schemas["ActsOnDraft"]["acts"][number];

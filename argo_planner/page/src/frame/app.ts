@@ -3,6 +3,8 @@
 import { signal } from "@preact/signals-core";
 
 import { delay, retryUntilReached } from "../api/client";
+import "../draft/draft";
+import { actsSaved, closeDraft, openDraft, openedDraft } from "../draft/state";
 import "../evaluate/evaluate";
 import "../forms/properties";
 import "../list/list";
@@ -132,7 +134,7 @@ export class ArgoApp extends PageElement {
     }
   `;
 
-  /** Id of the mission in the address while it is being read. */
+  /** Address of the mission or draft that is being read; null: none is. */
   private readonly opening = signal<string | null>(null);
 
   constructor() {
@@ -141,7 +143,8 @@ export class ArgoApp extends PageElement {
     // The browser asks for confirmation if edits have not been sent.
     this.listen("beforeunload", (event) => waiting.value > 0 && event.preventDefault());
     this.watch(() => {
-      document.title = planName.value ? `${planName.value} – Argo` : "Argo";
+      const name = planName.value || openedDraft.value?.name;
+      document.title = name ? `${name} – Argo` : "Argo";
     });
   }
 
@@ -164,21 +167,26 @@ export class ArgoApp extends PageElement {
 
   /** Open the mission or list that the address names. A later change of the address has precedence. */
   private async followAddress(): Promise<void> {
-    const id = namedMission();
-    if (id === (this.opening.value ?? planId.value)) return;
+    const address = namedAddress();
+    if (address === (this.opening.value ?? openedAddress())) return;
     if (planId.value !== null && !(await allSent())) {
-      this.stayFor(id);
+      this.stayFor(address);
       return;
     }
-    if (namedMission() !== id) return;
-    this.opening.value = id;
-    if (id === null) {
-      closePlan();
+    if (openedDraft.value !== null) await Promise.race([decisionsSaved(), delay(SENT_WITHIN_MS)]);
+    if (namedAddress() !== address) return;
+    this.opening.value = address;
+    if (address === "#" || draftIn(address) !== null) closePlan();
+    if (address === "#" || missionIn(address) !== null) closeDraft();
+    if (address === "#") {
+      this.opening.value = null;
       return;
     }
-    const isMeant = () => this.opening.value === id;
+    const isMeant = () => this.opening.value === address;
+    const [mission, draft] = [missionIn(address), draftIn(address)];
     try {
-      await retryUntilReached(() => openPlan(id, isMeant), isMeant, RETRY_MS);
+      if (draft !== null) await retryUntilReached(() => openDraft(draft, isMeant), isMeant, RETRY_MS);
+      else if (mission !== null) await retryUntilReached(() => openPlan(mission, isMeant), isMeant, RETRY_MS);
       await this.updateComplete;
       // The element with the focus is gone. Keys are to work at once.
       setTimeout(() => {
@@ -194,13 +202,13 @@ export class ArgoApp extends PageElement {
   }
 
   /** Keep a mission open whose edits have not all been sent, until they are or the person leaves it. */
-  private stayFor(id: string | null): void {
+  private stayFor(address: string): void {
     const leave = () => {
       closePlan();
-      location.hash = addressOf(id);
+      location.hash = address;
       void this.followAddress();
     };
-    history.replaceState(null, "", addressOf(planId.value));
+    history.replaceState(null, "", openedAddress());
     const texts = t().frame;
     const notice = showNotice("bad", texts.unsent(waiting.value), { actions: [{ label: texts.leaveAnyway, act: leave }] });
     void allAnswered().then(() => dismiss(notice)); // the message would no longer be true
@@ -210,7 +218,13 @@ export class ArgoApp extends PageElement {
     const open = planId.value !== null;
     return html`
       <argo-topbar></argo-topbar>
-      ${open ? this.planning() : this.opening.value !== null ? html`<main></main>` : html`<argo-home></argo-home>`}
+      ${open
+        ? this.planning()
+        : openedDraft.value !== null
+          ? html`<argo-draft></argo-draft>`
+          : this.opening.value !== null
+            ? html`<main></main>`
+            : html`<argo-home></argo-home>`}
       <argo-notices></argo-notices>
       <argo-keys></argo-keys>
     `;
@@ -261,13 +275,28 @@ export class ArgoApp extends PageElement {
   }
 }
 
-/** Return the id of the mission that the address names; null: none. */
-function namedMission(): string | null {
-  return /^#\/missions\/([0-9a-f]+)$/.exec(location.hash)?.[1] ?? null;
+/** Return the mission or draft that the address names, as `#/missions/…` or `#/drafts/…`; `#`: the list. */
+function namedAddress(): string {
+  return (missionIn(location.hash) ?? draftIn(location.hash)) !== null ? location.hash : "#";
 }
 
-function addressOf(id: string | null): string {
-  return id === null ? "#" : `#/missions/${id}`;
+/** Return the address of what is open. */
+function openedAddress(): string {
+  if (planId.value !== null) return `#/missions/${planId.value}`;
+  return openedDraft.value === null ? "#" : `#/drafts/${openedDraft.value.id}`;
+}
+
+function missionIn(address: string): string | null {
+  return /^#\/missions\/([0-9a-f]+)$/.exec(address)?.[1] ?? null;
+}
+
+function draftIn(address: string): string | null {
+  return /^#\/drafts\/([0-9a-f]+)$/.exec(address)?.[1] ?? null;
+}
+
+/** Wait until all decisions on the open draft are stored by the service. */
+async function decisionsSaved(): Promise<void> {
+  while (!actsSaved.value) await delay(20);
 }
 
 /** Return whether all edits are sent, now or within a moment. */

@@ -1,7 +1,7 @@
 /** The list of missions: open, create, delete, restore. */
 
 import { responseData, client, retryUntilReached } from "../api/client";
-import type { PlanSummary } from "../api/types";
+import type { DraftSummary, PlanSummary } from "../api/types";
 import { freeName } from "../model/naming";
 import { showNotice, showError, withErrorNotice } from "../state/notices";
 import { wasDeleted } from "../state/plan";
@@ -68,6 +68,7 @@ export class PageHome extends PageElement {
 
   @state() private missions: readonly PlanSummary[] | null = null;
   @state() private bin: readonly PlanSummary[] = [];
+  @state() private drafts: readonly DraftSummary[] = [];
   private reading = false;
 
   constructor() {
@@ -82,7 +83,11 @@ export class PageHome extends PageElement {
 
   private async read(): Promise<void> {
     const both = () =>
-      Promise.all([responseData(client.GET("/api/missions")), responseData(client.GET("/api/bin"))]);
+      Promise.all([
+        responseData(client.GET("/api/missions")),
+        responseData(client.GET("/api/bin")),
+        responseData(client.GET("/api/drafts")),
+      ]);
     const goesOn = () => {
       if (this.isConnected) showNotice("warn", t().frame.readAgain);
       return this.isConnected;
@@ -90,9 +95,10 @@ export class PageHome extends PageElement {
     if (this.reading) return;
     this.reading = true;
     try {
-      const [all, deleted] = await retryUntilReached(both, goesOn, RETRY_MS);
+      const [all, deleted, drafts] = await retryUntilReached(both, goesOn, RETRY_MS);
       this.missions = all.missions;
       this.bin = deleted.missions;
+      this.drafts = drafts.drafts;
     } catch (error) {
       if (this.isConnected) showError(error);
     } finally {
@@ -121,8 +127,40 @@ export class PageHome extends PageElement {
         </button>
       </div>
       <argo-import></argo-import>
-      ${this.table()} ${this.deleted()}
+      ${this.begun()} ${this.table()} ${this.deleted()}
     </div>`;
+  }
+
+  /** Render the drafts of scripts that people still have to decide on. */
+  private begun() {
+    const texts = t().draft;
+    if (this.drafts.length === 0) return nothing;
+    return html`<table id="drafts">
+      <thead>
+        <tr>
+          <th>${texts.drafts}</th>
+          <th>${texts.leftOf}</th>
+          <th class="wide">${texts.begun}</th>
+          <th><span class="unseen">${t().frame.delete}</span></th>
+        </tr>
+      </thead>
+      <tbody>
+        ${this.drafts.map(
+          (one) =>
+            html`<tr>
+              <td><a href=${`#/drafts/${one.id}`}>${one.name}</a></td>
+              <td class="number">${one.to_confirm + one.to_answer}</td>
+              <td class="number wide">${dateAndTime(one.changed)}</td>
+              <td>
+                ${iconButton("bin", texts.deleteDraft(one.name), () => this.deleteDraft(one), {
+                  title: t().frame.delete,
+                  disabled: !mayPlan(),
+                })}
+              </td>
+            </tr>`,
+        )}
+      </tbody>
+    </table>`;
   }
 
   private table() {
@@ -193,6 +231,14 @@ export class PageHome extends PageElement {
       const made = await responseData(client.POST("/api/missions", { body: { name } }));
       location.hash = `#/missions/${made.id}`;
     });
+  }
+
+  private async deleteDraft(one: DraftSummary): Promise<void> {
+    await withErrorNotice(async () => {
+      await responseData(client.DELETE("/api/drafts/{id}", { params: { path: { id: one.id } } }));
+      showNotice("info", t().draft.deleted(one.name));
+    });
+    await this.read();
   }
 
   private async delete(one: PlanSummary): Promise<void> {

@@ -1,6 +1,7 @@
 /** The import of a mission from a file. */
 
-import { responseData, client, Refusal } from "../api/client";
+import { responseData, Refusal } from "../api/client";
+import { uploadFile } from "../api/upload";
 import { showNotice, showError } from "../state/notices";
 import { mayPlan } from "../state/session";
 import { world } from "../state/world";
@@ -135,15 +136,8 @@ export class MissionImport extends PageElement {
   ): Promise<void> {
     try {
       const content = await file.arrayBuffer();
-      const made = await responseData(
-        client.POST("/api/imports", {
-          params: { query: { filename: file.name.slice(-200), ...areas } },
-          body: content as never,
-          bodySerializer: (body) => body,
-          headers: { "Content-Type": "application/octet-stream" },
-        }),
-      );
-      location.hash = `#/missions/${made.id}`;
+      const made = await responseData(uploadFile(file.name, content, areas));
+      location.hash = "lines" in made ? `#/drafts/${made.id}` : `#/missions/${made.id}`;
     } catch (error) {
       const open = error instanceof Refusal ? openAreas(error) : null;
       if (open === null) this.tellImport(file.name, error);

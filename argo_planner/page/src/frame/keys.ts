@@ -2,6 +2,7 @@
 
 import { signal } from "@preact/signals-core";
 
+import { openedDraft } from "../draft/state";
 import { PropertiesPanel } from "../forms/properties";
 import { redo, undo } from "../state/commands";
 import { dismissNewest, notices } from "../state/notices";
@@ -88,8 +89,8 @@ export class PageKeys extends PageElement {
     const key = event.key.toLowerCase();
     const command = event.ctrlKey || event.metaKey;
     if (key === "?" && !command) keysShown.value = true;
-    else if (command && mayPlan() && key === "z") void (event.shiftKey ? redo() : undo());
-    else if (command && mayPlan() && key === "y") void redo();
+    else if (command && planId.value !== null && mayPlan() && key === "z") void (event.shiftKey ? redo() : undo());
+    else if (command && planId.value !== null && mayPlan() && key === "y") void redo();
     else if (key === "f8" && planId.value !== null) openRun();
     else if (key === "f9" && !event.repeat && canTakeOver()) void takeOver();
     else if (key === "escape" && tool.value !== "select") {
@@ -103,7 +104,9 @@ export class PageKeys extends PageElement {
   };
 
   override render() {
-    const groups = keysShown.value ? Object.values(t().keys) : [];
+    const { draft, ...others } = t().keys;
+    const all = openedDraft.value === null ? [...Object.values(others), draft] : [draft, ...Object.values(others)];
+    const groups = keysShown.value ? all : [];
     return html`<dialog
       aria-labelledby="title"
       @close=${() => (keysShown.value = false)}

@@ -1,6 +1,7 @@
 /** The top bar: name of the mission, undo and redo, other people, the robot's state, settings. */
 
 import { responseData, client } from "../api/client";
+import { openedDraft } from "../draft/state";
 import { withErrorNotice } from "../state/notices";
 import { redo, undo, waiting } from "../state/commands";
 import { connected, others, planId, planName, redoable, undoable } from "../state/plan";
@@ -88,7 +89,10 @@ export class PageTopbar extends PageElement {
               <argo-mission-menu></argo-mission-menu>
             </span>
             ${this.saved()}`
-        : html`<h1>Argo</h1>
+        : openedDraft.value !== null
+          ? html`${iconButton("back", texts.allMissions, () => (location.hash = ""))}
+              <span class="name">${openedDraft.value.name}</span>`
+          : html`<h1>Argo</h1>
             <span class="dim">${service.value?.site ?? ""}</span>
             ${waiting.value > 0 ? this.saved() : nothing}`}
       <span class="grow"></span>

@@ -8,7 +8,7 @@ import { isTyping } from "../frame/keys";
 import { nameOfKey, type Row } from "../model/outline";
 import { planId, select, selection, tasksByName } from "../state/plan";
 import { mayPlan } from "../state/session";
-import { lookAt, tool } from "../state/view";
+import { lookAt, pointedName, tool } from "../state/view";
 import { t } from "../texts";
 import { iconButton } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, query, state } from "../ui/element";
@@ -142,6 +142,8 @@ export class MissionList extends PageElement {
         @keydown=${this.onKey}
         @click=${this.onClick}
         @dblclick=${this.onDoubleClick}
+        @mouseover=${this.onPoint}
+        @mouseleave=${() => (pointedName.value = null)}
         @dragstart=${this.drag.begin}
         @dragover=${this.drag.over}
         @dragleave=${this.drag.leave}
@@ -160,6 +162,7 @@ export class MissionList extends PageElement {
             (row, index) =>
               rowView(row, first + index, {
                 chosen: chosen.has(row.key),
+                lit: pointedName.value === nameOfKey(row.key),
                 folded: folded.value.has(row.key),
                 name: this.naming?.key === row.key ? this.naming.text : null,
                 of: shown.length,
@@ -197,6 +200,12 @@ export class MissionList extends PageElement {
     }
     if ((event.target as HTMLElement).closest(".fold")) setFolded(row, !folded.value.has(row.key));
     else chooseRow(row, event.shiftKey, event.ctrlKey || event.metaKey);
+  }
+
+  /** Light the words of a task in the script. */
+  private onPoint(event: MouseEvent): void {
+    const row = rowAt(event);
+    pointedName.value = row ? nameOfKey(row.key) : null;
   }
 
   private onDoubleClick(event: MouseEvent): void {

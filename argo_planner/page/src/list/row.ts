@@ -43,6 +43,10 @@ export const rowStyles = css`
   [role="treeitem"].group {
     font-weight: 600;
   }
+  [role="treeitem"].lit {
+    outline: 2px solid var(--accent);
+    outline-offset: -2px;
+  }
   [role="treeitem"].active {
     box-shadow: inset 3px 0 var(--accent);
   }
@@ -112,6 +116,8 @@ export const rowStyles = css`
 
 export interface RowState {
   readonly chosen: boolean;
+  /** Whether the pointer is on its words in the script. */
+  readonly lit: boolean;
   readonly folded: boolean;
   /** Initial text of the field for its name; null: there is no field. */
   readonly name: string | null;
@@ -134,7 +140,7 @@ export function rowView(row: Row, index: number, shown: RowState) {
     role="treeitem"
     id=${`row-${index}`}
     data-index=${index}
-    class=${classMap({ group, active: marks.run === "active", flash: marks.changed })}
+    class=${classMap({ group, lit: shown.lit, active: marks.run === "active", flash: marks.changed })}
     ${styled(place)}
     draggable=${shown.may && shown.name === null ? "true" : "false"}
     aria-level=${row.depth + 1}

@@ -3,10 +3,11 @@
 import { batch, computed, effect, signal } from "@preact/signals-core";
 
 import { responseData, client, Refusal, Unreached } from "../api/client";
+import { uploadFile } from "../api/upload";
 import type { Diagnostic } from "../api/types";
 import { commandId, allAnswered } from "../state/commands";
-import { showError } from "../state/notices";
-import { missionHasErrors, planId, revision, takePlanState } from "../state/plan";
+import { showError, withErrorNotice } from "../state/notices";
+import { missionHasErrors, planId, planName, revision, takePlanState } from "../state/plan";
 import { storeSetting, storedSetting } from "../state/session";
 import { readNotes } from "./notes";
 
@@ -21,7 +22,12 @@ interface Base {
 export const baseScript = signal<Base | null>(null);
 export const draft = signal("");
 /** The diagnostics of a rejected draft, with its text. */
-export const refusedDraft = signal<{ readonly text: string; readonly found: readonly Diagnostic[] } | null>(null);
+export const refusedDraft = signal<{
+  readonly text: string;
+  readonly found: readonly Diagnostic[];
+  /** Whether lines are only to be confirmed or answered. */
+  readonly incomplete: boolean;
+} | null>(null);
 /** Why the mission can't be written as a script. */
 export const noScriptReason = signal<string | null>(null);
 /** The last discarded draft, which can be restored. */
@@ -155,11 +161,21 @@ export async function applyDraft(anyway = false): Promise<void> {
     });
     storeDraft();
   } catch (error) {
-    if (error instanceof Refusal && error.problem.diagnostics.length > 0)
-      refusedDraft.value = { text: script, found: error.problem.diagnostics };
+    const incomplete = error instanceof Refusal && error.problem.code === "incomplete";
+    if (error instanceof Refusal && (incomplete || error.problem.diagnostics.length > 0))
+      refusedDraft.value = { text: script, found: error.problem.diagnostics, incomplete };
     // If the mission was changed meanwhile, the panel says so, and nothing is overwritten.
     else if (!(error instanceof Refusal && error.problem.code === "stale-revision")) showError(error);
   } finally {
     applying.value = false;
   }
+}
+
+/** Open the text as a draft to decide on line by line. It becomes a mission of its own. */
+export async function decideLineByLine(): Promise<void> {
+  storeDraft();
+  await withErrorNotice(async () => {
+    const made = await responseData(uploadFile(`${planName.value}.txt`, draft.value));
+    location.hash = "lines" in made ? `#/drafts/${made.id}` : `#/missions/${made.id}`;
+  });
 }

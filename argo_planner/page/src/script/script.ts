@@ -3,13 +3,14 @@
 import { missionHasErrors } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { t } from "../texts";
-import { css, customElement, html, nothing, PageElement, query } from "../ui/element";
+import { css, customElement, html, nothing, PageElement, query, state } from "../ui/element";
 import { icon } from "../ui/icons";
 import {
   applyDraft,
   applying,
   discardedDraft,
   baseScript,
+  decideLineByLine,
   draftIsChanged,
   draftIsOutdated,
   refusedDraft,
@@ -17,6 +18,7 @@ import {
   discardDraft,
   noScriptReason,
 } from "./draft";
+import { importedText } from "./imported";
 import { confirmNotes, openNotes } from "./notes";
 import "./sheet";
 import type { ScriptSheet } from "./sheet";
@@ -63,8 +65,14 @@ export class ScriptPanel extends PageElement {
     .state {
       font-size: 12px;
     }
+    .texts button[aria-pressed="true"] {
+      border-color: var(--accent);
+      background: var(--chosen);
+    }
   `;
 
+  /** Whether the imported text is shown, and not the script of the mission. */
+  @state() private imported = false;
   @query("argo-script-sheet") private readonly sheet!: ScriptSheet | null;
 
   override render() {
@@ -73,7 +81,9 @@ export class ScriptPanel extends PageElement {
       const said = noScriptReason.value ?? (missionHasErrors.value ? texts.hasErrors : texts.loading);
       return html`<p class="dim">${said}</p>`;
     }
-    return html`${this.notes()} ${draftIsOutdated.value ? this.meanwhile() : nothing}
+    if (this.imported && importedText.value !== "")
+      return html`${this.notes()} ${this.texts()}<argo-imported-script></argo-imported-script>`;
+    return html`${this.notes()} ${this.texts()} ${draftIsOutdated.value ? this.meanwhile() : nothing}
       <argo-script-sheet></argo-script-sheet>
       ${this.problems()} ${noScriptReason.value === null ? nothing : html`<p class="told warn">${noScriptReason.value}</p>`}
       <div class="row">
@@ -96,6 +106,17 @@ export class ScriptPanel extends PageElement {
       </div>`;
   }
 
+  /** Render the choice between the script of the mission and the text that it was imported from. */
+  private texts() {
+    const texts = t().script;
+    if (importedText.value === "") return nothing;
+    const choice = (imported: boolean, label: string) =>
+      html`<button aria-pressed=${this.imported === imported} @click=${() => (this.imported = imported)}>${label}</button>`;
+    return html`<div class="row texts" role="group" aria-label=${texts.which}>
+      ${choice(false, texts.asScript)} ${choice(true, texts.asImported)}
+    </div>`;
+  }
+
   private meanwhile() {
     const texts = t().script;
     return html`<section class="told warn" role="alert">
@@ -112,7 +133,7 @@ export class ScriptPanel extends PageElement {
     if (rejected === null || !draftIsChanged.value) return nothing;
     const texts = t().script;
     return html`<section class="told bad" aria-label=${texts.problems} role="alert">
-      <p>${texts.refused}</p>
+      <p>${rejected.incomplete ? t().draft.incomplete : texts.refused}</p>
       <ul>
         ${rejected.found.map(
           (one) =>
@@ -125,6 +146,9 @@ export class ScriptPanel extends PageElement {
             </li>`,
         )}
       </ul>
+      ${rejected.incomplete
+        ? html`<button title=${t().draft.lineByLineHint} @click=${decideLineByLine}>${t().draft.lineByLine}</button>`
+        : nothing}
     </section>`;
   }
 

@@ -11,6 +11,7 @@ import {
   worstSeverities,
   type Lines,
 } from "../model/script-lines";
+import { pointedName } from "../state/view";
 import { revision, select, selection, tasksByName } from "../state/plan";
 import { missionSentences } from "../state/sentences";
 import { mayPlan } from "../state/session";
@@ -99,6 +100,11 @@ export class ScriptSheet extends PageElement {
     .mirror .chosen {
       background: var(--chosen);
     }
+    .mirror .lit {
+      outline: 2px solid var(--accent);
+      outline-offset: -2px;
+      background: var(--chosen);
+    }
     .mirror .error {
       background: var(--bad-ground);
     }
@@ -127,11 +133,13 @@ export class ScriptSheet extends PageElement {
     const chosen = selection.value.map((key) => places.get(nameOfKey(key)));
     const isChosen = (line: number) =>
       chosen.some((part) => part !== undefined && part.from <= line && line <= part.to);
+    const pointed = pointedName.value === null ? undefined : places.get(pointedName.value);
+    const isLit = (line: number) => pointed !== undefined && pointed.from <= line && line <= pointed.to;
     return html`<div class="paper"><div class="sheet">
       <div class="mirror" aria-hidden="true">
         ${text.split("\n").map((line, at) => {
           const marked = marks.get(at + 1) ?? (isChosen(at + 1) ? "chosen" : "");
-          return html`<div class=${marked}>${line}</div>`;
+          return html`<div class="${marked} ${isLit(at + 1) ? "lit" : ""}">${line}</div>`;
         })}
       </div>
       <textarea
@@ -144,6 +152,8 @@ export class ScriptSheet extends PageElement {
         @input=${(event: Event) => editDraft(valueOf(event))}
         @keydown=${this.onKey}
         @click=${this.onClick}
+        @mousemove=${this.onPoint}
+        @mouseleave=${() => (pointedName.value = null)}
       ></textarea>
     </div></div>`;
   }
@@ -168,6 +178,13 @@ export class ScriptSheet extends PageElement {
     if (event.key !== "Enter" || !(event.ctrlKey || event.metaKey)) return;
     event.preventDefault();
     if (mayPlan() && draftIsChanged.value && !draftIsOutdated.value) void applyDraft();
+  }
+
+  /** Light the task whose line is under the pointer. */
+  private onPoint(event: MouseEvent): void {
+    const lines = [...this.renderRoot.querySelectorAll(".mirror div")];
+    const line = lines.findIndex((one) => event.clientY < one.getBoundingClientRect().bottom) + 1;
+    pointedName.value = draftIsChanged.value || line === 0 ? null : nameInLine(this.places(), line);
   }
 
   /** Select the task at the cursor. */

@@ -10,6 +10,8 @@ export type Tool = "select" | "navigate" | "obstacle";
 export const tool = signal<Tool>("select");
 /** Number of the highest shown floor; null: all floors are shown. */
 export const shownFloor = signal<number | null>(null);
+/** Name of the task or group that the pointer is on, in the list or in the script; null: none. */
+export const pointedName = signal<string | null>(null);
 /** How the camera follows the robot of the shown run. */
 export const following = signal<"off" | "behind" | "above">("off");
 

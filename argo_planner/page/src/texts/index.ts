@@ -2,6 +2,7 @@
 
 import { signal } from "@preact/signals-core";
 
+import { draft } from "./draft";
 import { evaluate } from "./evaluate";
 import { forms } from "./forms";
 import { frame } from "./frame";
@@ -17,7 +18,7 @@ import { words } from "./words";
 
 export type Language = "en" | "de";
 
-const AREAS = { evaluate, forms, frame, keys, list, route, run, scene, script, strip, verdict, words };
+const AREAS = { draft, evaluate, forms, frame, keys, list, route, run, scene, script, strip, verdict, words };
 type Areas = typeof AREAS;
 export type Texts = { readonly [area in keyof Areas]: Areas[area]["en"] };
 

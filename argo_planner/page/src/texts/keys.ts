@@ -6,7 +6,7 @@ interface Sheet {
   readonly title: string;
   readonly keys: readonly (readonly [key: string, what: string])[];
 }
-type Sheets = Readonly<Record<"everywhere" | "list" | "adding" | "scene" | "script" | "byHand", Sheet>>;
+type Sheets = Readonly<Record<"everywhere" | "list" | "adding" | "scene" | "script" | "draft" | "byHand", Sheet>>;
 
 export const keys = both<Sheets>(
   {
@@ -58,6 +58,21 @@ export const keys = both<Sheets>(
       ],
     },
     script: { title: "Script", keys: [["Ctrl+Enter", "apply the text"]] },
+    draft: {
+      title: "Draft of a script",
+      keys: [
+        ["↑ ↓", "line above or below"],
+        ["n Shift+N", "next or previous line that is left"],
+        ["c", "confirm what is proposed"],
+        ["1 … 9", "take a choice"],
+        ["e", "say the line in other words"],
+        ["x", "set the line aside"],
+        ["u", "undo the decision on the line"],
+        ["Shift+C", "confirm all proposed lines"],
+        ["Ctrl+Z", "undo your last decision"],
+        ["Ctrl+Enter", "plan the mission, once nothing is left"],
+      ],
+    },
     byHand: {
       title: "Driving by hand",
       keys: [
@@ -119,6 +134,21 @@ export const keys = both<Sheets>(
       ],
     },
     script: { title: "Skript", keys: [["Strg+Enter", "den Text anwenden"]] },
+    draft: {
+      title: "Entwurf eines Skripts",
+      keys: [
+        ["↑ ↓", "Zeile darüber oder darunter"],
+        ["n Umschalt+N", "nächste oder vorige offene Zeile"],
+        ["c", "den Vorschlag bestätigen"],
+        ["1 … 9", "eine der Möglichkeiten wählen"],
+        ["e", "die Zeile anders sagen"],
+        ["x", "die Zeile beiseitelegen"],
+        ["u", "die Entscheidung über die Zeile rückgängig machen"],
+        ["Umschalt+C", "alle Vorschläge bestätigen"],
+        ["Strg+Z", "Ihre letzte Entscheidung rückgängig machen"],
+        ["Strg+Enter", "die Mission planen, sobald nichts mehr offen ist"],
+      ],
+    },
     byHand: {
       title: "Von Hand fahren",
       keys: [

@@ -27,6 +27,10 @@ export const script = both(
     confirm: "Confirm",
     confirmAll: "Confirm all",
     loading: "Loading the script …",
+    which: "Which text is shown",
+    asScript: "Script of the mission",
+    asImported: "Imported text",
+    importedWords: "The imported text, and the words of each task",
   },
   {
     title: "Die Mission als Skript",
@@ -54,5 +58,9 @@ export const script = both(
     confirm: "Bestätigen",
     confirmAll: "Alle bestätigen",
     loading: "Das Skript wird geladen …",
+    which: "Welcher Text gezeigt wird",
+    asScript: "Skript der Mission",
+    asImported: "Importierter Text",
+    importedWords: "Der importierte Text und die Wörter jeder Aufgabe",
   },
 );

@@ -31,6 +31,7 @@ const PATHS = {
   obstacle: "M4 20l4-12h8l4 12zM6.500 13h11",
   pause: "M8 5v14M16 5v14",
   play: "M7 4l13 8-13 8z",
+  question: "M9 9a3 3 0 1 1 4.500 2.600c-1 .6-1.500 1.200-1.500 2.400M12 18h.01M12 3a9 9 0 1 0 .01 0",
   reaction: "M13 3L5 14h6l-1 7 8-11h-6z",
   redo: "M19 9h-9a5 5 0 0 0 0 10h4M15 5l4 4-4 4",
   right: "M9 6l6 6-6 6",
@@ -45,6 +46,7 @@ const PATHS = {
   up: "M6 15l6-6 6 6",
   undo: "M5 9h9a5 5 0 0 1 0 10h-4M9 5L5 9l4 4",
   wait: "M7 3h10M7 21h10M8 3c0 5 8 5 8 9s-8 4-8 9M16 3c0 5-8 5-8 9s8 4 8 9",
+  wand: "M4 20L15 9M13 7l4 4M18 3v4M16 5h4M20 13v3M18.500 14.500h3",
   warning: "M12 4l9 16H3zM12 10v4M12 17h.01",
   whole: "M4 9V4h5M15 4h5v5M20 15v5h-5M9 20H4v-5",
 } as const;

@@ -1,0 +1,114 @@
+/** Lines of a draft with acts that the service has not answered yet. */
+
+import type { DraftAct, DraftedLine } from "../api/types";
+
+/** An act of a person on one line; `sentences` are what the person saw or wrote. */
+export interface LineAct {
+  readonly kind: "confirm" | "set_aside" | "say" | "choose" | "undo";
+  readonly label: string;
+  readonly sentences: readonly string[];
+  /** Number of the choice, from 1. */
+  readonly number?: number;
+}
+
+export interface ShownLine extends DraftedLine {
+  /** Whether an act on the line is being sent. */
+  readonly sending: boolean;
+  /** Whether it is unknown what the line becomes until the service answers. */
+  readonly reading: boolean;
+}
+
+/** Return whether a person still has to decide on a line. */
+export function isLeft(line: DraftedLine): boolean {
+  return line.state === "proposed" || line.state === "open";
+}
+
+/** Return the lines as they are once the acts have been carried out, as far as that is known. */
+export function withActs(lines: readonly DraftedLine[], acts: readonly LineAct[]): readonly ShownLine[] {
+  const byLabel = new Map<string, LineAct>();
+  for (const act of acts) byLabel.set(act.label, act);
+  return lines.map((line) => shownLine(line, byLabel.get(line.label)));
+}
+
+/** the lines that are shown without an act, so that unchanged ones stay the same objects */
+const plain = new WeakMap<DraftedLine, ShownLine>();
+
+function shownLine(line: DraftedLine, act: LineAct | undefined): ShownLine {
+  if (act === undefined) {
+    const known = plain.get(line) ?? { ...line, sending: false, reading: false };
+    plain.set(line, known);
+    return known;
+  }
+  const decided = { ...line, reason: "", hint: "", sentences: act.sentences, sending: true, reading: false };
+  if (act.kind === "confirm") return { ...decided, state: "understood", act: "confirmed", choices: [] };
+  if (act.kind === "set_aside" || (act.kind === "choose" && act.sentences.length === 0))
+    return { ...decided, state: "set aside", act: "set aside", sentences: [], choices: [], unused: [] };
+  if (act.kind === "choose") return { ...decided, state: "understood", act: "said", choices: [], unused: [] };
+  return { ...line, sentences: act.sentences, sending: true, reading: true };
+}
+
+/** Return whether an act is still about what the person saw: a confirmation is of a proposal. */
+export function stillApplies(act: LineAct, line: DraftedLine | undefined): boolean {
+  if (line === undefined) return false;
+  if (act.kind === "confirm") return line.state === "proposed" && same(line.sentences, act.sentences);
+  if (act.kind === "choose") return same(line.choices[(act.number ?? 0) - 1], act.sentences);
+  return true;
+}
+
+function same(one: readonly string[] | undefined, other: readonly string[]): boolean {
+  return one !== undefined && one.length === other.length && one.every((text, at) => text === other[at]);
+}
+
+/** Return acts as the service takes them; neighbouring ones of a kind become one. */
+export function toRequest(acts: readonly LineAct[]): DraftAct[] {
+  const found: DraftAct[] = [];
+  for (const { kind, label, sentences, number } of acts) {
+    const last = found.at(-1);
+    if (kind === "say") found.push({ kind, label, sentences: [...sentences] });
+    else if (kind === "choose") found.push({ kind, label, number: number ?? 1 });
+    else if (last?.kind === kind && last.labels) found[found.length - 1] = { ...last, labels: [...last.labels, label] };
+    else found.push({ kind, labels: [label] });
+  }
+  return found;
+}
+
+/** A part of a line's text. */
+export interface TextPart {
+  readonly text: string;
+  readonly unused: boolean;
+}
+
+/** Split the text of a line at the words that its proposal does not use. */
+export function splitUnused(text: string, unused: readonly string[]): readonly TextPart[] {
+  const marked: [from: number, to: number][] = [];
+  let from = 0;
+  for (const words of unused) {
+    const at = text.indexOf(words, from);
+    const found = at >= 0 ? at : text.indexOf(words);
+    if (found < 0 || words === "") continue;
+    marked.push([found, found + words.length]);
+    from = found + words.length;
+  }
+  marked.sort(([one], [other]) => one - other);
+  const parts: TextPart[] = [];
+  let end = 0;
+  for (const [begin, after] of marked) {
+    if (begin < end) continue;
+    if (begin > end) parts.push({ text: text.slice(end, begin), unused: false });
+    parts.push({ text: text.slice(begin, after), unused: true });
+    end = after;
+  }
+  if (end < text.length) parts.push({ text: text.slice(end), unused: false });
+  return parts;
+}
+
+/** Return the index of the next line that is left, after `from` and then from the top; -1: none. */
+export function nextLeft(lines: readonly DraftedLine[], from: number, step: 1 | -1 = 1): number {
+  const count = lines.length;
+  for (let offset = 1; offset <= count; offset++) {
+    const at = (((from + step * offset) % count) + count) % count;
+    const line = lines[at];
+    if (line && isLeft(line)) return at;
+  }
+  return -1;
+}

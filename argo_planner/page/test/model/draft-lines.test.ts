@@ -1,0 +1,94 @@
+import { describe, expect, it } from "vitest";
+
+import type { DraftedLine } from "../../src/api/types";
+import { type LineAct, nextLeft, splitUnused, stillApplies, toRequest, withActs } from "../../src/model/draft-lines";
+
+function line(label: string, state: DraftedLine["state"], more: Partial<DraftedLine> = {}): DraftedLine {
+  return {
+    label,
+    line: Number(label),
+    last_line: Number(label),
+    text: "I need R25, please",
+    state,
+    sentences: [],
+    steps: [],
+    unused: [],
+    reason: "",
+    hint: "",
+    choices: [],
+    act: null,
+    ...more,
+  };
+}
+
+const proposed = line("2", "proposed", { sentences: ["Check checkpoint 4."], unused: ["please"] });
+const open = line("3", "open", { choices: [["Check checkpoint 14."], []], reason: "not understood" });
+const confirm: LineAct = { kind: "confirm", label: "2", sentences: ["Check checkpoint 4."] };
+
+describe("lines with acts that are being sent", () => {
+  it("shows what the service will answer", () => {
+    const [shown] = withActs([proposed], [confirm]);
+    expect(shown).toMatchObject({ state: "understood", act: "confirmed", sentences: ["Check checkpoint 4."], sending: true });
+    const chosen = withActs([open], [{ kind: "choose", label: "3", number: 1, sentences: ["Check checkpoint 14."] }]);
+    expect(chosen[0]).toMatchObject({ state: "understood", act: "said", sentences: ["Check checkpoint 14."] });
+    const aside = withActs([open], [{ kind: "choose", label: "3", number: 2, sentences: [] }]);
+    expect(aside[0]).toMatchObject({ state: "set aside", act: "set aside" });
+  });
+
+  it("does not guess what other words become", () => {
+    const [shown] = withActs([open], [{ kind: "say", label: "3", sentences: ["Check R7."] }]);
+    expect(shown).toMatchObject({ state: "open", sentences: ["Check R7."], reading: true });
+  });
+
+  it("keeps lines without acts the same objects", () => {
+    expect(withActs([proposed, open], [confirm])[1]).toBe(withActs([proposed, open], [])[1]);
+  });
+});
+
+describe("acts that wait for an answer", () => {
+  it("confirm a proposal, not a line", () => {
+    expect(stillApplies(confirm, proposed)).toBe(true);
+    expect(stillApplies(confirm, { ...proposed, sentences: ["Check checkpoint 5."] })).toBe(false);
+    expect(stillApplies(confirm, { ...proposed, state: "open" })).toBe(false);
+    expect(stillApplies(confirm, undefined)).toBe(false);
+  });
+
+  it("choose a meaning, not a number", () => {
+    const act: LineAct = { kind: "choose", label: "3", number: 1, sentences: ["Check checkpoint 14."] };
+    expect(stillApplies(act, open)).toBe(true);
+    expect(stillApplies(act, { ...open, choices: [[], ["Check checkpoint 14."]] })).toBe(false);
+  });
+
+  it("of one kind are sent as one, in their order", () => {
+    const acts: LineAct[] = [confirm, { ...confirm, label: "4" }, { kind: "undo", label: "2", sentences: [] }, confirm];
+    expect(toRequest(acts)).toEqual([
+      { kind: "confirm", labels: ["2", "4"] },
+      { kind: "undo", labels: ["2"] },
+      { kind: "confirm", labels: ["2"] },
+    ]);
+  });
+});
+
+describe("words that are not used", () => {
+  it("are split from the others", () => {
+    expect(splitUnused("I need R25, please", ["I need", "please"])).toEqual([
+      { text: "I need", unused: true },
+      { text: " R25, ", unused: false },
+      { text: "please", unused: true },
+    ]);
+  });
+
+  it("that are not in the text leave it whole", () => {
+    expect(splitUnused("I need R25", ["zorg", ""])).toEqual([{ text: "I need R25", unused: false }]);
+  });
+});
+
+describe("the next line that is left", () => {
+  const lines = [line("1", "understood"), proposed, open, line("4", "set aside")];
+  it("follows, and then begins again at the top", () => {
+    expect(nextLeft(lines, 1)).toBe(2);
+    expect(nextLeft(lines, 2)).toBe(1);
+    expect(nextLeft(lines, 1, -1)).toBe(2);
+    expect(nextLeft([line("1", "understood")], 0)).toBe(-1);
+  });
+});

@@ -1,0 +1,1 @@
+"""Drafts of uploaded scripts: what is left to decide, and what people have decided."""

@@ -1,0 +1,252 @@
+"""Drafts of scripts in the page: two columns, decisions at each line, keyboard only."""
+
+import re
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.argo_planner.service.served import ALL, Served
+from tests.e2e.page.person import Person, Proxy
+from tests.e2e.page.test_access import require_accessible
+
+SCRIPT = """Hi Lena,
+Start in starting area 1.
+I'd like to have valve R25.
+Please keep it under 15 minutes.
+Should it check R18 too?
+Photograph pump 3.
+Check checkpoint 5.
+End in starting area 1.
+"""
+
+
+def upload(service: Served, script: str = SCRIPT) -> str:
+    """Import a script with lines that are left, and return the id of its draft."""
+    answer = service.client.post("/api/imports?filename=round.txt", content=script)
+    assert answer.status_code == 202, answer.text
+    id: str = answer.json()["id"]
+    return id
+
+
+def line(person: Person, label: int | str) -> object:
+    return person.page.locator(f"argo-draft [data-label='{label}']")
+
+
+def expect_state(person: Person, label: int | str, state: str) -> None:
+    expect(line(person, label)).to_have_attribute("data-state", state)
+
+
+def expect_saved(person: Person, text: str = "Saved") -> None:
+    expect(person.page.locator("#saved")).to_have_text(text)
+
+
+@pytest.fixture
+def draft(service: Served, shared_person: Person) -> Person:
+    """Return a person at a new draft."""
+    shared_person.go(f"/drafts/{upload(service)}")
+    expect(line(shared_person, 3)).to_be_focused()
+    return shared_person
+
+
+def test_an_upload_becomes_a_mission_by_keyboard_alone(ann: Person) -> None:
+    """From the file to the mission: each line that is left takes one key, or one and its words."""
+    file = {"name": "round.txt", "mimeType": "text/plain", "buffer": SCRIPT.encode()}
+    ann.page.locator("argo-import input[type=file]").set_input_files(file)
+    expect(ann.page.locator("#left")).to_have_text("2 lines to confirm, 2 lines to answer")
+    expect(line(ann, 3)).to_be_focused()
+    expect(line(ann, 3)).to_contain_text("Check checkpoint 4.")
+    expect(ann.page.locator("#plan")).to_be_disabled()
+    ann.inputs = 0
+    ann.key("c")
+    expect(line(ann, 4)).to_be_focused()
+    ann.key("c", "1", "e")
+    expect(ann.page.locator("argo-draft form input")).to_be_focused()
+    ann.type("Check checkpoint 6.")
+    ann.key("Enter")
+    expect(ann.page.locator("#left")).to_have_text("nothing left")
+    expect_state(ann, 6, "understood")
+    expect_saved(ann)
+    expect(line(ann, 7)).to_contain_text("Check checkpoint #5")  # the step of the mission
+    ann.key("Control+Enter")
+    expect(ann.page.get_by_role("treeitem")).to_have_count(6)
+    assert ann.inputs == 6 + len("Check checkpoint 6.")
+    named = ann.page.get_by_role("treeitem").all_inner_texts()
+    assert [number for text in named for number in re.findall(r"MEASURE (\d+)", text)] == [
+        *("4", "14", "6", "5")
+    ]
+    ann.go("")
+    expect(ann.page.locator("#drafts")).to_have_count(0)
+
+
+def test_decisions_survive_a_reload(draft: Person) -> None:
+    """Also those that the service has not answered when the page is closed."""
+    draft.key("c")
+    draft.page.reload()
+    expect_state(draft, 3, "understood")
+    expect(line(draft, 3)).to_contain_text("confirmed")
+    expect_saved(draft)
+    expect(draft.page.locator("#left")).to_have_text("1 line to confirm, 2 lines to answer")
+    expect(line(draft, 4)).to_be_focused()
+
+
+def test_the_message_for_a_sentence_that_is_not_understood_is_shown(draft: Person) -> None:
+    draft.click(line(draft, 6).locator("button.say"))
+    field = draft.page.locator("argo-draft form input")
+    expect(field).to_have_value("Photograph pump 3")
+    draft.key("Escape")
+    expect(field).to_have_count(0)
+    expect(line(draft, 6)).to_be_focused()
+    draft.key("e", "Control+a", "Delete", "Enter")
+    expect(field).to_be_focused()  # no empty sentence is sent
+    draft.type("Chek the zorg.")
+    draft.key("Enter")
+    expect(line(draft, 6)).to_contain_text("Argo does not understand")
+    expect_state(draft, 6, "open")
+    expect(line(draft, 6)).to_contain_text("Chek the zorg.")
+    draft.key("e")
+    expect(field).to_have_value("Chek the zorg.")
+    draft.key("Escape", "u")
+    expect(line(draft, 6)).to_contain_text("`Photograph`")
+
+
+def test_all_proposals_are_confirmed_at_once_and_decisions_undone(draft: Person) -> None:
+    draft.key("Shift+C")
+    expect(draft.page.locator("#left")).to_have_text("2 lines to answer")
+    expect_saved(draft)
+    draft.key("Control+z")
+    expect(draft.page.locator("#left")).to_have_text("2 lines to confirm, 2 lines to answer")
+    expect(line(draft, 3)).to_be_focused()
+    draft.key("x")
+    expect_state(draft, 3, "set aside")
+    draft.key("ArrowUp")
+    expect(line(draft, 3)).to_be_focused()
+    draft.key("u")
+    expect_state(draft, 3, "proposed")
+
+
+def test_the_lines_are_no_trap_for_the_keyboard(draft: Person) -> None:
+    """Tab leads through the buttons of one line only, and then out of the lines."""
+    draft.key("n")
+    expect(line(draft, 4)).to_be_focused()
+    draft.key("Shift+N", "End")
+    expect(line(draft, 8)).to_be_focused()
+    draft.key("Home")
+    expect(line(draft, 1)).to_be_focused()
+    inside = "() => document.activeElement?.shadowRoot?.activeElement?.shadowRoot?.activeElement"
+    for _ in range(8):
+        draft.key("Tab")
+        if not draft.evaluate(f"{inside}?.closest('[role=grid]') !== null"):
+            break
+    else:
+        pytest.fail("eight times Tab do not leave the lines")
+
+
+def test_lines_are_named_for_screen_readers(draft: Person) -> None:
+    """State, words and meaning of a line are in its name, and each decision is announced."""
+    expect(line(draft, 3)).to_have_accessible_name(
+        "Line 3. proposed. I'd like to have valve R25. What it becomes: Check checkpoint 4."
+    )
+    draft.key("c")
+    expect(draft.page.locator("argo-draft [role=status]").last).to_have_text(
+        "Line 3 is confirmed. 3 left."
+    )
+
+
+def test_a_change_by_somebody_else_is_not_overwritten(service: Served, draft: Person) -> None:
+    id = draft.page.url.rpartition("/")[2]
+    acts = {"acts": [{"kind": "set_aside", "labels": ["3"]}]}
+    at = f"/api/drafts/{id}/acts"
+    assert service.client.post(at, json=acts, headers={"if-match": "*"}).status_code == 200
+    draft.key("c")
+    expect(draft.page.locator("argo-notices")).to_contain_text("changed the draft in the meantime")
+    expect_state(draft, 3, "set aside")
+
+
+@pytest.mark.long
+def test_decisions_without_a_connection_are_sent_later(service: Served, browsers) -> None:
+    id = upload(service)
+    with Proxy(service.address) as proxy:
+        ann = browsers.person(f"http://{proxy.address}/?token={ALL}")
+        ann.open(f"/drafts/{id}")
+        expect(line(ann, 3)).to_be_focused()
+        proxy.cut()
+        ann.key("c")
+        expect_state(ann, 3, "understood")
+        expect(ann.page.locator("argo-notices")).to_contain_text("doesn't respond")
+        expect_saved(ann, "Saving …")
+        proxy.restore()
+        expect_saved(ann)
+        lines = service.client.get(f"/api/drafts/{id}").json()["lines"]
+        assert [one["act"] for one in lines if one["label"] == "3"] == ["confirmed"]
+        ann.clear_connection_problems()
+
+
+def test_the_draft_is_in_german(service: Served, browsers, address) -> None:
+    bert = browsers.person(address, "bert", locale="de-DE")
+    bert.open(f"/drafts/{upload(service)}")
+    expect(bert.page.locator("#left")).to_have_text("2 Zeilen zu bestätigen, 2 Zeilen zu klären")
+    expect(line(bert, 3)).to_be_focused()
+    expect(line(bert, 3)).to_contain_text("vorgeschlagen")
+    bert.key("c", "c", "x", "x")
+    expect(bert.page.locator("#left")).to_have_text("nichts mehr offen")
+    expect_saved(bert, "Gespeichert")
+    expect(bert.page.locator("#plan")).to_be_enabled()
+    bert.key("Control+Enter")
+    expect(bert.page.get_by_role("treeitem")).to_have_count(4)
+
+
+def test_a_script_without_areas_is_completed_by_choosing_them(service, shared_person) -> None:
+    script = "Start: area 1 or 2\nI'd like to have valve R25.\nCheck checkpoint 5.\n"
+    shared_person.go(f"/drafts/{upload(service, script)}")
+    expect(line(shared_person, 2)).to_be_focused()
+    shared_person.key("c")
+    expect_saved(shared_person)
+    expect(shared_person.page.locator("#plan")).to_be_disabled()
+    shared_person.page.locator("#start-area").select_option("1")
+    expect(shared_person.page.locator("#plan")).to_be_enabled()
+
+
+def test_the_words_of_a_task_light_up(draft: Person) -> None:
+    """In the list and in the imported text, by pointer and by keyboard."""
+    draft.key("c", "c", "1", "x")
+    expect_saved(draft)
+    expect(draft.page.locator("#plan")).to_be_enabled()
+    draft.key("Control+Enter")
+    rows = draft.page.get_by_role("treeitem")
+    expect(rows).to_have_count(5)
+    draft.click(draft.page.locator("#tab-script"))
+    draft.click(draft.page.get_by_role("button", name="Imported text"))
+    words = draft.page.locator("argo-imported-script [role=option]")
+    expect(words).to_have_text(
+        [
+            "Start in starting area 1",
+            "I'd like to have valve R25.",
+            "Should it check R18 too?",
+            "Check checkpoint 5",
+            "End in starting area 1",
+        ]
+    )
+    rows.nth(1).hover()
+    expect(words.nth(1)).to_have_class(re.compile("lit"))
+    words.nth(2).hover()
+    expect(rows.nth(2)).to_have_class(re.compile("lit"))
+    expect(words.nth(1)).not_to_have_class(re.compile("lit"))
+    draft.focus(draft.page.locator("argo-imported-script [role=listbox]"))
+    draft.key("Home", "ArrowDown")
+    expect(rows.nth(1)).to_have_attribute("aria-selected", "true")
+    draft.focus(draft.page.get_by_role("tree"))
+    draft.key("ArrowDown")
+    expect(words.nth(2)).to_have_attribute("aria-selected", "true")
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("locale", "width"), [("en-GB", 1280), ("de-DE", 320)])
+def test_drafts_are_accessible(service: Served, browsers, address, locale, width) -> None:
+    ann = browsers.person(address, locale=locale, viewport={"width": width, "height": 800})
+    ann.open(f"/drafts/{upload(service)}")
+    expect(line(ann, 3)).to_be_focused()
+    require_accessible(ann, f"a draft, {locale}, {width} px")
+    ann.key("c", "x", "e")
+    require_accessible(ann, f"a draft that is decided on, {locale}, {width} px")
+    body = ann.page.locator("argo-draft")
+    assert body.evaluate("view => view.scrollWidth <= view.clientWidth"), "it scrolls sideways"

@@ -46,6 +46,9 @@ class Diagnostic(Model):
     severity: Severity
     message: str
     span: Span | None = None
+    place: str | None = None
+    """place in a document, such as `Round!B7` or `page 2, row 3`; the span is then one in the text
+    that was read from the document"""
     excerpt: str | None = None
     """source line that contains the span"""
     hint: str | None = None

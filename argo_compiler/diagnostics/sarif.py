@@ -80,7 +80,7 @@ def _message(diagnostic: Diagnostic) -> str:
 def _location(diagnostic: Diagnostic, uri: str) -> dict[str, Any]:
     span = diagnostic.span
     region: dict[str, Any] = {"startLine": 1}  # code hosts require a region even if it is unknown
-    if span:
+    if span and diagnostic.place is None:
         region = {
             "startLine": span.line,
             "startColumn": span.column,
@@ -92,8 +92,8 @@ def _location(diagnostic: Diagnostic, uri: str) -> dict[str, Any]:
     location: dict[str, Any] = {
         "physicalLocation": {"artifactLocation": {"uri": uri}, "region": region}
     }
-    if diagnostic.subject:
-        location["logicalLocations"] = [{"fullyQualifiedName": diagnostic.subject}]
+    if name := diagnostic.place or diagnostic.subject:
+        location["logicalLocations"] = [{"fullyQualifiedName": name}]
     return location
 
 

@@ -30,7 +30,11 @@ def to_text(diagnostics: Sequence[Diagnostic], source_name: str) -> str:
 def _headline(diagnostic: Diagnostic, source_name: str) -> str:
     span = diagnostic.span
     location = f"{source_name}:{span.line}:{span.column}" if span else source_name
-    subject = "" if span or not diagnostic.subject else f"{diagnostic.subject}: "
+    if diagnostic.place:
+        location = f"{source_name}: {diagnostic.place}"
+    subject = (
+        "" if span or diagnostic.place or not diagnostic.subject else f"{diagnostic.subject}: "
+    )
     return _printable(
         f"{location}: {diagnostic.severity}: {subject}{diagnostic.message} [{diagnostic.code}]"
     )

@@ -25,6 +25,9 @@ _STEPS = "write its steps as a script, as Argo can't import it"
 _STOPS = "write its stops as a script, as Argo can't import it"
 _UNPACK = "unpack it, and choose the mission in it"
 _TEXT = "save it as plain text"
+_OFFICE = "save it as .docx, .xlsx or plain text"
+_ENCRYPTED = "EncryptedPackage".encode("utf-16-le")
+"""the part of an encrypted Office document that has its content"""
 _CHART = "choose the mission of which it was made, or write its steps as a script"
 
 
@@ -68,10 +71,11 @@ def find_foreign_file(name: str, content: bytes) -> ForeignFile | None:
 
 # ---- binary files and archives
 
+_OLD_OFFICE = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
 _MAGIC = (
     (b"%PDF-", ForeignFile("a document (PDF)", _TEXT)),
     (rb"{\rtf", ForeignFile("a document (RTF)", _TEXT)),
-    (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", ForeignFile("an old Office document", _TEXT)),
+    (_OLD_OFFICE, ForeignFile("an old Office document", _OFFICE)),
     (b"\x89PNG\r\n", ForeignFile("a picture (PNG)")),
     (b"\xff\xd8\xff", ForeignFile("a picture (JPEG)")),
     (b"GIF8", ForeignFile("a picture (GIF)")),
@@ -108,6 +112,8 @@ _PARTS_OF_ZIP = (
 
 def _find_by_first_bytes(content: bytes) -> ForeignFile | None:
     start = content[:_HEAD].lstrip(b" \t\r\n")[:16]
+    if content.startswith(_OLD_OFFICE) and _ENCRYPTED in content:
+        return ForeignFile("an encrypted Office document", "save it without a password")
     for magic, found in _MAGIC:
         if content.startswith(magic) or (found.way_out == _TEXT and start.startswith(magic)):
             return found
@@ -132,7 +138,7 @@ def _find_in_zip(content: bytes) -> ForeignFile:
         if part in names:
             return found
     if {"mimetype", "content.xml"} <= names:
-        return ForeignFile("an OpenDocument file", _TEXT)
+        return ForeignFile("an OpenDocument file", _OFFICE)
     return ForeignFile("a ZIP archive", _UNPACK)
 
 

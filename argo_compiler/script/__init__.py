@@ -6,24 +6,33 @@ from argo_compiler.base.lazy_names import lazy_names
 
 __all__ = [
     "Act",
+    "Document",
     "Draft",
     "DraftLine",
     "IncompleteDraft",
     "LineDecision",
     "LineState",
     "Resolved",
+    "decode_document",
     "decode_script",
     "draft_text",
     "format_script",
     "import_script",
     "parse",
     "read_decisions",
+    "read_document",
     "read_script",
     "resolve_script",
 ]
 
 if TYPE_CHECKING:
-    from argo_compiler.script.documents.reading import decode_script, read_script
+    from argo_compiler.script.documents.document import Document
+    from argo_compiler.script.documents.reading import (
+        decode_document,
+        decode_script,
+        read_document,
+        read_script,
+    )
     from argo_compiler.script.drafts.draft import (
         Act,
         Draft,
@@ -41,7 +50,13 @@ else:
     __getattr__, __dir__ = lazy_names(
         __name__,
         {
-            "documents.reading": ["decode_script", "read_script"],
+            "documents.document": ["Document"],
+            "documents.reading": [
+                "decode_document",
+                "decode_script",
+                "read_document",
+                "read_script",
+            ],
             "drafts.draft": [
                 "Act",
                 "Draft",

@@ -49,7 +49,8 @@ Undo = Annotated[
 
 def import_command(
     script: Annotated[
-        Path, typer.Argument(metavar="SCRIPT", help="script, ROS bag or isar mission (.json)")
+        Path,
+        typer.Argument(metavar="SCRIPT", help="script or document, ROS bag, isar mission (.json)"),
     ],
     output: Annotated[Path, typer.Option("-o", "--output", help="file for the mission (.json)")],
     site: SiteOption = "umad",

@@ -22,11 +22,14 @@ def incomplete_text(error: "IncompleteDraft") -> str:
 
 
 def left_text(draft: "Draft") -> str:
-    """Return the proposed lines of a draft, how many lines are left, and the way to decide."""
+    """Return the proposed lines of a draft, how many lines are left, and the way to decide.
+
+    Of a document all lines that are left are shown, as messages have their places, not numbers.
+    """
     from argo_compiler.script import IncompleteDraft, LineState
 
     proposed = [line for line in draft.left if line.state is LineState.PROPOSED]
-    parts = _lines_text(proposed)
+    parts = _lines_text(draft.left if any(line.place for line in draft.left) else proposed)
     parts.append(str(IncompleteDraft(draft)))
     if draft.left:
         parts.append(_commands(draft, proposed))
@@ -40,8 +43,14 @@ def _lines_text(lines: Sequence["DraftLine"]) -> list[str]:
 
 
 def _line_text(line: "DraftLine") -> Iterable[str]:
-    yield f"line {line.label}: {line.text}"
-    yield f"    => {' '.join(line.sentences) or '(nothing)'}"
+    place = f" ({line.place})" if line.place else ""
+    yield f"line {line.label}{place}: {line.text}"
+    if line.reason and not line.sentences:
+        yield f"    {line.reason}"
+    else:
+        yield f"    => {' '.join(line.sentences) or '(nothing)'}"
+    for number, sentences in enumerate(line.choices if line.place else (), start=1):
+        yield f"    choice {number}: {' '.join(sentences) or '(set it aside)'}"
     if line.unused:
         yield f"    not used: {', '.join(line.unused)}"
 

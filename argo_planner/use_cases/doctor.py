@@ -16,6 +16,10 @@ _UVLOOP = () if sys.platform == "win32" else ("uvloop",)
 _EXTRAS: dict[str, tuple[str, tuple[str, ...]]] = {
     "cluster": ("evaluations on Ray or Dask", ("ray", "dask", "distributed")),
     "results": ("rows of evaluations in Parquet files", ("pyarrow",)),
+    "documents": (
+        "scripts in spreadsheets, text documents and PDF",
+        ("openpyxl", "docx", "pdfplumber"),
+    ),
     "film": ("films as .mp4", ("imageio_ffmpeg",)),
     "learned": (
         "learned policies",

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -27,12 +28,13 @@ from argo_compiler.files.mission_file import MissionFile, decode_mission
 from argo_compiler.il import Mission
 from argo_compiler.isar.recognition import find_isar_data
 from argo_compiler.ros.recognition import is_bag_content
+from argo_compiler.script.documents.reading import document_format
 from argo_compiler.script.documents.source import Source as Script
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.site_warnings import above_own_speed_warnings, with_seeing_poses
 
 if TYPE_CHECKING:
-    from argo_compiler.script import Draft, LineDecision
+    from argo_compiler.script import Document, Draft, LineDecision
 
 _log = logging.getLogger(__name__)
 
@@ -91,7 +93,7 @@ class LoadedMission:
         if self.file is None:
             return tuple(f.model_copy(update={"span": None}) for f in diagnostics)
         if isinstance(self.file, Script):
-            return with_excerpts(diagnostics, self.file.lines)
+            return self.file.placed(with_excerpts(diagnostics, self.file.lines))
         return self.file.diagnostics_with_positions(diagnostics)
 
 
@@ -112,6 +114,8 @@ def guess_source_kind(upload: Upload) -> SourceKind:
     if not isinstance(upload.content, bytes) or is_bag_content(upload.name, upload.content):
         return SourceKind.BAG
     # A pipe has no name with a suffix, but no script begins with a brace.
+    if _is_document(upload):
+        return SourceKind.SCRIPT
     if Path(upload.name).suffix.lower() != ".json" and not _BRACE.match(upload.content):
         return SourceKind.SCRIPT
     return SourceKind.MISSION if find_isar_data(upload.content) is None else SourceKind.ISAR
@@ -136,7 +140,8 @@ def load_unchecked_mission(
     """
     name = upload.name
     _require_no_plan_or_run(upload)
-    require_no_foreign_file(name, _beginning(upload, _BEGINNING))
+    if not _is_document(upload):
+        require_no_foreign_file(name, _beginning(upload, _BEGINNING))
     kind = guess_source_kind(upload)
     _log.info("%s is read as a %s", name, kind)
     if kind is not SourceKind.SCRIPT:
@@ -213,16 +218,18 @@ def _load_script(
             "`Check checkpoint 4`"
         )
     mission = draft.require_mission()
-    return LoadedMission(mission, draft.diagnostics, Script(_text_of(upload), name))
+    return LoadedMission(mission, draft.diagnostics, Script.of(_script_in(upload), name))
 
 
 def _has_steps(draft: "Draft") -> bool:
     """Return True if lines of a table are, or may be, what the robot does."""
     from argo_compiler.script import LineState
+    from argo_compiler.script.layout.forms import SHEET_HEADINGS
     from argo_compiler.script.layout.rows import COLUMN_HEADINGS
 
     steps = (LineState.UNDERSTOOD, LineState.PROPOSED)
-    return any(line.state in steps or line.reason == COLUMN_HEADINGS for line in draft.lines)
+    headings = (COLUMN_HEADINGS, SHEET_HEADINGS)
+    return any(line.state in steps or line.reason in headings for line in draft.lines)
 
 
 def load_draft(
@@ -238,12 +245,13 @@ def load_draft(
         ArgoError: The upload is no script: not text, empty, or too long.
     """
     assert isinstance(upload.content, bytes), "a script is one file"
-    require_no_foreign_file(upload.name, upload.content)
+    if not _is_document(upload):
+        require_no_foreign_file(upload.name, upload.content)
     with collector_held():
         from argo_compiler.script import import_script
 
     return import_script(
-        _text_of(upload),
+        _script_in(upload),
         catalog,
         source_name=upload.name,
         start_area=start_area,
@@ -252,11 +260,23 @@ def load_draft(
     )
 
 
-def _text_of(upload: Upload) -> str:
-    from argo_compiler.script import decode_script
-
+def _script_in(upload: Upload) -> "str | Document":
     assert isinstance(upload.content, bytes), "a script is one file"
-    return decode_script(upload.content, upload.name)
+    return _decoded(upload.content, upload.name)
+
+
+@lru_cache(maxsize=1)
+def _decoded(content: bytes, name: str) -> "str | Document":
+    """Return the script in a file; the last one is cached, as each decision reads it again."""
+    from argo_compiler.script import decode_document
+
+    return decode_document(content, name)
+
+
+def _is_document(upload: Upload) -> bool:
+    """Return True if an upload is a document that is no text, such as a workbook."""
+    content = upload.content
+    return isinstance(content, bytes) and document_format(content) is not None
 
 
 def import_mission(

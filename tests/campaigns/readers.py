@@ -32,7 +32,10 @@ from tests.campaigns.fuzz.binary import BinaryMutator
 from tests.campaigns.fuzz.mutating import Mutator
 
 ROOT = Path(__file__).parents[2]
-MODULES = ("numpy", "rosbags.rosbag1", "rosbags.rosbag2", "mcap.stream_reader", "zstandard")
+MODULES = (
+    *("numpy", "rosbags.rosbag1", "rosbags.rosbag2", "mcap.stream_reader", "zstandard"),
+    *("openpyxl", "docx", "pdfplumber"),
+)
 
 
 def draw_binary(rng: random.Random, corpus: Sequence[bytes]) -> bytes:
@@ -101,6 +104,20 @@ def read_mission_source(path: Path) -> None:
     from tests.argo_compiler.script.conftest import CATALOG
 
     load_unchecked_mission(Upload(path.name, path.read_bytes()), CATALOG)
+
+
+def read_document_file(path: Path) -> None:
+    from argo_compiler.script.documents.reading import document_format, read_here
+
+    content = path.read_bytes()
+    if document_format(content) is not None:
+        read_here(content, "fuzz")
+
+
+def read_separated_file(path: Path) -> None:
+    from argo_compiler.script.documents.reading import decode_document
+
+    decode_document(path.read_bytes(), "fuzz.csv")
 
 
 def read_site_file(path: Path) -> None:
@@ -348,6 +365,41 @@ def route_problems() -> tuple[bytes, ...]:
     return tuple(route_problem_text(one).encode() for one in (plain, rich))
 
 
+@cache
+def documents(suffix: str) -> tuple[bytes, ...]:
+    """Return documents with what their readers look at: merged and hidden cells, lists, columns."""
+    from tests.argo_compiler.script import documents_made as made
+
+    match suffix:
+        case ".xlsx":
+            return made.workbook(), made.workbook(change=made.furnish)
+        case ".docx":
+            return (made.word(made.fill_with_all),)
+        case ".pdf":
+            table = (("CP", "Name"), ("1", "gauge\n1"), ("Floor 2", ""), ("2", "gauge 2"))
+            return made.pdf(made.draw_columns), made.pdf_table(table, ((2, 2),))
+    return (b'\xef\xbb\xbfCP;"Na\nme";Min\r\n1;"a;b";3,5\r\n', b"a,b\n# c\n1,2\n", b"a\tb\n1\t2\n")
+
+
+def draw_zipped(rng: random.Random, samples: Sequence[bytes]) -> bytes:
+    """Return a mutated document, or a whole one with a mutated part."""
+    import zipfile
+
+    if rng.random() < 0.2:
+        return draw_binary(rng, samples)
+    stream = BytesIO()
+    with (
+        zipfile.ZipFile(BytesIO(rng.choice(samples))) as read,
+        zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as written,
+    ):
+        names = read.namelist()
+        changed = {*rng.sample(names, min(len(names), rng.choice((1, 1, 2))))}
+        for name in names:
+            content = read.read(name)
+            written.writestr(name, draw_text(rng, (content,)) if name in changed else content)
+    return stream.getvalue()
+
+
 READERS = {
     "ros1": Reader(read_bag_file, ".bag", partial(bags, ".bag"), draw_ros1_bag, limited=True),
     "sqlite": Reader(read_bag_file, ".db3", partial(bags, ".db3"), draw_sqlite_bag, limited=True),
@@ -358,6 +410,16 @@ READERS = {
     ),
     "journal": Reader(read_journal_file, ".journal", lambda: run_files()[1:], draw_binary),
     "script": Reader(read_mission_source, ".txt", scripts),
+    "workbook": Reader(
+        read_document_file, ".xlsx", partial(documents, ".xlsx"), draw_zipped, limited=True
+    ),
+    "text document": Reader(
+        read_document_file, ".docx", partial(documents, ".docx"), draw_zipped, limited=True
+    ),
+    "pages": Reader(
+        read_document_file, ".pdf", partial(documents, ".pdf"), draw_binary, limited=True
+    ),
+    "separated values": Reader(read_separated_file, ".csv", partial(documents, ".csv")),
     "mission": Reader(
         read_mission_source, ".json", lambda: (mission().model_dump_json().encode(),)
     ),

@@ -19,6 +19,7 @@ COMMANDS = {
     "hostile --only zeros": r"zeros .* refused\nworst: ",
     "perception --trials 1 --jobs 1": r"wrong readings: 0 of 1 \(0.0 %\) of all readings",
     "readers --count 3 --only sqlite mcap recording isar": r"sqlite +3 inputs: .*; slowest ",
+    "readers --count 3 --only workbook pages": r"pages +3 inputs: .*; slowest ",
     "route_missions --sizes 3 --sheets 1 --drive route": r"predicted and driven differ by 0.00%",
     "signals --placements 1 --missions 1 --drives 1 --duration 30": r"false alarms: 0 in 1 clean",
     "storage --places 2": r"part swapped: 2 refused",

@@ -156,6 +156,11 @@ SCRIPT = {
         "The script does not name the docking station; one was assumed.",
         "Name its starting area.",
     ),
+    "script.document": warning(
+        "Something in a document is not read: a hidden column or sheet, struck-through words, a "
+        "deletion; or words of a tracked change are read.",
+        "Show it, or accept or reject the change, in the document's program if it is meant.",
+    ),
     "script.duration": error(
         "A duration is zero, or its units are mixed up.",
         "Write hours before minutes before seconds, each once: `1 h 30 min`.",

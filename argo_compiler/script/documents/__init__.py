@@ -1,1 +1,1 @@
-"""The text of a script: how it is read from a file, where its parts stand, what noise it has."""
+"""The text of a script: how it is read from a file or a document, and where its parts stand."""

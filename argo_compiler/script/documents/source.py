@@ -6,9 +6,11 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NoReturn, TypeVar
+from unicodedata import normalize
 
 from argo_compiler.base.errors import Remedy, RemedyChoice
 from argo_compiler.diagnostics import MAX_EXCERPT, Diagnostic, Severity, Span, span_at
+from argo_compiler.script.documents.document import Document, DocumentLine
 
 MAX_LINE = 2000
 """characters in a line; a longer one is refused unread"""
@@ -31,8 +33,27 @@ class Source:
 
     text: str
     name: str = "script"
+    document: Document | None = None
+    """the document that the text is of; None: it is the text of a file"""
+
     expanded: "Mapping[int, ScriptText]" = field(default_factory=dict, compare=False)
     """lines in which short forms are replaced by what they stand for, by their numbers"""
+
+    @classmethod
+    def of(cls, script: str | Document, name: str) -> "Source":
+        """Return the source of a script that is a text or a document."""
+        if isinstance(script, Document):
+            return cls(script.text, name, script)
+        return cls(normalize("NFC", script), name)
+
+    def origin(self, number: int) -> DocumentLine | None:
+        """Return where a line of a document is from; None in a text."""
+        return None if self.document is None else self.document.line(number)
+
+    def placed(self, diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+        """Return diagnostics with their places in the document, if the script is one."""
+        found = tuple(diagnostics)
+        return found if self.document is None else self.document.placed(found)
 
     @cached_property
     def lines(self) -> tuple[str, ...]:
@@ -107,6 +128,11 @@ class ScriptText:
         """The greatest of the offsets in the source; -1 for an empty text."""
         offsets = self.offsets
         return -1 if not offsets else offsets[-1] if type(offsets) is range else max(offsets)
+
+    @property
+    def is_question(self) -> bool:
+        """Return True if a question mark stands at the end or behind it."""
+        return self.source.text[self.last : self.last + 2].rstrip()[-1:] == "?"
 
     def replaced(self, content: str) -> "ScriptText":
         """Return another text that stands for this one, all of it at the place of this one."""

@@ -66,6 +66,8 @@ class DraftLine(Model):
     """which of the pieces that begin in this line it is, from 1"""
     parts: int = 1
     """how many pieces begin in this line"""
+    place: str = ""
+    """in a document: its cells, or its page; `line` then only numbers the lines of the draft"""
     text: str
     """as in the file, with single blanks"""
     state: LineState

@@ -38,6 +38,8 @@ def draft_text(draft: Draft) -> str:
 
 def _block(line: DraftLine, width: int) -> Iterator[str]:
     yield f"{line.label:>{width}} | {line.text}"
+    if line.place:
+        yield f"place: {line.place}"
     if line.act is not None:
         key = _KEYS[line.act]
         yield from (f"{key}: {sentence}" for sentence in line.sentences or ("",))

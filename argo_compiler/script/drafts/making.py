@@ -15,6 +15,7 @@ from argo_compiler.diagnostics import (
     with_excerpts,
 )
 from argo_compiler.il import Mission
+from argo_compiler.script.documents.document import Document
 from argo_compiler.script.documents.source import Source
 from argo_compiler.script.drafts.draft import (
     Act,
@@ -58,7 +59,7 @@ class _Reading:
 
 @collector_held()
 def import_script(
-    text: str,
+    text: str | Document,
     catalog: Catalog,
     *,
     source_name: str = "script",
@@ -69,7 +70,7 @@ def import_script(
     """Return the draft of a script; its mission is None as long as something is left to decide.
 
     Args:
-        text: the script
+        text: the script, or the document in which it is; see `read_document`
         catalog: names and places of the site
         source_name: name of the script in messages
         start_area: starting area, for a script that names none
@@ -100,8 +101,18 @@ def import_script(
         source_name=source_name,
         lines=lines,
         mission=None if left else reading.mission,
-        diagnostics=by_position((*reading.diagnostics, *_asides(reading, proposals))),
+        diagnostics=_all_diagnostics(reading, proposals),
     )
+
+
+def _all_diagnostics(
+    reading: _Reading, proposals: Mapping[int, Proposal]
+) -> tuple[Diagnostic, ...]:
+    """Return all diagnostics of a script, by their place."""
+    source = reading.script.source
+    found = by_position((*reading.diagnostics, *_asides(reading, proposals)))
+    notes = () if source.document is None else source.document.note_diagnostics()
+    return (*source.placed(found), *notes)
 
 
 def _reads(proposal: Proposal) -> bool:
@@ -110,7 +121,7 @@ def _reads(proposal: Proposal) -> bool:
 
 
 def _read(
-    text: str,
+    text: str | Document,
     catalog: Catalog,
     source_name: str,
     areas: tuple[int | None, int | None],
@@ -157,7 +168,7 @@ def _lines(
     acts: Mapping[int, LineDecision],
     proposals: Mapping[int, Proposal],
 ) -> Iterator[DraftLine]:
-    pieces = reading.script.pieces
+    pieces, source = reading.script.pieces, reading.script.source
     spans = [_lines_of(piece) for piece in pieces]
     parts = occurrences([first for first, _ in spans])
     for piece, (first, last), (part, count) in zip(pieces, spans, parts, strict=True):
@@ -167,6 +178,7 @@ def _lines(
             last_line=last,
             part=part,
             parts=count,
+            place="" if source.document is None else source.document.place_at(first),
             text=text_of(piece),
             state=LineState.SET_ASIDE if piece.aside else LineState.UNDERSTOOD,
             reason=piece.aside,

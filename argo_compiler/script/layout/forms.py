@@ -6,14 +6,17 @@ and each cell has a role, by the heading of its column or by what it contains.
 """
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from argo_compiler.script.documents.signs import BLANK, RULE
 from argo_compiler.script.documents.source import ScriptText, Source, join
-from argo_compiler.script.sentences.words.prose import Prose
+from argo_compiler.script.sentences.words.prose import Prose, cue_pattern
 
+SHEET_HEADINGS = "the headings of columns"
+"""what the line of a sheet's headings is set aside as"""
 ROW = "\ue001"
 """the text of a row where sentences are read"""
 
@@ -52,6 +55,8 @@ class Cell:
 
     role: CellRole
     text: ScriptText
+    filled: bool = False
+    """whether it is filled in, where other rows have nothing"""
 
 
 @dataclass(frozen=True)
@@ -67,6 +72,12 @@ class FormRow:
     """whether it has the headings of the columns"""
     labelled: bool = False
     """whether it is no more than a label and a value"""
+    doubt: str = ""
+    """why it may not be meant, such as that it is hidden in its document"""
+    filled_below: tuple[ScriptText, ...] = ()
+    """for headings: the cells below times of day that are filled in"""
+    computed: bool = False
+    """whether all numbers in it are computed by a spreadsheet"""
 
 
 Columns = list[tuple[int, CellRole]]
@@ -94,7 +105,9 @@ _LONGEST = 2000
 _DEEP = 8
 """blanks before a line that goes on from the cell above it"""
 _UNIT_OF_LABEL = re.compile(r"(.+?)\s*[(\[](s|sec|seconds|min|minutes|h|hours)[)\]]", re.IGNORECASE)
-_MOST_CELLS = 16
+_CLOCK = re.compile(r"\d{1,2}[:.]\d{2}(?:\s*h)?")
+_READING = re.compile(r"-?\d+(?:[.,]\d+)?")
+_MOST_CELLS = 30
 _MOST_ROWS = 10_000
 
 
@@ -118,26 +131,49 @@ def forms(
     that `is_plain` tells to make sense without columns."""
     rows: dict[int, FormRow] = {}
     texts: dict[int, ScriptText] = {}
-    for group, cut in _groups(source, taken):
+    columns_of: dict[int | None, Columns | None] = {}
+    """by the table of a document, which sections may part"""
+    cut_rows: dict[int, tuple[int, list[Cell]]] = {}
+    headed: set[int] = set()
+    for at, (group, cut) in enumerate(_groups(source, taken)):
+        table = _table_of(source, group[0])
         lines = [(number, _cells(source.line_text(number), cut)) for number in group]
         if cut == "  ":
             lines = list(_wrapped(lines, source, texts))
         heads = [_headings(found, prose) for _, found in lines]
         headless = not any(heads)
-        columns: Columns | None = None
+        columns = None if table is None else columns_of.get(table)
         for (number, found), headings in zip(lines, heads, strict=True):
             line = source.line_text(number)
+            doubt = _doubt_of(source, number)
             if RULE.fullmatch(line.content):
                 texts[number] = line[:0]
             elif headings is not None:
-                columns = headings
-                rows[number] = FormRow(line.strip(), tuple(found), is_heading=True)
-            elif (field := _field(found, prose)) is not None:
+                columns = columns_of[table] = headings
+                below = _below_times(found, [cells for n, cells in lines if n > number], cut)
+                rows[number] = FormRow(
+                    line.strip(), tuple(found), is_heading=True, filled_below=below
+                )
+            elif (field := _field(found, prose)) is not None and not doubt:
                 texts[number] = field
             elif cut in ("\t", ",") and headless:
                 continue  # text recognition cuts words by tabs, and sentences have commas
-            elif columns is not None or not is_plain(line):
-                rows[number] = _row(line, _with_roles(found, columns, cut), cut)
+            else:
+                cells = _with_roles(found, columns, cut)
+                said = _instruction(cells, is_plain)
+                if said is not None and not doubt:
+                    texts[number] = said
+                elif columns is not None or table is not None or not is_plain(line):
+                    cut_rows[number] = (at if table is None else -table, cells)
+                    headed |= {number} if columns is not None and cut != "  " else set()
+                    rows[number] = _row(line, cells, cut)
+    for number, cells in _with_filled(cut_rows, headed).items():
+        filled = tuple(cell for cell in cells if cell.text.content)
+        if rows[number].box is None and not rows[number].is_heading:
+            rows[number] = replace(rows[number], cells=filled)
+        rows[number] = replace(
+            rows[number], doubt=_doubt_of(source, number), computed=_is_computed(source, number)
+        )
     for number in range(1, len(source.lines) + 1):
         line = source.line_text(number)
         content = line.content
@@ -145,12 +181,88 @@ def forms(
         if known or len(content) > _LONGEST or len(rows) > _MOST_ROWS:
             continue
         boxed, struck = _BOX.match(content), _STRUCK.match(content)
+        doubt = _doubt_of(source, number) if content.strip() else ""
         ticked = boxed and not _OPEN_BOX.match(content)
         blank = BLANK.search(_QUOTED.sub("", content))
         boxes = _OPEN_BOX.match(content) or _BOXES.search(content)
-        if blank or ticked or struck or (boxes and not is_plain(line)):
-            rows[number] = _row(line, _cells(line, "  "), "  ")
+        if doubt or blank or ticked or struck or (boxes and not is_plain(line)):
+            cells = _cells(line, "  ")
+            rows[number] = replace(_row(line, cells, "  "), doubt=doubt)
     return Forms(rows, texts)
+
+
+def _below_times(
+    headings: Sequence[Cell], rows: Sequence[Sequence[Cell]], cut: str
+) -> tuple[ScriptText, ...]:
+    """Return the numbers in the columns of times of day."""
+    times = [i for i, cell in enumerate(headings) if _CLOCK.fullmatch(cell.text.content)]
+    if cut == "  " or len(times) < 2:
+        return ()
+    cells = [row[i].text for i in times for row in rows if i < len(row)]
+    return tuple(text for text in cells if _READING.fullmatch(text.content))
+
+
+def _table_of(source: Source, number: int) -> int | None:
+    """Return the table of a document that a line is a row of; None for other lines."""
+    origin = source.origin(number) if number <= len(source.lines) else None
+    if origin is None or not source.line_text(number).content.strip():
+        return None  # also for a row that only explains a short form
+    return origin.table
+
+
+def _doubt_of(source: Source, number: int) -> str:
+    origin = source.origin(number)
+    return "" if origin is None else origin.doubt
+
+
+def _is_computed(source: Source, number: int) -> bool:
+    """Return True if a spreadsheet computes all numbers in a row that has some."""
+    origin = source.origin(number)
+    if origin is None or not origin.computed:
+        return False
+    starts = [start for start, _ in origin.cells]
+    parts = zip(starts, [*starts[1:], len(origin.text)], strict=True)
+    numbers = {i for i, (a, b) in enumerate(parts) if any(map(str.isdigit, origin.text[a:b]))}
+    return bool(numbers) and numbers <= origin.computed
+
+
+def _instruction(
+    cells: Sequence[Cell], is_plain: Callable[[ScriptText], bool]
+) -> ScriptText | None:
+    """Return the text of a row of which one cell is a sentence, and the others are its number or
+    empty: `3 | Check valve R31. Then wait a minute. |`."""
+    said = [cell for cell in cells if cell.text.content and cell.role is not CellRole.NUMBER]
+    if len(said) != 1 or said[0].role not in (CellRole.ACTION, CellRole.OTHER):
+        return None
+    text = said[0].text
+    prose = text.content.endswith(".") and text.content.count(" ") >= 2
+    if not prose and not (said[0].role is CellRole.ACTION and is_plain(text)):
+        return None
+    number = next((cell.text for cell in cells if cell.role is CellRole.NUMBER), text[:0])
+    if not number.content.strip(".").isdecimal():
+        return text
+    mark = number[: len(number.content.rstrip("."))]
+    return join([mark, ScriptText(". ", [text.first] * 2, text.source), text], "")
+
+
+def _with_filled(
+    rows: Mapping[int, tuple[int, list[Cell]]], headed: Collection[int]
+) -> dict[int, list[Cell]]:
+    """Return the cells of rows, by line; marked are those that are filled in while other rows of
+    the table have nothing there, or something else."""
+    filled: dict[tuple[int, int], set[str]] = defaultdict(set)
+    for table, cells in rows.values():
+        for i, cell in enumerate(cells):
+            filled[table, i].add(cell.text.content.lower())
+    return {
+        number: [
+            replace(cell, filled=bool(cell.text.content) and len(filled[table, i]) > 1)
+            if cell.role is CellRole.FILL or (cell.role is CellRole.OTHER and number in headed)
+            else cell
+            for i, cell in enumerate(cells)
+        ]
+        for number, (table, cells) in rows.items()
+    }
 
 
 def _wrapped(
@@ -213,9 +325,20 @@ def _groups(source: Source, taken: Mapping[int, ScriptText]) -> Iterator[tuple[l
     """Yield the numbers of lines, one below the other, that are cut into cells alike."""
     group: list[int] = []
     cut = ""
+    table: int | None = None
     for number in range(1, len(source.lines) + 2):
         line = source.line_text(number).content if number <= len(source.lines) else ""
         here = "" if number in taken else _cut_of(line)
+        of = None if number in taken else _table_of(source, number)
+        if of is not None or table is not None:
+            if group and (of != table or number in taken):
+                yield group, cut
+                group, cut = [], ""
+            table = of
+            if of is not None:
+                group.append(number)
+                cut = "|"
+                continue
         rule = cut == "|" and line.strip() and RULE.fullmatch(line)
         deep = cut == "  " and line.strip() and len(line) - len(line.lstrip()) >= _DEEP
         if group and (here == cut or rule or deep):
@@ -269,7 +392,19 @@ def _headings(cells: Sequence[Cell], prose: Prose) -> Columns | None:
     known = sum(role is not None for role in roles)
     if len(said) < 2 or known < 2 or 2 * known < len(said):
         return None
-    return [(cell.text.first, CellRole(_role(cell, prose) or CellRole.OTHER)) for cell in cells]
+    # `Valve R25 | yes | no` and `4 | valve | ok` are rows.
+    telling = any(role not in (None, CellRole.FILL) for role in roles)
+    if not telling or any(_READING.fullmatch(cell.text.content) for cell in said):
+        return None
+
+    def role_of(cell: Cell) -> CellRole:
+        heading = cell.text.content
+        if cue_pattern("history", prose.form["history"]).search(heading) is not None:
+            return CellRole.OTHER
+        role = _role(cell, prose) or prose.role_by_last_words(heading)
+        return CellRole(role or CellRole.OTHER)
+
+    return [(cell.text.first, role_of(cell)) for cell in cells]
 
 
 def _role(cell: Cell, prose: Prose) -> str | None:

@@ -11,13 +11,14 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from argo_compiler.script.documents.source import Diagnostics, ScriptText, Source
+from argo_compiler.script.documents.source import Diagnostics, ScriptText, Source, join
 from argo_compiler.script.documents.tags import TAGS, tag_from, tag_of
 from argo_compiler.script.sentences.grammar.parser import StumbleError
 from argo_compiler.script.sentences.tree.nouns import Kind
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.prose import cue_pattern
 
+LEGEND = "a part of a legend or of a list of tags"
 EXPLANATION = "an explanation of what a name stands for"
 _SHORT = re.compile(r"[A-Z][A-Z/]{0,5}[0-9]?|[A-Z]{1,3}[a-z]{0,2}")
 """an abbreviation"""
@@ -96,8 +97,9 @@ class Explained:
     """A script whose short forms are replaced."""
 
     source: Source
-    explanations: tuple[ScriptText, ...] = ()
-    """the lines that only say what short forms stand for"""
+    explanations: tuple[tuple[ScriptText, str], ...] = ()
+    """the lines that only say what short forms stand for; those of a legend that do not, with the
+    reason why they have no effect"""
 
 
 def explain(
@@ -109,11 +111,16 @@ def explain(
     glossary = Glossary(understanding, names)
     for tag, (number, _) in tags.items():
         glossary.add(tag, f"#{number}")
-    lines = dict(_lines(source, glossary))
-    if not glossary.meanings:
+    idle: set[int] = set()
+    lines = dict(_lines(source, glossary, idle))
+    if not glossary.meanings and not lines:
         return Explained(source)
     explanations = {n: text for n, text in lines.items() if text is not None}
-    for text in explanations.values():
+    for number, text in explanations.items():
+        if number in idle:
+            message = f"`{text.content}` is set aside: it is {LEGEND}"
+            diagnostics.warning("set-aside", message, text.span())
+            continue
         message = f"`{text.content}` has no effect by itself: it is {EXPLANATION}"
         diagnostics.note("no-effect", message, text.span())
     expanded = {number: text[:0] for number, text in explanations.items()}
@@ -121,20 +128,35 @@ def explain(
         line = source.line_text(number)
         if number not in lines and (text := glossary.expanded(line)) is not line:
             expanded[number] = text
-    return Explained(replace(source, expanded=expanded), tuple(explanations.values()))
+    pieces = ((text, LEGEND if n in idle else "") for n, text in explanations.items())
+    return Explained(replace(source, expanded=expanded), tuple(pieces))
 
 
-def _lines(source: Source, glossary: Glossary) -> Iterator[tuple[int, ScriptText | None]]:
+def _lines(
+    source: Source, glossary: Glossary, idle: set[int]
+) -> Iterator[tuple[int, ScriptText | None]]:
     """Yield the lines in which short forms stand beside what they mean, and add that to the
-    glossary; None for one that may be a task as well: `HV-025  valve R25` without a heading."""
+    glossary; None for one that may be a task as well: `HV-025  valve R25` without a heading.
+
+    The numbers of other lines of a legend are added to `idle`."""
     headed = False
     heading: tuple[int, ScriptText] | None = None
     is_heading = cue_pattern("glossary", glossary.understanding.language.prose.form["glossary"])
+    explaining = _explaining_lines(source, is_heading)
     for number, line in enumerate(source.lines, start=1):
-        if line and _PARTED.search(line) is None and not is_heading.match(line.lstrip()):
+        plain = _PARTED.search(line) is None and not is_heading.match(line.lstrip())
+        if line and plain and number not in explaining:
             headed, heading = False, None
             continue
         text = source.line_text(number).strip()
+        if number in explaining:
+            meanings = _explained_in_row(text, source, number, glossary)
+            for short, long in meanings:
+                glossary.add(short, long)
+            if text.content:
+                idle |= set() if meanings else {number}
+                yield number, text
+            continue
         if not text.content or len(line) > _LONGEST or len(glossary.meanings) > _MOST_MEANINGS:
             headed = headed and not text.content and not source.lines[number - 2].strip(" =-:")
             continue
@@ -155,6 +177,77 @@ def _lines(source: Source, glossary: Glossary) -> Iterator[tuple[int, ScriptText
         heading = None
         if found or named:
             yield number, text if explains else None
+
+
+def _explaining_lines(source: Source, heading: re.Pattern[str]) -> frozenset[int]:
+    """Return the numbers of the lines of a document that only explain: those of a sheet whose name
+    or first line is such as `Legend`, and those of a table below such a heading."""
+    document = source.document
+    if document is None:
+        return frozenset()
+
+    def heads(text: str) -> bool:
+        return heading.fullmatch(text.strip(" :")) is not None
+
+    sheets = {part for part, name in enumerate(document.parts) if heads(name)}
+    tables: set[int] = set()
+    found: set[int] = set()
+    headed = False
+    begun: set[int] = set()
+    for number, line in enumerate(document.lines, start=1):
+        if not line.text.strip():
+            continue
+        if document.parts and line.place and line.part not in begun and line.table is None:
+            if heads(line.text):
+                sheets.add(line.part)
+            begun |= {line.part} if line.text.strip(" :") not in document.parts else set()
+        if line.table is None:
+            headed = heads(line.text)
+            found |= {number} if headed else set()
+        elif headed:
+            tables.add(line.table)
+            headed = False
+        if (line.part in sheets and document.parts) or line.table in tables:
+            found.add(number)
+    return frozenset(found)
+
+
+def _explained_in_row(
+    text: ScriptText, source: Source, number: int, glossary: Glossary
+) -> list[tuple[str, str]]:
+    """Return what a row of a table explains: `PG | pressure gauge`, or a tag beside the number and
+    the name of a checkpoint."""
+    origin = source.origin(number)
+    if origin is None or origin.table is None:
+        return []
+    cells = [cell.strip() for cell in _cells_of(text)]
+    cells = [cell for cell in cells if cell.content]
+    if len(cells) == 2:
+        listed = _LISTED.fullmatch(f"{cells[0].content} | {cells[1].content}")
+        whole = join(cells, " | ")
+        return [] if listed is None else _meant(listed, whole, glossary)
+    tags = [cell for cell in cells if tag_of(cell.content) is not None]
+    others = [cell for cell in cells if cell not in tags]
+    names = [cell.content for cell in others if _names_checkpoint(cell, glossary)]
+    numbers = [cell.content for cell in others if cell.content.isdecimal()]
+    if len(tags) != 1 or len(names) > 1 or not (names or numbers):
+        return []
+    meaning = " ".join([*names, *([f"(#{numbers[0]})"] if names and numbers else [])])
+    return [(tags[0].content, meaning or f"#{numbers[0]}")]
+
+
+def _cells_of(text: ScriptText) -> Iterator[ScriptText]:
+    start = 0
+    for bar in re.finditer(r"\|", text.content):
+        yield text[start : bar.start()]
+        start = bar.end()
+    yield text[start:]
+
+
+def _names_checkpoint(text: ScriptText, glossary: Glossary) -> bool:
+    """Return True if a text names one checkpoint by its kind and its own name."""
+    types = glossary.understanding.types(text)
+    return types[:1] == ("KIND",) and {*types[1:]} in ({"NUMBER"}, {"IDENT"})
 
 
 def _equations(text: ScriptText, glossary: Glossary) -> list[tuple[str, str]]:

@@ -28,6 +28,8 @@ _LONGEST = 40
 """characters of a floor's name over a list"""
 _HEADS = ((), ("MEASURE",), ("ALL",), ("MEASURE", "ALL"))
 """what may stand before the kind in the sentence over a list"""
+_INTRODUCING = frozenset(["MEASURE", "BE_MEASURED", "DO_FOLLOWING", "ALL", "COLON"])
+"""words, besides a kind and the order, of a sentence that introduces a list"""
 _LABELS = frozenset(["NUMBER", "IDENT", "HASH"])
 _ENDS = frozenset("0123456789.!?…")
 """signs, none of which ends the sentence over a list; most lines end with one of them"""
@@ -143,7 +145,11 @@ class Lists:
         """The items; those of such a list say themselves what they are."""
         over: LineItem | None = None
         head: _Head | None = None
-        for item in items:
+        waiting = list(items)
+        for item, after in zip(waiting, [*waiting[1:], None], strict=False):
+            listed = after is not None and after.line.mark is not LineMark.NONE
+            if item.text.content.endswith(":") and (item.items or listed):
+                self._drop_introduction(item)
             if head is not None and self._is_label(item.text):
                 over = self._without(over, head)
                 _put_before(head, item)
@@ -167,6 +173,16 @@ class Lists:
             yield item
         if over is not None:
             yield over
+
+    def _drop_introduction(self, item: LineItem) -> None:
+        """Leave out the sentence over a list that only says that its items, and not all checkpoints
+        of the site, are read in this order: `The checkpoints are to be read in this order:`."""
+        last = sentences(item.text)[-1]
+        types = self.understanding.types(last)
+        named = [kind for kind in types if kind not in _INTRODUCING]
+        if named == ["KIND", "THIS_ORDER"]:
+            self.record(last, "")
+            item.text = item.text[: len(item.text.content) - len(last.content)].strip()
 
     def _without(self, item: LineItem | None, head: _Head) -> LineItem | None:
         """An item without the sentence at its end; None if nothing is left."""

@@ -79,6 +79,8 @@ def tables(source: Source, understanding: Understanding, diagnostics: Diagnostic
                 below = _below(source, number, cut)
                 if headings is not None and any(is_to_fill(row.content) for row in below):
                     headings = None  # a sheet that a person fills in
+                if source.origin(number) is not None and not _is_list_of_tasks(headings):
+                    headings = None
                 if headings is not None:
                     found[number] = text[:0]
                     all_.headings.append(text.strip())
@@ -93,6 +95,12 @@ def tables(source: Source, understanding: Understanding, diagnostics: Diagnostic
         else:
             found[number] = rows.sentence(source.line_text(number), headings, cut)
     return all_
+
+
+def _is_list_of_tasks(headings: "list[_Heading] | None") -> bool:
+    """Return True if a table of a document says of its tasks what no sheet to fill in does."""
+    held = {heading.holds for heading in headings or ()}
+    return bool(held & {"priority", "optional", "needed", "speed", "condition"})
 
 
 def _below(source: Source, number: int, cut: str) -> Iterator[ScriptText]:

@@ -5,10 +5,10 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from types import MappingProxyType
-from unicodedata import normalize
 
 from argo_compiler.base.garbage_collector import collector_held
 from argo_compiler.diagnostics import DiagnosticError
+from argo_compiler.script.documents.document import Document
 from argo_compiler.script.documents.healing import MOST_ERRORS, heal
 from argo_compiler.script.documents.source import Diagnostics, ScriptText, Source
 from argo_compiler.script.layout.asides import Asides
@@ -42,7 +42,7 @@ _EDITS = ("ADD", "DELETE", "REPLACE", "MOVE")
 
 @collector_held()
 def parse(
-    text: str,
+    text: str | Document,
     places: Collection[str] = (),
     source_name: str = "script",
     names: Collection[str] = (),
@@ -57,10 +57,10 @@ def parse(
     the checkpoints that have them. Raises DiagnosticError for what is no
     script at all.
     """
-    source = Source(normalize("NFC", text), source_name)
+    source = Source.of(text, source_name)
     _require_size(source)
     diagnostics = Diagnostics(source)
-    language = Language.of(text, places)
+    language = Language.of(source.text, places)
     words = frozenset(word for name in (*names, *places) for word in name.lower().split())
     understanding = Understanding(language, words, diagnostics)
     explained = explain(source, understanding, tags, diagnostics)
@@ -69,7 +69,7 @@ def parse(
     reader = SentenceReader(understanding, asides, fields, diagnostics)
     known = repeats(language.lexicon, words)
     parser = _Parser(understanding, asides, fields, diagnostics, reader, known, decided=decided)
-    parser.pieces += map(Piece, explained.explanations)
+    parser.pieces += (Piece(text, aside) for text, aside in explained.explanations)
     return parser.script(explained.source)
 
 
@@ -133,13 +133,15 @@ class _Parser:
     def script(self, source: Source) -> Script:
         """Return the tree of a script, whose short forms are replaced."""
         language = self.understanding.language
+        asides = self._asides_of_document()
         found = tables(source, self.understanding, self.diagnostics)
         self.pieces += [Piece(text, COLUMN_HEADINGS) for text in found.headings]
-        sheet = forms(source, found.rows, language.prose, self._is_plain_line)
+        taken = {**found.rows, **asides}
+        sheet = forms(source, taken, language.prose, self._is_plain_line)
         self.forms = sheet.rows
         rows = {number: _as_row(source.line_text(number)) for number in self.forms}
         words = _vocabulary(self.understanding, source.text)
-        read = {**stamped(source), **found.rows, **sheet.texts, **rows}
+        read = {**stamped(source), **taken, **sheet.texts, **rows}
         healed = heal(source, words, read)
         unreadable = (source.line_text(number).strip() for number in healed.unreadable)
         self.pieces += [Piece(text) for text in unreadable]
@@ -160,8 +162,7 @@ class _Parser:
         first = [_step_of(sentence) for sentence in self.fields.first]
         last = [_step_of(sentence) for sentence in self.fields.last]
         return Script(
-            source_name=source.name,
-            source_text=source.text,
+            source=source,
             header=self.fields.header,
             steps=(*first, *steps, *last),
             pieces=tuple(sorted(self.pieces, key=lambda piece: piece.text.first)),
@@ -170,6 +171,21 @@ class _Parser:
         )
 
     # ---- lines
+
+    def _asides_of_document(self) -> dict[int, ScriptText]:
+        """Record the lines of a document that its reader tells to have no effect; return what is
+        read instead of them, by their numbers."""
+        source = self.diagnostics.source
+        lines = () if source.document is None else source.document.lines
+        found: dict[int, ScriptText] = {}
+        for number, line in enumerate(lines, start=1):
+            if line.aside and line.text.strip():
+                text = source.line_text(number)
+                self.pieces.append(Piece(text.strip(), line.aside))
+                message = f"`{text.content.strip()}` is set aside: it is {line.aside}"
+                self.diagnostics.warning("set-aside", message, text.span())
+                found[number] = text[:0]
+        return found
 
     def _steps(self, items: Iterable[LineItem]) -> Iterator[ScriptStep]:
         for item in items:

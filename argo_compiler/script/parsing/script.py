@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from argo_compiler.diagnostics import Diagnostic
-from argo_compiler.script.documents.source import ScriptText
+from argo_compiler.script.documents.source import ScriptText, Source
 from argo_compiler.script.layout.forms import FormRow
 from argo_compiler.script.sentences.tree.script import ScriptHeader, ScriptStep
 
@@ -23,8 +23,7 @@ class Piece(NamedTuple):
 class Script:
     """What a script says."""
 
-    source_name: str
-    source_text: str
+    source: Source
     header: ScriptHeader = field(default_factory=ScriptHeader)
     steps: tuple[ScriptStep, ...] = ()
     pieces: tuple[Piece, ...] = ()
@@ -32,3 +31,13 @@ class Script:
     rows: Mapping[int, FormRow] = field(default_factory=dict)
     """the rows of sheets, by the offset at which their pieces begin"""
     diagnostics: tuple[Diagnostic, ...] = ()
+
+    @property
+    def source_name(self) -> str:
+        """The name of the script in messages."""
+        return self.source.name
+
+    @property
+    def source_text(self) -> str:
+        """The text of the script."""
+        return self.source.text

@@ -29,6 +29,10 @@ class _Title:
     """what makes sense behind a comma"""
 
 
+_BIDDING = frozenset([*VERBS, "BE_MEASURED", "IF", "UNLESS"])
+"""types of words; a sentence with a question mark and none of them asks for nothing"""
+
+
 @dataclass
 class SentenceReader:
     """Reads sentences. Mutable: what one is depends on those before it."""
@@ -134,6 +138,10 @@ class SentenceReader:
             message = f"nothing follows `{joint.content}`"
             hint = "write what follows, or remove it"
             self.diagnostics.error("unfinished", message, joint.span(), hint)
+        if text.is_question and {*self.understanding.types(text)}.isdisjoint(_BIDDING):
+            hint = "write it as a command if it is meant, or remove it"
+            self.diagnostics.error("not-understood", "this is a question", text.span(), hint)
+            return [Unread(span=text.span())]
         node = self._node(text, reading)
         introduces = text.content.endswith(":") and not item.items
         if introduces and item.over and not _is_amend(node):

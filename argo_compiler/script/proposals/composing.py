@@ -99,6 +99,8 @@ class Composer:
         reason = evidence(text, found, self.understanding.language)
         if reason:
             return Proposal(aside=reason)
+        if text.is_question and not found.has("MEASURE", "BE_MEASURED"):
+            return Proposal(choices=self._choices(text, found))  # `R9 as well?`
         before = self.known.state()
         made = self._composed(text, found)
         if made is None or made.unused:

@@ -54,11 +54,6 @@ def is_name(content: str) -> bool:
     return bool(_INITIALS.fullmatch(content) or _NAME.fullmatch(content))
 
 
-def is_question(text: ScriptText) -> bool:
-    """Return True if a question mark stands behind a piece."""
-    return text.source.text[text.last : text.last + 2].rstrip()[-1:] == "?"
-
-
 def _cue(name: str, language: Language) -> re.Pattern[str]:
     return cue_pattern(name, language.prose.cues[name])
 
@@ -83,7 +78,7 @@ def _wonders(text: ScriptText, found: Mentions, language: Language) -> bool:
     answer = _cue("answer", language).match(begun)
     begun = begun[answer.end() :].lstrip(" ,.-") if answer is not None else begun
     asks = _cue("wondering", language).match(begun) is not None
-    return asks and is_question(text) and found.only(*OF_FORMS, "SHOULD", "IF", "question")
+    return asks and text.is_question and found.only(*OF_FORMS, "SHOULD", "IF", "question")
 
 
 def _for_people(text: ScriptText, found: Mentions, language: Language) -> bool:

@@ -251,7 +251,7 @@ def _duration(found: Mentions, _: Known) -> Sentences | None:
     """`keep it under 15 minutes`, `the whole test must be over after 90 minutes`"""
     lengths = found.of("DURATION", "MOST_TIME")
     limits = ("limit", "MOST_TIME", "LESS", "MAX_DURATION", "WITHIN", "AT_MOST")
-    allowed = ("DURATION", "TOTAL", "pronoun", "everything", "MEASURE", *limits)
+    allowed = ("DURATION", "TOTAL", "TIME_WORD", "pronoun", "everything", "MEASURE", *limits)
     if found.has("over", "GREATER") and found.has("forbidding", "NOT"):  # `not longer than`
         found = found.without("over", "GREATER", "forbidding", "NOT")
     elif not found.has(*limits):
@@ -282,6 +282,8 @@ def _start_and_end(found: Mentions, _: Known) -> Sentences | None:
     if starts and not homes and len(areas) == 1:
         area = _area_of(areas[0])
         return None if area is None else (f"Start in starting area {area}.",)
+    if homes and not areas and any(0 < word.end <= homes[0].start for word in found.unknown):
+        return None  # `the shutdown ends tomorrow`
     if (homes or docks) and not starts and len(areas) <= 1:
         area = _area_of(areas[0]) if areas else None
         where = f" in starting area {area}" if area is not None else ""

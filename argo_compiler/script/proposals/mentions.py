@@ -112,6 +112,8 @@ def mentions_in(text: ScriptText, understanding: Understanding) -> Mentions:
     named = [m for m in phrases.values() if m.kind != "pronoun"]
     named += [Mention(w.type, w.start, w.end) for w in words if w.type == "IF_TIME"]
     cues = [cue for cue in _cues(text.content, understanding) if not _overlaps(cue, named)]
+    limits = [Mention(w.type, w.start, w.end) for w in words if w.type == "MOST_TIME"]
+    cues = [cue for cue in cues if cue.kind != "limit" or not _overlaps(cue, limits)]
     found = [cue for cue in cues if cue.kind not in _IDLE]
     if is_question(text, understanding.language.lexicon):
         end = len(text.content)

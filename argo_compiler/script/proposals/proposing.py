@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.script.documents.signs import CLOCK
-from argo_compiler.script.documents.source import Diagnostics, RefusedError, ScriptText, Source
+from argo_compiler.script.documents.source import Diagnostics, RefusedError, ScriptText
 from argo_compiler.script.parsing.script import Piece, Script
 from argo_compiler.script.proposals.clock import (
     NO_DATES,
@@ -54,7 +54,7 @@ def propose(
     the offset at which a piece begins."""
     if not unread and not unclear:
         return {}
-    source = Source(script.source_text, script.source_name)
+    source = script.source
     places = [place.name for place in catalog.places]
     language = Language.of(script.source_text, places)
     understanding = Understanding(language, frozenset(), Diagnostics(source))

@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 
 from argo_compiler.base.catalog import CheckpointInfo, CheckpointKind
 from argo_compiler.script.documents.signs import CLOCK
-from argo_compiler.script.documents.source import RefusedError, ScriptText
+from argo_compiler.script.documents.source import RefusedError, ScriptText, join
 from argo_compiler.script.documents.tags import count_tag, tag_of
-from argo_compiler.script.layout.forms import Cell, CellRole, FormRow
+from argo_compiler.script.layout.forms import SHEET_HEADINGS, Cell, CellRole, FormRow
 from argo_compiler.script.proposals.composing import Composer, Proposal
 from argo_compiler.script.proposals.evidence import is_name
 from argo_compiler.script.proposals.mentions import (
@@ -24,6 +24,7 @@ from argo_compiler.script.proposals.mentions import (
     mentions_in,
 )
 from argo_compiler.script.sentences.tree.places import FloorName
+from argo_compiler.script.sentences.words.lexicon import expand
 from argo_compiler.script.sentences.words.prose import cue_pattern
 
 _FILL = re.compile(r"_{2,}|\.{3,}|…+|[□☐]|\[\s*\]|\(\s*y\s*/\s*n\s*\)|/", re.IGNORECASE)
@@ -34,6 +35,8 @@ _LABELLED = re.compile(r"[^:]{1,40}:\s*([^:]*)")
 _RANGE = re.compile(
     r"(?P<low>\d+(?:[.,]\d+)?)\s*(?:-|–|—|to|bis|\.\.)\s*(?P<high>\d+(?:[.,]\d+)?)\s*(?P<unit>[^\d\s]\S*)?"
 )
+_PLAIN_RANGE = re.compile(r"[\d.,]+\s*(?:-|–|—|to|bis|\.\.)\s*[\d.,]+")
+_NUMBERED = re.compile(r"(?:(?:no|nr)\.?\s*|#\s*)?\d{1,6}", re.IGNORECASE)
 _NUMBER = re.compile(r"\d+(?:\.\d+)*\.?")
 _PLAIN = re.compile(r"\d+(?:[.,]\d+)?")
 _BAR = {"bar": 1.0, "kpa": 0.01, "mbar": 0.001, "psi": 0.0689476, "mpa": 10.0}
@@ -46,6 +49,9 @@ _ALL_UNITS = frozenset().union(*_UNITS.values())
 _POSITIONS = ("half", "open", "closed")
 _OPEN, _CLOSED = 70.0, 20.0
 """degrees from which a valve's normal position counts as open, and up to which as closed"""
+_TICKED_BOX = re.compile(r"[☑☒✓✔✗✘]|\[[xX*✓✔]\]")
+_CHECKPOINT = re.compile(r"(?:#|(?:CP|KP|C)[-_ ]?)?0*([1-9][0-9]{0,4})", re.IGNORECASE)
+"""in a column of checkpoints"""
 _TICKED = "this row is ticked, or marked as done: it may be left out"
 
 
@@ -65,6 +71,8 @@ class _Row:
     """words of the service that a plant tag has: `contactor overhead`"""
     together: bool = False
     """whether a single cell names all of several checkpoints"""
+    sentences: tuple[str, ...] = ()
+    """what a cell says of how and when the checkpoint is read"""
 
 
 def propose_row(row: FormRow, composer: Composer, first: bool = False) -> Proposal:
@@ -73,8 +81,11 @@ def propose_row(row: FormRow, composer: Composer, first: bool = False) -> Propos
     if row.is_heading:
         times = [c for c in row.cells if CLOCK.fullmatch(c.text.content)]
         if len(times) > 1:
-            return Proposal(choices=((),), doubt="these times can be rounds at these times of day")
-        return Proposal(aside="the headings of columns")
+            doubt = "these times can be rounds at these times of day"
+            return Proposal(choices=((),), doubt=f"{doubt}{_filled_below(row)}")
+        return Proposal(aside=SHEET_HEADINGS)
+    if not row.doubt and _is_idle_field(row, composer):
+        return Proposal(aside="a field that a mission does not have")
     found = _Row()
     tagged = any(_HASH.fullmatch(cell.text.content) for cell in row.cells)
     for cell in row.cells:
@@ -92,6 +103,8 @@ def propose_row(row: FormRow, composer: Composer, first: bool = False) -> Propos
     _compare(row.cells, next(iter(ids.values())), found, composer)
     words = checkpoint_words(list(ids.values()))
     check, spare = f"Check {words}{found.manner}.", f"Do not check {words}."
+    if row.doubt:
+        return Proposal(choices=((spare,), (check,)), doubt=row.doubt)
     if row.box is not None and row.box.strip():
         return Proposal(choices=((spare,), (check,)), doubt=_TICKED)
     if found.tag and _may_explain(row, found.tag):
@@ -105,7 +118,40 @@ def propose_row(row: FormRow, composer: Composer, first: bool = False) -> Propos
         return Proposal(choices=((check,), ()), doubt="this row names several checkpoints")
     composer.known.measured(list(ids.values()))
     unused = tuple(found.unused)
+    if found.sentences:
+        return Proposal(found.sentences, unused, differences=tuple(found.differences))
     return Proposal((check,), unused, differences=tuple(found.differences), certain=not unused)
+
+
+def _only_floors(found: Mentions) -> bool:
+    return all(m.kind == "place" and isinstance(m.value, tuple) for m in found.mentions)
+
+
+def _filled_below(row: FormRow) -> str:
+    """Return that readings are filled in below the times of day in a row of headings."""
+    if not row.filled_below:
+        return ""
+    first, last = row.filled_below[0], row.filled_below[-1]
+    document = first.source.document
+    if document is None:
+        return ", and readings are filled in"
+    spans = (text.span() for text in (first, last))
+    a, b = (document.place_at(span.line, span.column) for span in spans)
+    return f", and readings are filled in ({a} to {b})"
+
+
+def _is_idle_field(row: FormRow, composer: Composer) -> bool:
+    """Return True if a row is a label that no mission has, such as `Order no.`, and a value without
+    effect; a number alone names no checkpoint there."""
+    if not row.labelled or row.box is not None or len(row.cells) != 2:
+        return False
+    label, value = (cell.text for cell in row.cells)
+    labels = composer.understanding.language.prose.form["labels"]
+    if cue_pattern("labels", labels).search(label.content) is None:
+        return False
+    found = mentions_in(row.place, composer.understanding)
+    needed = [m for m in found.mentions if m.kind not in OF_FORMS]
+    return not needed or _NUMBERED.fullmatch(value.content) is not None
 
 
 def _may_explain(row: FormRow, said: str) -> bool:
@@ -118,6 +164,8 @@ def _may_explain(row: FormRow, said: str) -> bool:
 def _without_checkpoint(row: FormRow, composer: Composer, first: bool) -> Proposal:
     """Return what a row without a checkpoint is: a field to fill in, one that a mission does not
     have, an order such as to dock, or something to ask about."""
+    if row.doubt:
+        return Proposal(choices=((row.place.content.strip("~ "),), ()), doubt=row.doubt)
     plain = row.box is None
     if plain and first and _is_title(row.place, composer):
         return Proposal(aside="the title")
@@ -127,6 +175,16 @@ def _without_checkpoint(row: FormRow, composer: Composer, first: bool) -> Propos
     blank = _FILL.search(row.place.content) is not None
     if plain and blank and not _needed(row.place, composer):
         return Proposal(aside="a field that a person fills in")
+    found = mentions_in(row.place, composer.understanding)
+    if plain and not found.unknown and found.mentions and _only_floors(found):
+        return Proposal(aside="a heading")
+    if row.computed:
+        return Proposal(aside="a result that the sheet computes")
+    if row.labelled and plain and len(row.cells) == 2 and _needed(row.place, composer):
+        # `Robot starts from | starting area 2`
+        inner = composer.propose(join([cell.text for cell in row.cells]))
+        if inner.sentences:
+            return inner
     labels = composer.understanding.language.prose.form["labels"]
     idle = cue_pattern("labels", labels).search(row.cells[0].text.content) is not None
     named = mentions_in(row.place, composer.understanding).has("checkpoints", "place")
@@ -182,9 +240,25 @@ def _read_sheet_cell(cell: Cell, found: _Row, composer: Composer) -> bool:
     if cue_pattern("done", form["done"]).fullmatch(text.strip(" .!")) or _TICK.fullmatch(text):
         found.doubts.append(_TICKED)
         return True
+    boxes = _TICKED_BOX.sub("□", text)
+    if boxes != text and _FILL.search(boxes) and not _without_fill(boxes, form):
+        found.doubts.append(_TICKED)
+        return True
+    spare = cue_pattern("leave_out", form["leave_out"]).search(text) is not None
+    if cell.filled and cell.role is CellRole.OTHER and _is_answer(text, composer):
+        found.doubts.append(f"`{text}` in this column can mean that the row is not meant")
+        return True
+    if cell.filled and cell.role is CellRole.FILL and CLOCK.fullmatch(text):
+        found.doubts.append(f"`{text}` can be a time of day at which this is done")
+        return True
+    if cell.filled and cell.role is CellRole.FILL and not (nothing or spare or _FILL.search(text)):
+        found.doubts.append(f"`{text}` is filled in: this may be done already")
+        return True
     if not nothing and _FILL.search(text) and not _without_fill(text, form):
         return True
     tag = tag_of(text)
+    if cell.role is CellRole.CHECKPOINT and _CHECKPOINT.fullmatch(text):
+        tag = None
     if tag is not None and cell.role in (CellRole.NAME, CellRole.CHECKPOINT, CellRole.OTHER):
         with suppress(RefusedError):
             named = mentions_in(cell.text, composer.understanding).of("checkpoints")
@@ -215,9 +289,9 @@ def _read_sheet_cell(cell: Cell, found: _Row, composer: Composer) -> bool:
                 latest = f" not later than {high:g} minutes after the start"
                 found.manner = f" between minute {low:g} and minute {high:g}" if low else latest
             return True
-        case CellRole.CHECKPOINT if text.isdecimal():
-            found.named += [c for c in composer.known.catalog.checkpoints if c.id == int(text)]
-            if not any(c.id == int(text) for c in composer.known.catalog.checkpoints):
+        case CellRole.CHECKPOINT if number := _CHECKPOINT.fullmatch(text):
+            found.named += [c for c in composer.known.catalog.checkpoints if c.id == int(number[1])]
+            if not any(c.id == int(number[1]) for c in composer.known.catalog.checkpoints):
                 found.doubts.append(f"there is no checkpoint {text}")
             return True
         case CellRole.FILL | CellRole.ACTION if nothing:
@@ -228,6 +302,12 @@ def _read_sheet_cell(cell: Cell, found: _Row, composer: Composer) -> bool:
         case CellRole.REMARK:
             return _read_remark(cell.text, found, composer)
     return False
+
+
+def _is_answer(text: str, composer: Composer) -> bool:
+    """Return True if a cell has no more than `yes`, `no` or a cross."""
+    prose = composer.understanding.language.prose
+    return text.lower() in {*expand(prose.yes), *expand(prose.no)}
 
 
 def _is_normal(text: str, form: Mapping[str, str]) -> bool:
@@ -270,6 +350,8 @@ def _read_doubts(content: str, found: _Row, composer: Composer) -> bool:
 def _asks(text: ScriptText, composer: Composer) -> bool:
     """Whether a remark has words of the mission language, other than first and last."""
     mentions = mentions_in(text, composer.understanding)
+    if mentions.unknown and mentions.only("EVENT"):
+        return False  # `lamp out of order`: of a third thing, as the checkpoint has its own cell
     return not mentions.only("first", "last", "MEASURE", "ORDINAL", "courtesy")
 
 
@@ -307,8 +389,11 @@ def _read_cell(text: ScriptText, found: _Row, composer: Composer) -> None:
         return
     found.unused += _unused(content, mentions, form)
     others = mentions.of("DURATION", "TIMES", "EVENT", "UNTIL", "EXCEPT", "IF", "UNLESS")
+    made = composer.propose(text).sentences if others and named else ()
     asked = content.rstrip().endswith("?") and bool(others) and others[0].start == 0
-    if others and not asked:  # `Is valve R25 open?`
+    if made and not found.sentences:
+        found.sentences = made
+    elif others and not asked:  # `Is valve R25 open?`
         found.doubts.append(f"`{content[others[0].start : others[0].end]}` is not understood here")
 
 
@@ -331,6 +416,8 @@ def _compare(
 ) -> None:
     """Compare floors, units, kinds, positions and ranges with those of the site."""
     form = composer.understanding.language.prose.form
+    by_role = {cell.role: cell.text.content for cell in cells}
+    unit = by_role.get(CellRole.UNIT, "")
     for cell in cells:
         content = cell.text.content
         lowered = content.lower().strip(" .")
@@ -346,13 +433,14 @@ def _compare(
             case CellRole.KIND if lowered not in (str(checkpoint.kind), str(checkpoint.kind) + "s"):
                 found.doubts.append(f"checkpoint {checkpoint.id} is {checkpoint.name}")
         if cell.role in (CellRole.NORMAL, CellRole.OTHER, CellRole.NAME):
-            found.differences += _range_difference(content, checkpoint)
+            has_unit = cell.role is not CellRole.NORMAL or _PLAIN_RANGE.fullmatch(content) is None
+            found.differences += _range_difference(
+                content if has_unit else f"{content} {unit}", checkpoint
+            )
             if checkpoint.kind is CheckpointKind.VALVE:
                 found.differences += _position_difference(content, checkpoint, form)
-    by_role = {cell.role: cell.text.content for cell in cells}
     low, high = by_role.get(CellRole.LOW), by_role.get(CellRole.HIGH)
     if low and high and _PLAIN.fullmatch(low) and _PLAIN.fullmatch(high):
-        unit = by_role.get(CellRole.UNIT, "")
         found.differences += _range_difference(f"{low} - {high} {unit}", checkpoint)
 
 

@@ -8,7 +8,7 @@ from argo_compiler.base.garbage_collector import collector_held
 from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError
 from argo_compiler.il import Mission, Mode
-from argo_compiler.script.documents.source import Diagnostics, RefusedError, Source
+from argo_compiler.script.documents.source import Diagnostics, RefusedError
 from argo_compiler.script.parsing.script import Script
 from argo_compiler.script.resolve.assembly import assemble
 from argo_compiler.script.resolve.context import Context
@@ -35,8 +35,7 @@ def resolve_script(
     script: Script, catalog: Catalog, start_area: int | None = None, end_area: int | None = None
 ) -> Resolved:
     """The mission that the script asks for on the catalogue's site."""
-    source = Source(script.source_text, script.source_name)
-    diagnostics = Diagnostics(source, list(script.diagnostics))
+    diagnostics = Diagnostics(script.source, list(script.diagnostics))
     try:
         mission = _mission(script, catalog, diagnostics, start_area, end_area)
     except RefusedError:

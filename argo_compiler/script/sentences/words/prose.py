@@ -118,8 +118,21 @@ class Prose:
         return {said: name for name, text in columns for said in expand(text)}
 
     def role(self, heading: str) -> str | None:
-        """What the column of a sheet with this heading holds."""
-        return self._roles.get(" ".join(heading.lower().strip(" .:*_").split()))
+        """What the column of a sheet with this heading holds; it may have a unit in brackets, or be
+        in two languages."""
+        said = " ".join(heading.lower().strip(" .:*_").split())
+        if said in self._roles:
+            return self._roles[said]
+        parts = [part.strip(" .:") for part in _IN_BRACKETS.sub("", said).split("/")]
+        roles = [self._roles.get(part) for part in parts]
+        return roles[0] if all(roles) else None
+
+    def role_by_last_words(self, heading: str) -> str | None:
+        """What a column holds by the end of its heading, `Reading as found`; only for a line that
+        is known to have headings."""
+        words = " ".join(_IN_BRACKETS.sub("", heading.lower()).split()).strip(" .:*_").split()
+        ends = (" ".join(words[i:]) for i in range(len(words)))
+        return next((self._roles[end] for end in ends if end in self._roles), None)
 
     @cached_property
     def _roles(self) -> dict[str, str]:
@@ -176,6 +189,8 @@ def begins(phrases: str) -> Beginnings:
     return Beginnings(phrases)
 
 
+_IN_BRACKETS = re.compile(r"\s*[(\[]\s*[^\W\d_][^()\[\]]*[)\]]$|\s*[(\[][%°][)\]]$")
+"""such as a unit, at the end of a heading"""
 _FIRST_LETTERS = re.compile("[A-Za-z]*")
 
 

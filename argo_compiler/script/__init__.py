@@ -7,17 +7,20 @@ from argo_compiler.base.lazy_names import lazy_names
 __all__ = [
     "Act",
     "Draft",
+    "DraftActs",
     "DraftLine",
     "IncompleteDraft",
     "LineDecision",
     "LineState",
     "Resolved",
+    "StoredDraft",
     "decode_script",
     "draft_text",
     "format_script",
     "import_script",
     "parse",
     "read_decisions",
+    "read_draft",
     "read_script",
     "resolve_script",
 ]
@@ -27,12 +30,18 @@ if TYPE_CHECKING:
     from argo_compiler.script.drafts.draft import (
         Act,
         Draft,
+        DraftActs,
         DraftLine,
         IncompleteDraft,
         LineDecision,
         LineState,
     )
-    from argo_compiler.script.drafts.draft_file import draft_text, read_decisions
+    from argo_compiler.script.drafts.draft_file import (
+        StoredDraft,
+        draft_text,
+        read_decisions,
+        read_draft,
+    )
     from argo_compiler.script.drafts.making import import_script
     from argo_compiler.script.parsing.parser import parse
     from argo_compiler.script.resolve.importing import Resolved, resolve_script
@@ -45,12 +54,13 @@ else:
             "drafts.draft": [
                 "Act",
                 "Draft",
+                "DraftActs",
                 "DraftLine",
                 "IncompleteDraft",
                 "LineDecision",
                 "LineState",
             ],
-            "drafts.draft_file": ["draft_text", "read_decisions"],
+            "drafts.draft_file": ["StoredDraft", "draft_text", "read_decisions", "read_draft"],
             "drafts.making": ["import_script"],
             "parsing.parser": ["parse"],
             "resolve.importing": ["Resolved", "resolve_script"],

@@ -33,6 +33,7 @@ from argo_env.planning.site_warnings import above_own_speed_warnings, with_seein
 
 if TYPE_CHECKING:
     from argo_compiler.script import Draft, LineDecision
+    from argo_compiler.script.assistant.suggestion import LineSuggestion
 
 _log = logging.getLogger(__name__)
 
@@ -71,6 +72,8 @@ class Upload:
     machine, which may be larger than the memory"""
     decisions: tuple["LineDecision", ...] = ()
     """of a script: what a person has decided on for its lines"""
+    suggestions: tuple["LineSuggestion", ...] = ()
+    """of a script: what an assistant has suggested for its lines"""
     draft: "Draft | None" = None
     """of a script: its draft with these decisions, if it has been read already"""
 
@@ -213,7 +216,7 @@ def _load_script(
             "`Check checkpoint 4`"
         )
     mission = draft.require_mission()
-    return LoadedMission(mission, draft.diagnostics, Script(_text_of(upload), name))
+    return LoadedMission(mission, draft.diagnostics, Script(draft.text, name))
 
 
 def _has_steps(draft: "Draft") -> bool:
@@ -240,23 +243,17 @@ def load_draft(
     assert isinstance(upload.content, bytes), "a script is one file"
     require_no_foreign_file(upload.name, upload.content)
     with collector_held():
-        from argo_compiler.script import import_script
+        from argo_compiler.script import decode_script, import_script
 
     return import_script(
-        _text_of(upload),
+        decode_script(upload.content, upload.name),
         catalog,
         source_name=upload.name,
         start_area=start_area,
         end_area=end_area,
         decisions=upload.decisions if decisions is None else decisions,
+        suggestions=upload.suggestions,
     )
-
-
-def _text_of(upload: Upload) -> str:
-    from argo_compiler.script import decode_script
-
-    assert isinstance(upload.content, bytes), "a script is one file"
-    return decode_script(upload.content, upload.name)
 
 
 def import_mission(

@@ -8,11 +8,13 @@ __all__ = [
     "Act",
     "Document",
     "Draft",
+    "DraftActs",
     "DraftLine",
     "IncompleteDraft",
     "LineDecision",
     "LineState",
     "Resolved",
+    "StoredDraft",
     "decode_document",
     "decode_script",
     "draft_text",
@@ -21,6 +23,7 @@ __all__ = [
     "parse",
     "read_decisions",
     "read_document",
+    "read_draft",
     "read_script",
     "resolve_script",
 ]
@@ -36,12 +39,18 @@ if TYPE_CHECKING:
     from argo_compiler.script.drafts.draft import (
         Act,
         Draft,
+        DraftActs,
         DraftLine,
         IncompleteDraft,
         LineDecision,
         LineState,
     )
-    from argo_compiler.script.drafts.draft_file import draft_text, read_decisions
+    from argo_compiler.script.drafts.draft_file import (
+        StoredDraft,
+        draft_text,
+        read_decisions,
+        read_draft,
+    )
     from argo_compiler.script.drafts.making import import_script
     from argo_compiler.script.parsing.parser import parse
     from argo_compiler.script.resolve.importing import Resolved, resolve_script
@@ -60,12 +69,13 @@ else:
             "drafts.draft": [
                 "Act",
                 "Draft",
+                "DraftActs",
                 "DraftLine",
                 "IncompleteDraft",
                 "LineDecision",
                 "LineState",
             ],
-            "drafts.draft_file": ["draft_text", "read_decisions"],
+            "drafts.draft_file": ["StoredDraft", "draft_text", "read_decisions", "read_draft"],
             "drafts.making": ["import_script"],
             "parsing.parser": ["parse"],
             "resolve.importing": ["Resolved", "resolve_script"],

@@ -1,5 +1,6 @@
 """`argo import`: convert a script, bag or isar mission to a mission."""
 
+import os
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
@@ -7,10 +8,10 @@ from typing import Annotated
 import typer
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.diagnostics.codes.code import Severity
 from argo_compiler.files.mission_file import decode_mission, mission_text
-from argo_env.planning.opening import OpenedSite, open_site
-from argo_planner.terminal.draft_decisions import DraftActs, decide
-from argo_planner.terminal.draft_display import draft_path
+from argo_env.planning.opening import open_site
+from argo_planner.terminal.draft_decisions import ActOptions, Deciding
 from argo_planner.terminal.files import (
     STANDARD_OUTPUT,
     check_outputs,
@@ -20,9 +21,17 @@ from argo_planner.terminal.files import (
     write_content,
 )
 from argo_planner.terminal.importing import import_and_warn, show_explanation
-from argo_planner.terminal.options import EndArea, Force, SiteOption, StartArea
+from argo_planner.terminal.options import (
+    EndArea,
+    Force,
+    SiteOption,
+    StartArea,
+    Strict,
+    read_duration,
+)
 from argo_planner.terminal.verbosity import is_quiet
-from argo_planner.use_cases.importing import SourceKind, Upload, guess_source_kind
+from argo_planner.use_cases.assisting import Assistant
+from argo_planner.use_cases.importing import SourceKind, guess_source_kind
 
 _LINES = "numbers such as 3,7-9, or `all`"
 Confirm = Annotated[
@@ -47,6 +56,35 @@ Undo = Annotated[
 ]
 
 
+Interactive = Annotated[
+    bool,
+    typer.Option("--interactive", help="ask about each line that is left, one key a line"),
+]
+
+AssistantAddress = Annotated[
+    str | None,
+    typer.Option(
+        "--assistant",
+        metavar="COMMAND|URL",
+        help="let it suggest sentences for open lines; the script is sent to it",
+    ),
+]
+AssistantModel = Annotated[
+    str | None, typer.Option("--assistant-model", metavar="NAME", help="model of an endpoint")
+]
+AssistantTimeout = Annotated[
+    float | None,
+    typer.Option(
+        "--assistant-timeout",
+        metavar="DURATION",
+        parser=read_duration(least=0.1),
+        help="how long it may take; 2 min if not given",
+    ),
+]
+KEY_VARIABLE = "ARGO_ASSISTANT_KEY"
+"""environment variable of an endpoint's key"""
+
+
 def import_command(
     script: Annotated[
         Path,
@@ -61,42 +99,66 @@ def import_command(
     say: Say = None,
     choose: Choose = None,
     undo: Undo = None,
+    interactive: Interactive = False,
+    assistant: AssistantAddress = None,
+    assistant_model: AssistantModel = None,
+    assistant_timeout: AssistantTimeout = None,
+    strict: Strict = False,
     force: Force = False,
 ) -> None:
     """Read a script, a ROS bag or an isar mission, and write the mission as JSON."""
+    helper = _assistant(assistant, assistant_model, assistant_timeout)
+    if interactive:
+        from argo_planner.terminal.draft_dialogue import ask_about_lines, require_terminal
+
+        require_terminal(output)
     upload = read_upload(script)
-    if guess_source_kind(upload) is SourceKind.MISSION and isinstance(upload.content, bytes):
+    kind = guess_source_kind(upload)
+    if kind is SourceKind.MISSION and isinstance(upload.content, bytes):
         decode_mission(upload.content, upload.name)  # raises the errors of a broken mission
         raise Invalid(
             f"{script} is a mission already: use it with `argo run` or `argo compile` as it is"
         )
+    options = ActOptions(confirm or [], set_aside or [], say or [], choose or [], undo or [])
+    if kind is not SourceKind.SCRIPT and (options.given or interactive or helper):
+        raise Invalid(f"{script} is no script, so it has no lines to decide on")
     check_outputs([script, site], [output], force=force)
     if output != STANDARD_OUTPUT:
         require_mission_output(output)
     opened = open_site(site)
-    if guess_source_kind(upload) is SourceKind.SCRIPT:
-        acts = DraftActs(confirm or [], set_aside or [], say or [], choose or [], undo or [])
-        upload = _with_decisions(upload, script, output, opened, (start_area, end_area), acts)
+    if kind is SourceKind.SCRIPT:
+        deciding = Deciding(script, upload, opened, (start_area, end_area))
+        if options.given:
+            deciding.carry_out(options)
+        if helper is not None:
+            deciding.ask(helper)
+            deciding.keep()
+        if interactive:
+            ask_about_lines(deciding)
+        deciding.keep()
+        upload = replace(upload, draft=deciding.draft)
     imported = import_and_warn(upload, opened, start_area, end_area)
+    if strict and any(d.severity is Severity.WARNING for d in imported.warnings):
+        raise typer.Exit(1)
     write_content(output, mission_text(imported.mission))
     print_written(output, ", ".join(task.name for task in imported.mission.tasks))
     if output != STANDARD_OUTPUT and not is_quiet():
         show_explanation(imported, opened)
 
 
-def _with_decisions(
-    upload: Upload,
-    script: Path,
-    output: Path,
-    site: OpenedSite,
-    areas: tuple[int | None, int | None],
-    acts: DraftActs,
-) -> Upload:
-    """Return the upload with what is decided on, and keep that in the script's draft."""
-    draft, decisions = decide(upload, site, areas, acts)
-    beside = script if script != STANDARD_OUTPUT else output
-    if beside != STANDARD_OUTPUT and (draft.left or decisions or upload.decisions):
-        from argo_compiler.script import draft_text
+def _assistant(address: str | None, model: str | None, timeout_s: float | None) -> Assistant | None:
+    """Return the assistant that options ask for; None: none.
 
-        write_content(draft_path(beside), draft_text(draft))
-    return replace(upload, decisions=decisions, draft=draft)
+    Raises:
+        Invalid: There are options of one that is not given, or its URL is none.
+    """
+    if address is None:
+        if model is not None or timeout_s is not None:
+            raise Invalid("--assistant-model and --assistant-timeout need --assistant")
+        return None
+    found = Assistant(address, model, os.environ.get(KEY_VARIABLE))
+    if model is not None and not found.is_endpoint:
+        raise Invalid(f"--assistant-model is for endpoints, and `{address}` is a command")
+    if not found.place.strip():
+        raise Invalid("--assistant: name a command or the URL of an endpoint")
+    return found if timeout_s is None else replace(found, timeout_s=timeout_s)

@@ -1,76 +1,153 @@
 """Decisions on lines of a draft by options of `argo import`."""
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from argo_compiler.base.errors import Invalid
+from argo_compiler.base.errors import ArgoError, Invalid
 from argo_env.planning.opening import OpenedSite
+from argo_planner.terminal.draft_display import printable
+from argo_planner.terminal.draft_files import keep_draft
+from argo_planner.use_cases.assisting import Assistant, suggest_lines
+from argo_planner.use_cases.deciding import Areas, decide
 from argo_planner.use_cases.importing import Upload, load_draft
 
 if TYPE_CHECKING:
-    from argo_compiler.script import Draft, LineDecision
+    from argo_compiler.script import Draft, DraftActs
+
+_MOST_DIGITS = 9
+"""of a number in an option"""
 
 
 @dataclass(frozen=True)
-class DraftActs:
+class ActOptions:
     """The options that decide on lines, as they are given."""
 
-    confirm: Sequence[str]
-    set_aside: Sequence[str]
-    say: Sequence[str]
-    choose: Sequence[str]
-    undo: Sequence[str]
+    confirm: Sequence[str] = ()
+    set_aside: Sequence[str] = ()
+    say: Sequence[str] = ()
+    choose: Sequence[str] = ()
+    undo: Sequence[str] = ()
+
+    @property
+    def given(self) -> bool:
+        """Return True if there is any of the options."""
+        return any((self.confirm, self.set_aside, self.say, self.choose, self.undo))
 
 
-def decide(
-    upload: Upload, site: OpenedSite, areas: tuple[int | None, int | None], acts: DraftActs
-) -> tuple["Draft", tuple["LineDecision", ...]]:
-    """Return the draft of a script once the acts have been carried out, and all decisions.
+class Deciding:
+    """A script, with its draft as far as it has been decided on. Mutable."""
+
+    def __init__(self, script: Path, upload: Upload, site: OpenedSite, areas: Areas) -> None:
+        self.script = script
+        self.upload = upload
+        self.site = site
+        self.areas = areas
+        self.draft = load_draft(upload, site.catalog, *areas)
+
+    def carry_out(self, options: ActOptions) -> None:
+        """Carry out what options ask for. Raises Invalid, and changes nothing, if one can't be."""
+        self.perform(acts_of(self.draft, options))
+
+    def perform(self, acts: "DraftActs") -> None:
+        """Carry out acts. Raises Invalid, and changes nothing, if one of them can't be."""
+        self.draft = decide(self.upload, self.site, self.areas, self.draft, acts)
+
+    def ask(self, assistant: Assistant) -> None:
+        """Ask an assistant about open lines; if that fails, a message says so and nothing changes.
+
+        What is sent where is printed before.
+        """
+        try:
+            found = suggest_lines(self.draft, self.site.catalog, assistant, _announce)
+        except ArgoError as error:
+            print(f"argo: {printable(str(error))}; the draft is without it", file=sys.stderr)
+            return
+        if found is None:
+            _announce("no line is left that the assistant has not been asked about")
+            return
+        decisions = self.draft.decisions
+        self.upload = replace(self.upload, decisions=decisions, suggestions=found)
+        self.draft = load_draft(self.upload, self.site.catalog, *self.areas)
+
+    def keep(self) -> None:
+        """Write the draft beside the script, if there is something to keep or to decide."""
+        keep_draft(self.script, self.draft)
+
+
+def _announce(text: str) -> None:
+    print(f"argo: {printable(text)}", file=sys.stderr, flush=True)
+
+
+def acts_of(draft: "Draft", options: ActOptions) -> "DraftActs":
+    """Return the acts that options ask for, on the lines that a draft has.
+
+    A range, and `all`, leave out lines that another option names by themselves.
 
     Raises:
-        Invalid: An act names no line of the draft, or one that it can't be done with.
+        Invalid: An option has no such form, or a range has no lines.
     """
-    draft = load_draft(upload, site.catalog, *areas)
-    decisions = draft.decisions
+    from argo_compiler.script import DraftActs
 
-    def carry_out(decided: tuple["LineDecision", ...]) -> None:
-        nonlocal draft, decisions
-        decisions = decided
-        draft = load_draft(upload, site.catalog, *areas, decisions=decided)
-
-    if acts.undo:
-        carry_out(draft.undo(_labels(draft, acts.undo)))
-    if acts.set_aside:
-        carry_out(draft.set_aside(_labels(draft, acts.set_aside)))
-    for said in acts.say:
-        label, _, text = said.strip().partition(" ")
-        if not text.strip():
-            raise Invalid(f'--say {said}: write a line and a sentence, as in 4 "Check valve R7."')
-        carry_out(draft.say(label, (text.strip(),)))
-    for chosen in acts.choose:
-        label, _, number = chosen.partition("=")
-        if not number.strip().isdecimal():
-            raise Invalid(f"--choose {chosen}: write a line and the number of a choice, as in 4=1")
-        carry_out(draft.choose(label.strip(), int(number)))
-    if acts.confirm:
-        everything = [text.strip() for text in acts.confirm] == ["all"]
-        carry_out(draft.confirm(None if everything else _labels(draft, acts.confirm)))
-    return draft, decisions
+    say = [_said(text) for text in options.say]
+    choose = [_chosen(text) for text in options.choose]
+    named = {label for label, _ in (*say, *choose)}
+    lists = (options.confirm, options.set_aside, options.undo)
+    named |= {text for given in lists for text in _parts(given) if not _is_range(text)}
+    everything = [text.strip() for text in options.confirm] == ["all"]
+    return DraftActs(
+        confirm=None if everything else tuple(_labels(draft, options.confirm, named)),
+        set_aside=tuple(_labels(draft, options.set_aside, named)),
+        say=say,
+        choose=choose,
+        undo=tuple(_labels(draft, options.undo, named)),
+    )
 
 
-def _labels(draft: "Draft", texts: Iterable[str]) -> list[str]:
-    """Return the labels that texts such as `3,7-9` name; of a range those that are left, if any."""
-    found: list[str] = []
-    for text in (part.strip() for given in texts for part in given.split(",")):
-        first, dash, last = (part.strip() for part in text.partition("-"))
-        if not dash:
-            found.append(text)
+def _said(text: str) -> tuple[str, tuple[str, ...]]:
+    label, _, sentence = " ".join(text.split()).partition(" ")
+    if not sentence:
+        raise Invalid(f'--say {text}: write a line and a sentence, as in 4 "Check valve R7."')
+    if not sentence.isprintable():
+        raise Invalid(f"--say {label}: the sentence has characters that can't be printed")
+    return label, (sentence,)
+
+
+def _chosen(text: str) -> tuple[str, int]:
+    label, _, number = (part.strip() for part in text.partition("="))
+    if not _is_number(number):
+        raise Invalid(f"--choose {text}: write a line and the number of a choice, as in 4=1")
+    return label, int(number)
+
+
+def _labels(draft: "Draft", texts: Iterable[str], named: set[str]) -> Iterator[str]:
+    """Yield the labels that texts such as `3,7-9` name.
+
+    Of a range these are the lines that are left, if any, without those named by themselves.
+    """
+    for text in _parts(texts):
+        if not _is_range(text):
+            yield text
             continue
-        if not (first.isdecimal() and last.isdecimal() and int(first) <= int(last)):
+        first, last = (part.strip() for part in text.split("-", 1))
+        if not (_is_number(first) and _is_number(last) and int(first) <= int(last)):
             raise Invalid(f"`{text}` names no lines: write numbers such as 3,7-9")
         inside = [one for one in draft.lines if int(first) <= one.line <= int(last)]
         if not inside:
             raise Invalid(f"{draft.source_name} has no lines {text} with text")
-        found += [one.label for one in inside if one.is_left] or [one.label for one in inside]
-    return found
+        found = [one for one in inside if one.is_left] or inside
+        yield from (one.label for one in found if not {one.label, str(one.line)} & named)
+
+
+def _parts(texts: Iterable[str]) -> Iterator[str]:
+    return (part.strip() for text in texts for part in text.split(","))
+
+
+def _is_range(text: str) -> bool:
+    return "-" in text
+
+
+def _is_number(text: str) -> bool:
+    return text.isdecimal() and len(text) <= _MOST_DIGITS

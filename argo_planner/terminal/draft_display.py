@@ -5,6 +5,8 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from argo_planner.terminal.draft_files import draft_path
+
 if TYPE_CHECKING:
     from argo_compiler.script import Draft, DraftLine, IncompleteDraft
 
@@ -44,31 +46,43 @@ def _lines_text(lines: Sequence["DraftLine"]) -> list[str]:
 
 def _line_text(line: "DraftLine") -> Iterable[str]:
     place = f" ({line.place})" if line.place else ""
-    yield f"line {line.label}{place}: {line.text}"
-    if line.reason and not line.sentences:
-        yield f"    {line.reason}"
-    else:
+    yield f"line {line.label}{place}: {printable(line.text)}"
+    if line.sentences or not line.reason:
         yield f"    => {' '.join(line.sentences) or '(nothing)'}"
+    if line.reason:
+        yield f"    {line.reason}"
     for number, sentences in enumerate(line.choices if line.place else (), start=1):
         yield f"    choice {number}: {' '.join(sentences) or '(set it aside)'}"
     if line.unused:
-        yield f"    not used: {', '.join(line.unused)}"
+        yield f"    not used: {printable(', '.join(line.unused))}"
+
+
+def printable(text: str) -> str:
+    """Return a text without characters that would control a terminal."""
+    return "".join(c if c.isprintable() else " " for c in text)
 
 
 def _commands(draft: "Draft", proposed: Sequence["DraftLine"]) -> str:
     """Return the command that decides on the lines that are left."""
     opened = [line for line in draft.left if line not in proposed]
+    kept = draft_path(Path(draft.source_name)) is not None
     options = []
     if proposed:
         options.append(f"--confirm {labels_text([line.label for line in proposed])}")
-    if opened:
-        label = opened[0].label
-        if opened[0].choices:
-            options.append(f"--choose {label}=1")
-        else:
-            options.append(f'--say {label} "..." (or --set-aside {label})')
-    name = shlex.quote(draft.source_name)
-    return f"decide with `argo import {name} -o MISSION {' '.join(options)}`"
+    # What is kept can be decided line by line.
+    options += [_option(line) for line in opened[: 1 if kept else _SHOWN]]
+    decide = f"`argo import {shlex.quote(draft.source_name)} -o MISSION {' '.join(options)}`"
+    if kept:
+        return f"decide with {decide}, or add --interactive"
+    return f"decide in one command, as no draft of standard input is kept: {decide}"
+
+
+def _option(line: "DraftLine") -> str:
+    """Return an option that decides on an open line."""
+    number = next((n for n, said in enumerate(line.choices, start=1) if said), None)
+    if number is not None:
+        return f"--choose {line.label}={number}"
+    return f'--say {line.label} "..." (or --set-aside {line.label})'
 
 
 def labels_text(labels: Sequence[str]) -> str:
@@ -81,8 +95,3 @@ def labels_text(labels: Sequence[str]) -> str:
         else:
             ranges.append([label])
     return ",".join(r[0] if len(r) == 1 else f"{r[0]}-{r[-1]}" for r in ranges)
-
-
-def draft_path(script: Path) -> Path:
-    """Return where the draft of a script is kept: beside it."""
-    return script.with_name(f"{script.name}.draft")

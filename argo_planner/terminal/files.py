@@ -4,7 +4,6 @@ import os
 import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from argo_compiler.base.errors import Conflict, Invalid, Remedy, Unavailable
 from argo_compiler.files.atomic_write import (
@@ -18,11 +17,8 @@ from argo_compiler.files.mission_file import read_mission_bytes
 from argo_compiler.ros.recognition import is_bag
 from argo_compiler.script.documents.reading import MAX_BYTES
 from argo_env.files.folders import require_folder_or_creatable
-from argo_planner.terminal.draft_display import draft_path
+from argo_planner.terminal.draft_files import read_draft_beside
 from argo_planner.use_cases.importing import Upload
-
-if TYPE_CHECKING:
-    from argo_compiler.script import LineDecision
 
 STANDARD_OUTPUT = Path("-")
 """path that stands for standard output"""
@@ -41,18 +37,10 @@ def read_upload(source: Path) -> Upload:
     if source.suffix.lower() == ".json":
         return Upload(str(source), read_mission_bytes(source))
     content = read_bytes(source, "script", MAX_BYTES)
-    return Upload(str(source), content, _decisions_beside(source))
-
-
-def _decisions_beside(script: Path) -> tuple["LineDecision", ...]:
-    """Return what was decided on for the lines of a script, kept in a draft beside it."""
-    draft = draft_path(script)
-    if script == STANDARD_OUTPUT or not os.path.isfile(draft):
-        return ()
-    from argo_compiler.script import decode_script, read_decisions
-
-    content = read_bytes(draft, "draft", 2 * MAX_BYTES)
-    return read_decisions(decode_script(content, str(draft)), str(draft))
+    stored = read_draft_beside(source)
+    if stored is None:
+        return Upload(str(source), content)
+    return Upload(str(source), content, stored.decisions, stored.suggestions)
 
 
 def check_outputs(

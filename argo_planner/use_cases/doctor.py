@@ -14,6 +14,7 @@ from argo_planner.use_cases.extensions import find_extensions
 
 _UVLOOP = () if sys.platform == "win32" else ("uvloop",)
 _EXTRAS: dict[str, tuple[str, tuple[str, ...]]] = {
+    "assistant": ("suggestions for scripts from an endpoint", ("httpx",)),
     "cluster": ("evaluations on Ray or Dask", ("ray", "dask", "distributed")),
     "results": ("rows of evaluations in Parquet files", ("pyarrow",)),
     "documents": (

@@ -35,6 +35,7 @@ from argo_env.planning.site_warnings import above_own_speed_warnings, with_seein
 
 if TYPE_CHECKING:
     from argo_compiler.script import Document, Draft, LineDecision
+    from argo_compiler.script.assistant.suggestion import LineSuggestion
 
 _log = logging.getLogger(__name__)
 
@@ -73,6 +74,8 @@ class Upload:
     machine, which may be larger than the memory"""
     decisions: tuple["LineDecision", ...] = ()
     """of a script: what a person has decided on for its lines"""
+    suggestions: tuple["LineSuggestion", ...] = ()
+    """of a script: what an assistant has suggested for its lines"""
     draft: "Draft | None" = None
     """of a script: its draft with these decisions, if it has been read already"""
 
@@ -257,6 +260,7 @@ def load_draft(
         start_area=start_area,
         end_area=end_area,
         decisions=upload.decisions if decisions is None else decisions,
+        suggestions=upload.suggestions,
     )
 
 

@@ -148,6 +148,14 @@ SCRIPT = {
         "Compare one checkpoint: less than, greater than, or between two values.",
     ),
     "script.coordinates": error("Coordinates are two or three numbers.", "Write `(12.5, 3, 2.5)`."),
+    "script.decided": note(
+        "A person has confirmed what is proposed for a line, or has said it in other words.",
+        "No action is needed; undo the decision if it is wrong.",
+    ),
+    "script.decision-unused": warning(
+        "The script has changed, and a decision about one of its lines has no effect any more.",
+        "Import the script again to forget the decision, or decide anew.",
+    ),
     "script.deep-rounds": error(
         "Too many repetitions are nested.",
         "Repeat the steps more often in one of them.",
@@ -387,6 +395,10 @@ SCRIPT = {
     "script.set-aside": warning(
         "A line has no effect, as it names nothing that a mission has.",
         "Write it as a step if the robot has to do something; otherwise no action is needed.",
+    ),
+    "script.set-aside-by-hand": note(
+        "A person has decided that a line has no effect.",
+        "No action is needed; undo the decision if the line has to count.",
     ),
     "script.several-floors": error(
         "The robot is sent to several floors in one order.", "Write an order for each of them."

@@ -48,7 +48,8 @@ _TABS = re.compile(r"\t+")
 _WORD = re.compile(r"[\w'-]*")
 _MOST_CUTS = 8
 """runs of tabs in a row of the sheet; a line with more is no such row, and they separate"""
-MOST_ERRORS = 100
+MOST_ERRORS = 1_000
+"""errors of a script; the rest is not read, as it is none"""
 _LONGEST_OVERLAP = 3
 """letters that may stand twice beside a cut"""
 

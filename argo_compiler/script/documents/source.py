@@ -16,7 +16,7 @@ MAX_LINE = 2000
 """characters in a line; a longer one is refused unread"""
 
 _BEGINNING = 80
-MOST_KEPT = 500
+MOST_KEPT = 2_000
 """errors; further ones are counted, but not kept"""
 _LINE_END = re.compile(r"\r\n|\r|\n")
 _Item = TypeVar("_Item")

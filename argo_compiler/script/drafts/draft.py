@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Hashable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
 
@@ -11,9 +11,14 @@ from argo_compiler.base.listing import listed
 from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError
 from argo_compiler.il import Mission
+from argo_compiler.script.assistant.suggestion import LineSuggestion, SuggestedSentence
 
 _Acts = dict[int, tuple["Act | None", tuple[str, ...]]]
 """by the identity of a line: what a person does with it, and the sentences that it becomes"""
+
+
+_MOST_DIGITS = 9
+"""of the number of a line"""
 
 
 class LineState(StrEnum):
@@ -81,8 +86,12 @@ class DraftLine(Model):
     """what a person can do about it"""
     choices: tuple[tuple[str, ...], ...] = ()
     """for an open line, what it may become; no sentences: it is set aside"""
+    is_question: bool = False
+    """whether it is open though it is understood: it has several meanings, or does not fit"""
     act: Act | None = None
     """what a person has done with it"""
+    suggested: tuple[SuggestedSentence, ...] | None = None
+    """what an assistant suggests for it; None: no assistant was asked about it"""
 
     @property
     def label(self) -> str:
@@ -96,6 +105,21 @@ class DraftLine(Model):
 
 
 @dataclass(frozen=True)
+class DraftActs:
+    """Acts of a person on lines of a draft, by the labels that the draft shows."""
+
+    confirm: Sequence[str] | None = ()
+    """proposed lines; None: all that no other act is about"""
+    set_aside: Sequence[str] = ()
+    say: Sequence[tuple[str, Sequence[str]]] = ()
+    """lines, each with the sentences that count instead"""
+    choose: Sequence[tuple[str, int]] = ()
+    """open lines, each with the number of a choice, from 1"""
+    undo: Sequence[str] = ()
+    """lines whose decisions are forgotten"""
+
+
+@dataclass(frozen=True)
 class Draft:
     """A script that was read, line by line, and its mission once nothing is left to decide."""
 
@@ -105,6 +129,8 @@ class Draft:
     """the mission; None while a line is open or not confirmed, or the mission has an error"""
     diagnostics: tuple[Diagnostic, ...] = ()
     """all messages, by position; one for each open line is an error"""
+    text: str = field(default="", repr=False)
+    """the script"""
 
     @cached_property
     def left(self) -> tuple[DraftLine, ...]:
@@ -115,6 +141,11 @@ class Draft:
     def decisions(self) -> tuple[LineDecision, ...]:
         """Return the decisions about the lines, in their order."""
         return decisions_of((line.text, line.act, line.sentences) for line in self.lines)
+
+    @cached_property
+    def suggestions(self) -> tuple[LineSuggestion, ...]:
+        """Return what an assistant has suggested for the lines, in their order."""
+        return suggestions_of((line.text, line.suggested) for line in self.lines)
 
     def require_mission(self) -> Mission:
         """Return the mission.
@@ -131,45 +162,88 @@ class Draft:
 
     # ---- decisions
 
-    def confirm(self, labels: Iterable[str] | None = None) -> tuple[LineDecision, ...]:
-        """Return the decisions with these proposed lines confirmed; None: all proposed lines.
+    def decide(self, acts: DraftActs) -> tuple[LineDecision, ...]:
+        """Return the decisions once acts on several lines have been carried out together.
 
-        Raises Invalid if one of the lines is open, or there is no such line.
+        Of a line with several pieces those are meant that are open or proposed, or all if none is.
+
+        Raises:
+            Invalid: There is no such line or choice, a line is open and can't be confirmed, or two
+                acts are about one line.
         """
-        proposed = LineState.PROPOSED
-        if labels is None:
-            chosen = [line for line in self.lines if line.state is proposed]
-        else:
-            chosen = [line for label in labels for line in self._to_confirm(label)]
-        return self._with({id(one): (Act.CONFIRMED, one.sentences) for one in chosen})
+        parts: list[_Acts] = [
+            *(self._undone(label) for label in acts.undo),
+            *(self._set_aside(label) for label in acts.set_aside),
+            *(self._said(label, sentences) for label, sentences in acts.say),
+            *(self._chosen(label, number) for label, number in acts.choose),
+            *(self._confirmed(label) for label in acts.confirm or ()),
+        ]
+        decided: _Acts = {}
+        for part in parts:
+            for line, act in part.items():
+                if decided.setdefault(line, act) != act:
+                    label = next(one.label for one in self.lines if id(one) == line)
+                    raise Invalid(f"line {label} of {self.source_name} is decided on twice")
+        if acts.confirm is None:
+            for one in self.lines:
+                if one.state is LineState.PROPOSED:
+                    decided.setdefault(id(one), (Act.CONFIRMED, one.sentences))
+        return self._with(decided)
 
-    def _to_confirm(self, label: str) -> Sequence[DraftLine]:
+    def confirm(self, labels: Iterable[str] | None = None) -> tuple[LineDecision, ...]:
+        """Return the decisions with these proposed lines confirmed; None: all proposed lines."""
+        return self.decide(DraftActs(confirm=None if labels is None else tuple(labels)))
+
+    def set_aside(self, labels: Iterable[str]) -> tuple[LineDecision, ...]:
+        """Return the decisions with these lines set aside."""
+        return self.decide(DraftActs(set_aside=tuple(labels)))
+
+    def say(self, label: str, sentences: Sequence[str]) -> tuple[LineDecision, ...]:
+        """Return the decisions with sentences said instead of a line."""
+        return self.decide(DraftActs(say=((label, sentences),)))
+
+    def choose(self, label: str, number: int) -> tuple[LineDecision, ...]:
+        """Return the decisions with the choice of this number, from 1, taken for an open line."""
+        return self.decide(DraftActs(choose=((label, number),)))
+
+    def undo(self, labels: Iterable[str]) -> tuple[LineDecision, ...]:
+        """Return the decisions without those on these lines."""
+        return self.decide(DraftActs(undo=tuple(labels)))
+
+    def lines_named(self, label: str) -> Sequence[DraftLine]:
+        """Return the lines that a label means, of a line with several pieces those that are left.
+
+        Raises Invalid if there is no such line.
+        """
+        return self._named(label)
+
+    def _undone(self, label: str) -> _Acts:
+        return {id(one): (None, ()) for one in self._named(label, decided=True)}
+
+    def _confirmed(self, label: str) -> _Acts:
         found = self._named(label)
-        opened = [line for line in found if line.state is LineState.OPEN]
-        if opened:
-            line = opened[0]
+        line = next((line for line in found if line.state is LineState.OPEN), None)
+        if line is not None:
             raise Invalid(
                 f"line {line.label} of {self.source_name} is open, and has nothing to confirm: "
                 f"choose what it means, say it in other words, or set it aside"
             )
-        return [line for line in found if line.state is LineState.PROPOSED]
+        chosen = (line for line in found if line.state is LineState.PROPOSED)
+        return {id(one): (Act.CONFIRMED, one.sentences) for one in chosen}
 
-    def set_aside(self, labels: Iterable[str]) -> tuple[LineDecision, ...]:
-        """Return the decisions with these lines set aside. Of a line with several pieces those
-        are meant that are open or proposed, or all if none is."""
-        chosen = [line for label in labels for line in self._named(label)]
-        return self._with({id(one): (Act.SET_ASIDE, ()) for one in chosen})
+    def _set_aside(self, label: str) -> _Acts:
+        return {id(one): (Act.SET_ASIDE, ()) for one in self._named(label)}
 
-    def say(self, label: str, sentences: Sequence[str]) -> tuple[LineDecision, ...]:
-        """Return the decisions with sentences said instead of a line, as `set_aside` names it."""
+    def _said(self, label: str, sentences: Sequence[str]) -> _Acts:
         first, *others = self._named(label)
-        acts: _Acts
-        acts = {id(one): (Act.SET_ASIDE, ()) for one in others}
-        return self._with({id(first): (Act.SAID, tuple(sentences)), **acts})
+        acts: _Acts = {id(one): (Act.SET_ASIDE, ()) for one in others}
+        return {id(first): (Act.SAID, tuple(sentences)), **acts}
 
-    def choose(self, label: str, number: int) -> tuple[LineDecision, ...]:
-        """Return the decisions with the choice of this number, from 1, taken for an open line."""
-        choosing = [line for line in self._named(label) if line.choices]
+    def _chosen(self, label: str, number: int) -> _Acts:
+        named = self._named(label)
+        choosing = [line for line in named if line.choices]
+        if not choosing and any(line.act is not None for line in named):
+            raise Invalid(f"line {label} of {self.source_name} is decided on: undo that first")
         if len(choosing) != 1:
             raise Invalid(
                 f"line {label} of {self.source_name} offers no choice: say what it means, or set "
@@ -178,22 +252,17 @@ class Draft:
         (line,) = choosing
         if not 1 <= number <= len(line.choices):
             raise Invalid(
-                f"line {line.label} of {self.source_name} has {len(line.choices)} choices"
+                f"line {line.label} of {self.source_name} has {len(line.choices)} choices, and no "
+                f"choice {number}"
             )
         sentences = line.choices[number - 1]
-        return self._with({id(line): (Act.SAID if sentences else Act.SET_ASIDE, sentences)})
-
-    def undo(self, labels: Iterable[str]) -> tuple[LineDecision, ...]:
-        """Return the decisions without those on these lines."""
-        chosen = [line for label in labels for line in self._named(label, decided=True)]
-        return self._with({id(one): (None, ()) for one in chosen})
+        return {id(line): (Act.SAID if sentences else Act.SET_ASIDE, sentences)}
 
     def _named(self, label: str, decided: bool = False) -> Sequence[DraftLine]:
         """Return the lines that a label such as `7` or `7.2` means."""
-        number, _, part = label.partition(".")
         at = [line for line in self.lines if line.label == label]
-        if not at and number.isdecimal() and not part:
-            wanted = int(number)
+        if not at and label.isdecimal() and len(label) <= _MOST_DIGITS:
+            wanted = int(label)
             at = [line for line in self.lines if line.line == wanted]
             at = at or [one for one in self.lines if one.line <= wanted <= one.last_line]
         if not at:
@@ -225,6 +294,19 @@ def decisions_of(
         )
         for (text, act, sentences), (occurrence, count) in zip(all_, places, strict=True)
         if act is not None
+    )
+
+
+def suggestions_of(
+    lines: Iterable[tuple[str, tuple[SuggestedSentence, ...] | None]],
+) -> tuple[LineSuggestion, ...]:
+    """Return the suggestions for the lines of a script, given by text and sentences."""
+    all_ = tuple(lines)
+    places = occurrences([text for text, _ in all_])
+    return tuple(
+        LineSuggestion(text=text, sentences=sentences, occurrence=occurrence, occurrences=count)
+        for (text, sentences), (occurrence, count) in zip(all_, places, strict=True)
+        if sentences is not None
     )
 
 

@@ -9,14 +9,26 @@ For each line of the script there is a block: its number and text, and below tha
 
 A person decides by changing the words before the colon: `confirmed` accepts what is proposed,
 `said` stands before other sentences, and `set aside by hand` before nothing. Reading takes only
-these.
+these, and what an assistant has `suggested`, with the words that it stands for:
+
+    suggested: then valve R25 => Check checkpoint 4.
 """
 
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass, field
 
 from argo_compiler.base.errors import Invalid
-from argo_compiler.script.drafts.draft import Act, Draft, DraftLine, LineDecision, decisions_of
+from argo_compiler.base.model import Model
+from argo_compiler.script.assistant.suggestion import LineSuggestion, SuggestedSentence
+from argo_compiler.script.drafts.draft import (
+    Act,
+    Draft,
+    DraftLine,
+    LineDecision,
+    decisions_of,
+    suggestions_of,
+)
 
 VERSION = 1
 """version of this format"""
@@ -25,8 +37,17 @@ _HEAD = re.compile(rf"{_FIRST}(?:: .*)?")
 _LINE = re.compile(r"\s*[0-9]+(?:\.[0-9]+)? \| (.*)")
 _KEYS = {Act.CONFIRMED: "confirmed", Act.SAID: "said", Act.SET_ASIDE: "set aside by hand"}
 _ACTS = {key: act for act, key in _KEYS.items()}
-_LONGEST = 500
-"""characters of a line that are shown"""
+_SUGGESTED = "suggested"
+_NOTHING = "(nothing)"
+"""stands for a suggestion without sentences"""
+_STANDS_FOR = " => "
+
+
+class StoredDraft(Model):
+    """What the file of a draft holds besides what each import makes anew."""
+
+    decisions: tuple[LineDecision, ...] = ()
+    suggestions: tuple[LineSuggestion, ...] = ()
 
 
 def draft_text(draft: Draft) -> str:
@@ -40,6 +61,13 @@ def _block(line: DraftLine, width: int) -> Iterator[str]:
     yield f"{line.label:>{width}} | {line.text}"
     if line.place:
         yield f"place: {line.place}"
+    yield from _state_lines(line)
+    for part in () if line.suggested is None else line.suggested or (None,):
+        said = _NOTHING if part is None else f"{part.words}{_STANDS_FOR}{part.sentence}"
+        yield f"{_SUGGESTED}: {said}"
+
+
+def _state_lines(line: DraftLine) -> Iterator[str]:
     if line.act is not None:
         key = _KEYS[line.act]
         yield from (f"{key}: {sentence}" for sentence in line.sentences or ("",))
@@ -48,6 +76,8 @@ def _block(line: DraftLine, width: int) -> Iterator[str]:
     key = str(line.state)
     if line.sentences and line.act is None:
         yield from (f"{key}: {sentence}" for sentence in line.sentences)
+        if line.reason:
+            yield f"note: {line.reason}"
     else:
         yield f"{key}: {line.reason}" if line.reason else key
     if line.unused:
@@ -58,8 +88,8 @@ def _block(line: DraftLine, width: int) -> Iterator[str]:
         yield f"choice {number}: {' '.join(sentences) or '(set it aside)'}"
 
 
-def read_decisions(text: str, source_name: str) -> tuple[LineDecision, ...]:
-    """Return what a person has decided on in the text of a draft.
+def read_draft(text: str, source_name: str) -> StoredDraft:
+    """Return what a person has decided on, and an assistant has suggested, in the text of a draft.
 
     Raises:
         Invalid: It is no draft, or one of another version.
@@ -71,16 +101,57 @@ def read_decisions(text: str, source_name: str) -> tuple[LineDecision, ...]:
             f"{source_name} is no draft of this version of Argo, as its first line is not "
             f"`{_FIRST}`; remove the file to decide anew"
         )
-    found: list[tuple[str, Act | None, tuple[str, ...]]] = []
+    blocks: list[_Block] = []
     for line in rest:
         if (begun := _LINE.fullmatch(line.rstrip())) is not None:
-            found.append((" ".join(begun[1].split()), None, ()))
-            continue
-        key, colon, said = line.partition(":")
-        act = _ACTS.get(" ".join(key.split()))
-        if act is None or not found:
-            continue
-        text_, _, sentences = found[-1]
-        added = (said.strip(),) if colon and said.strip() and act is not Act.SET_ASIDE else ()
-        found[-1] = (text_, act, (*sentences, *added))
-    return decisions_of(found)
+            blocks.append(_Block(" ".join(begun[1].split())))
+        elif blocks:
+            key, colon, value = line.partition(":")
+            blocks[-1].read(" ".join(key.split()), value.strip() if colon else "")
+    return StoredDraft(
+        decisions=decisions_of((b.text, b.decided, tuple(b.sentences)) for b in blocks),
+        suggestions=suggestions_of(
+            (b.text, None if b.suggested is None else tuple(b.suggested)) for b in blocks
+        ),
+    )
+
+
+def read_decisions(text: str, source_name: str) -> tuple[LineDecision, ...]:
+    """Return what a person has decided on in the text of a draft.
+
+    Raises:
+        Invalid: It is no draft, or one of another version.
+    """
+    return read_draft(text, source_name).decisions
+
+
+@dataclass
+class _Block:
+    """The lines of the file for one line of the script, as far as they are read."""
+
+    text: str
+    act: Act | None = None
+    sentences: list[str] = field(default_factory=list)
+    suggested: list[SuggestedSentence] | None = None
+
+    @property
+    def decided(self) -> Act | None:
+        """The act, unless it needs sentences and has none."""
+        return self.act if self.sentences or self.act is Act.SET_ASIDE else None
+
+    def read(self, key: str, value: str) -> None:
+        """Read a line of a key and a value."""
+        if key == _SUGGESTED:
+            self.suggested = self.suggested or []
+            words, stands_for, sentence = value.rpartition(_STANDS_FOR)
+            if stands_for and words.strip() and sentence.strip():
+                part = SuggestedSentence(words=words.strip(), sentence=sentence.strip())
+                self.suggested.append(part)
+            return
+        act = _ACTS.get(key)
+        if act is None:
+            return
+        if act is not self.act:
+            self.act, self.sentences = act, []
+        if value and act is not Act.SET_ASIDE:
+            self.sentences.append(value)

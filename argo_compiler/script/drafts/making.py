@@ -1,8 +1,9 @@
 """Script text to draft: the script is read, and what is left is proposed or asked about."""
 
 from bisect import bisect_right
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Protocol, TypeVar
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.garbage_collector import collector_held
@@ -15,8 +16,9 @@ from argo_compiler.diagnostics import (
     with_excerpts,
 )
 from argo_compiler.il import Mission
+from argo_compiler.script.assistant.claims import suggested_proposals
+from argo_compiler.script.assistant.suggestion import LineSuggestion
 from argo_compiler.script.documents.document import Document
-from argo_compiler.script.documents.source import Source
 from argo_compiler.script.drafts.draft import (
     Act,
     Draft,
@@ -40,6 +42,8 @@ _UNREAD = frozenset(
     ]
 )
 """codes of errors of a piece that the grammar does not take; others are questions"""
+BY_ASSISTANT = "suggested by an assistant"
+"""reason of a line that an assistant has suggested sentences for"""
 
 _UNCLEAR = "script.ambiguous-"
 """how codes of errors of a piece begin that has more than one meaning"""
@@ -66,6 +70,7 @@ def import_script(
     start_area: int | None = None,
     end_area: int | None = None,
     decisions: Iterable[LineDecision] = (),
+    suggestions: Iterable[LineSuggestion] = (),
 ) -> Draft:
     """Return the draft of a script; its mission is None as long as something is left to decide.
 
@@ -77,42 +82,72 @@ def import_script(
         end_area: area to end in, likewise
         decisions: what a person has decided on for lines of the script; decisions on lines that it
             does not have, or that have another proposal now, have no effect
+        suggestions: what an assistant has suggested for lines that are open
 
     Raises:
         DiagnosticError: The text is no script: it is empty or too long.
     """
     areas = (start_area, end_area)
-    reading = _read(text, catalog, source_name, areas, {})
-    acts = _match(tuple(decisions), reading.script.pieces)
+    given = tuple(decisions)
+
+    def read(decided: Mapping[int, Sequence[str]]) -> _Reading:
+        return _read(text, catalog, source_name, areas, decided)
+
+    reading = read({})
+    acts = _match(given, reading.script.pieces)
     said = {at: act.sentences for at, act in acts.items() if act.act is not Act.CONFIRMED}
     if said:
-        reading = _read(text, catalog, source_name, areas, said)
+        reading = read(said)
     errors = _errors_by_piece(reading)
     unread = {at for at, error in errors.items() if error.code in _UNREAD and at not in said}
     unclear = {at for at, e in errors.items() if e.code.startswith(_UNCLEAR) and at not in said}
     proposals = propose(reading.script, unread, unclear - unread, catalog, start_area)
     proposed = {at: p.sentences for at, p in proposals.items() if _reads(p)}
-    if proposed:
-        reading = _read(text, catalog, source_name, areas, {**said, **proposed})
+    suggested = _match(tuple(suggestions), reading.script.pieces)
+    assisted = _assisted(reading.script, unread - proposed.keys(), suggested, catalog)
+    refused: dict[int, Diagnostic] = {}
+    if proposed or assisted:
+        sentences = {at: proposal.sentences for at, proposal in assisted.items()}
+        reading = read({**said, **proposed, **sentences})
+        refused = {at: e for at, e in _errors_by_piece(reading).items() if at in assisted}
+        if refused:
+            sentences = {at: said for at, said in sentences.items() if at not in refused}
+            reading = read({**said, **proposed, **sentences})
         errors = _errors_by_piece(reading)
-    lines = tuple(_lines(reading, errors, acts, proposals))
+        proposals |= {at: one for at, one in assisted.items() if at not in refused}
+    known = _Known(errors, acts, proposals, suggested, assisted, refused)
+    lines = tuple(_lines(reading, known))
     left = any(line.is_left for line in lines)
+    notes = (*_asides(reading, proposals), *_decided(reading, given, acts, lines))
+    notes = with_excerpts(notes, reading.script.source.lines)
     return Draft(
         source_name=source_name,
         lines=lines,
         mission=None if left else reading.mission,
-        diagnostics=_all_diagnostics(reading, proposals),
+        diagnostics=_all_diagnostics(reading, notes),
+        text=reading.script.source_text,
     )
 
 
-def _all_diagnostics(
-    reading: _Reading, proposals: Mapping[int, Proposal]
-) -> tuple[Diagnostic, ...]:
+def _all_diagnostics(reading: _Reading, notes: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:
     """Return all diagnostics of a script, by their place."""
     source = reading.script.source
-    found = by_position((*reading.diagnostics, *_asides(reading, proposals)))
-    notes = () if source.document is None else source.document.note_diagnostics()
-    return (*source.placed(found), *notes)
+    found = by_position((*reading.diagnostics, *notes))
+    document = source.document
+    return (*source.placed(found), *(() if document is None else document.note_diagnostics()))
+
+
+def _assisted(
+    script: Script,
+    open_pieces: Collection[int],
+    suggested: Mapping[int, LineSuggestion],
+    catalog: Catalog,
+) -> dict[int, Proposal]:
+    """Return what an assistant's suggestions propose for pieces that nothing is proposed for."""
+    texts = {piece.text.first: text_of(piece) for piece in script.pieces}
+    sentences = {at: one.sentences for at, one in suggested.items() if at in open_pieces}
+    found = suggested_proposals(script, sentences, texts, catalog)
+    return {at: proposal for at, proposal in found.items() if proposal.sentences}
 
 
 def _reads(proposal: Proposal) -> bool:
@@ -138,21 +173,34 @@ def _read(
     return _Reading(script, resolved.mission, resolved.diagnostics)
 
 
-def _match(decisions: Sequence[LineDecision], pieces: Sequence[Piece]) -> dict[int, LineDecision]:
-    """Return the decisions by the offsets at which their pieces begin.
+class _OfLine(Protocol):
+    """Something about a line that is found again by its text."""
 
-    Of several lines with one text each needs its own decision: if their number has changed, these
-    decisions have no effect.
+    @property
+    def text(self) -> str: ...
+    @property
+    def occurrence(self) -> int: ...
+    @property
+    def occurrences(self) -> int: ...
+
+
+_Found = TypeVar("_Found", bound=_OfLine)
+
+
+def _match(stored: Sequence[_Found], pieces: Sequence[Piece]) -> dict[int, _Found]:
+    """Return what is stored for lines by the offsets at which their pieces begin.
+
+    Of several lines with one text each needs its own: if their number has changed, what is stored
+    for them has no effect.
     """
-    if not decisions:
+    if not stored:
         return {}
-    by_line = {(decision.text, decision.occurrence): decision for decision in decisions}
+    by_line = {(one.text, one.occurrence, one.occurrences): one for one in stored}
     texts = [text_of(piece) for piece in pieces]
-    found: dict[int, LineDecision] = {}
-    for text, piece, (nth, count) in zip(texts, pieces, occurrences(texts), strict=True):
-        decision = by_line.get((text, nth))
-        if decision is not None and decision.occurrences == count:
-            found[piece.text.first] = decision
+    found: dict[int, _Found] = {}
+    for text, piece, place in zip(texts, pieces, occurrences(texts), strict=True):
+        if (one := by_line.get((text, *place))) is not None:
+            found[piece.text.first] = one
     return found
 
 
@@ -162,17 +210,56 @@ def text_of(piece: Piece) -> str:
     return " ".join(text.source.text[text.first : text.last + 1].split())
 
 
-def _lines(
-    reading: _Reading,
-    errors: Mapping[int, Diagnostic],
-    acts: Mapping[int, LineDecision],
-    proposals: Mapping[int, Proposal],
-) -> Iterator[DraftLine]:
+@dataclass(frozen=True)
+class _Known:
+    """What is known of pieces besides their text, by the offsets at which they begin."""
+
+    errors: Mapping[int, Diagnostic]
+    acts: Mapping[int, LineDecision]
+    proposals: Mapping[int, Proposal]
+    suggested: Mapping[int, LineSuggestion]
+    assisted: Mapping[int, Proposal]
+    """proposals that follow from suggestions"""
+    refused: Mapping[int, Diagnostic]
+    """errors in the sentences that are suggested"""
+
+    def of(self, at: int) -> dict[str, object]:
+        """Return what is known of a piece, as fields of its line."""
+        found: dict[str, object] = {}
+        confirmed = False
+        decision, proposal = self.acts.get(at), self.proposals.get(at)
+        if proposal is not None:
+            state = LineState.PROPOSED if proposal.sentences else LineState.SET_ASIDE
+            found = {"state": state, "sentences": proposal.sentences, "unused": proposal.unused}
+            found |= {"reason": proposal.aside, "choices": proposal.choices}
+            if at in self.assisted and at not in self.refused:
+                found["reason"] = "; ".join(filter(None, (BY_ASSISTANT, proposal.doubt)))
+            if proposal.certain:
+                found["state"] = LineState.UNDERSTOOD
+            confirmed = decision is not None and decision.sentences == proposal.sentences != ()
+        if decision is not None and (confirmed or decision.act is not Act.CONFIRMED):
+            aside = decision.act is Act.SET_ASIDE
+            found = {"state": LineState.SET_ASIDE if aside else LineState.UNDERSTOOD}
+            found |= {"act": decision.act, "sentences": decision.sentences}
+        elif proposal is not None and proposal.doubt and at not in self.assisted:
+            found["state"], found["reason"] = LineState.OPEN, proposal.doubt
+        if (error := self.errors.get(at)) is not None:
+            doubt = "" if proposal is None else proposal.doubt
+            found |= {"state": LineState.OPEN, "reason": doubt or error.message}
+            found |= {"hint": error.hint or "", "is_question": error.code not in _UNREAD}
+        if (refusal := self.refused.get(at)) is not None and "act" not in found:
+            sentences = " ".join(self.assisted[at].sentences)
+            found["hint"] = f"an assistant suggests `{sentences}`, but {refusal.message}"
+        if at in self.suggested:
+            found["suggested"] = self.suggested[at].sentences
+        return found
+
+
+def _lines(reading: _Reading, known: _Known) -> Iterator[DraftLine]:
     pieces, source = reading.script.pieces, reading.script.source
     spans = [_lines_of(piece) for piece in pieces]
     parts = occurrences([first for first, _ in spans])
     for piece, (first, last), (part, count) in zip(pieces, spans, parts, strict=True):
-        at = piece.text.first
         line = DraftLine(
             line=first,
             last_line=last,
@@ -183,33 +270,7 @@ def _lines(
             state=LineState.SET_ASIDE if piece.aside else LineState.UNDERSTOOD,
             reason=piece.aside,
         )
-        yield line.model_copy(update=_known(acts.get(at), proposals.get(at), errors.get(at)))
-
-
-def _known(
-    decision: LineDecision | None, proposal: Proposal | None, error: Diagnostic | None
-) -> dict[str, object]:
-    """Return what is known of a line besides its text."""
-    found: dict[str, object] = {}
-    confirmed = False
-    if proposal is not None:
-        state = LineState.PROPOSED if proposal.sentences else LineState.SET_ASIDE
-        found = {"state": state, "sentences": proposal.sentences, "unused": proposal.unused}
-        found |= {"reason": proposal.aside, "choices": proposal.choices}
-        if proposal.certain:
-            found["state"] = LineState.UNDERSTOOD
-        confirmed = decision is not None and decision.sentences == proposal.sentences != ()
-    if decision is not None and (confirmed or decision.act is not Act.CONFIRMED):
-        aside = decision.act is Act.SET_ASIDE
-        found = {"state": LineState.SET_ASIDE if aside else LineState.UNDERSTOOD}
-        found |= {"act": decision.act, "sentences": decision.sentences}
-    elif decision is None and proposal is not None and proposal.doubt:
-        found["state"], found["reason"] = LineState.OPEN, proposal.doubt
-    if error is not None:
-        doubt = "" if proposal is None else proposal.doubt
-        found |= {"state": LineState.OPEN, "reason": doubt or error.message}
-        found["hint"] = error.hint or ""
-    return found
+        yield line.model_copy(update=known.of(piece.text.first))
 
 
 def _asides(reading: _Reading, proposals: Mapping[int, Proposal]) -> tuple[Diagnostic, ...]:
@@ -227,7 +288,43 @@ def _asides(reading: _Reading, proposals: Mapping[int, Proposal]) -> tuple[Diagn
         for message in proposal.differences:
             hint = "correct one of the two; the mission uses that of the site"
             found.append(diagnostic_of("script.other-range", message, hint, span=span))
-    return with_excerpts(found, Source(reading.script.source_text).lines)
+    return tuple(found)
+
+
+def _decided(
+    reading: _Reading,
+    decisions: Sequence[LineDecision],
+    acts: Mapping[int, LineDecision],
+    lines: Sequence[DraftLine],
+) -> Iterator[Diagnostic]:
+    """Yield notes of what was decided on, and warnings of decisions that have no effect."""
+    effective: set[int] = set()
+    for piece, line in zip(reading.script.pieces, lines, strict=True):
+        act = acts.get(piece.text.first)
+        if act is None:
+            continue
+        if line.act is not None or line.is_left:
+            effective.add(id(act))
+        if line.act is None:
+            continue
+        span, shown = piece.text.span(), f"`{_shown(line.text)}`"
+        if line.act is Act.SET_ASIDE:
+            message = f"{shown} is set aside by hand"
+            yield diagnostic_of("script.set-aside-by-hand", message, span=span)
+        else:
+            how = "as confirmed" if line.act is Act.CONFIRMED else "as a person has said"
+            message = f"{shown} counts as `{_shown(' '.join(line.sentences))}`, {how}"
+            yield diagnostic_of("script.decided", message, span=span)
+    matched = {id(act) for act in acts.values()}
+    for decision in decisions:
+        if id(decision) not in effective:
+            why = "the line is understood without it" if id(decision) in matched else ""
+            count = sum(line.text == decision.text for line in lines)
+            now = f"{count} lines have this text now" if count > 1 else "one line has this text now"
+            why = why or (now if count else "no line has this text")
+            message = f"what was decided on `{_shown(decision.text)}` has no effect: {why}"
+            hint = "import the script again to forget the decision, or decide anew"
+            yield diagnostic_of("script.decision-unused", message, hint)
 
 
 def _shown(text: str) -> str:

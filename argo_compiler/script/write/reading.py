@@ -16,9 +16,12 @@ from argo_compiler.script.write.protocol import lines_of, parts_said
 from argo_compiler.script.write.steps import Said
 from argo_compiler.script.write.text import INDENT, number, wrapped
 
-_NO_EFFECT = frozenset(["script.no-effect", "script.set-aside", "script.order-taken"])
+_NO_EFFECT = frozenset(
+    ["script.no-effect", "script.set-aside", "script.set-aside-by-hand", "script.order-taken"]
+)
 _ASSUMING = frozenset(
     [
+        "script.decided",
         "script.dock-assumed",
         "script.title",
         "script.healed",

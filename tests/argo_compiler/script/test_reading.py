@@ -96,5 +96,5 @@ def test_what_asks_for_nothing(text: str, code: str, catalog: Catalog) -> None:
 
 def test_too_many_errors_end_the_reading(catalog: Catalog) -> None:
     errors = refusals("Mission Protocol\n" + "1. gibberish\n" * 15_000, catalog)
-    assert len(errors) == 102
+    assert len(errors) == 1002
     assert errors[-1].code == "script.too-many-errors"

@@ -42,7 +42,9 @@ COMMANDS = {
     "env batches --count 1 --rounds 1": r"Inspect-v0: [\d.]+ times as many with \d+ processes",
     "evaluate --runs 2 --kinematic 0 --backend processes": r"processes +route +2 runs: ",
     f"paths --pairs 2 --site {SMALL} --large {SMALL}": r"travel times of 2 checkpoints: [\d.]+ s",
-    "draft_page --lines 30 --confirm 2 --pause 0": r"key to shown +[\d.]+ (.|\n)*key to stored +[\d.]+ ",
+    "draft_page --lines 30 --confirm 2 --pause 0": (
+        r"key to shown +[\d.]+ (.|\n)*key to stored +[\d.]+ "
+    ),
     "service --tasks 10 --edits 3 --subscribers 2 --seconds 3": (
         r"2 followers of a run: (.|\n)*one reads nothing: received by all +[\d.]+ "
     ),

@@ -144,12 +144,8 @@ def _lines(
     is_heading = cue_pattern("glossary", glossary.understanding.language.prose.form["glossary"])
     explaining = _explaining_lines(source, is_heading)
     for number, line in enumerate(source.lines, start=1):
-        plain = _PARTED.search(line) is None and not is_heading.match(line.lstrip())
-        if line and plain and number not in explaining:
-            headed, heading = False, None
-            continue
-        text = source.line_text(number).strip()
         if number in explaining:
+            text = source.line_text(number).strip()
             meanings = _explained_in_row(text, source, number, glossary)
             for short, long in meanings:
                 glossary.add(short, long)
@@ -157,6 +153,10 @@ def _lines(
                 idle |= set() if meanings else {number}
                 yield number, text
             continue
+        if line and _PARTED.search(line) is None and not is_heading.match(line.lstrip()):
+            headed, heading = False, None
+            continue
+        text = source.line_text(number).strip()
         if not text.content or len(line) > _LONGEST or len(glossary.meanings) > _MOST_MEANINGS:
             headed = headed and not text.content and not source.lines[number - 2].strip(" =-:")
             continue

@@ -22,7 +22,7 @@ from argo_planner.service.drafts.messages import (
     other_messages,
 )
 from argo_planner.service.jobs.imports import DraftReading, Imports
-from argo_planner.service.storage.draft_folder import DraftFolder, StoredDraft
+from argo_planner.service.storage.draft_folder import DraftFolder, DraftRecord
 from argo_planner.use_cases.importing import ImportedMission
 
 MOST_DRAFTS = 200
@@ -82,7 +82,7 @@ class Drafts:
             raise Conflict(f"there are {MOST_DRAFTS} drafts: complete or delete some of them first")
         now = self._clock()
         stored = _with_counts(
-            StoredDraft(
+            DraftRecord(
                 id=self._folder.free_id(),
                 name=name,
                 source_name=source_name,
@@ -127,7 +127,7 @@ class Drafts:
 
     async def complete_mission(
         self, id: str, made_on: int | None, visitor: str
-    ) -> tuple[StoredDraft, ImportedMission]:
+    ) -> tuple[DraftRecord, ImportedMission]:
         """Return a draft and its mission.
 
         Raises IncompleteDraft if lines are left, DiagnosticError if the mission has errors.
@@ -150,21 +150,21 @@ class Drafts:
             self._readings.pop(id, None)
         self._turns.pop(id, None)
 
-    async def _load(self, id: str) -> StoredDraft:
+    async def _load(self, id: str) -> DraftRecord:
         try:
             return await asyncio.to_thread(self._folder.load, id)
         except NotFound:
             self._turns.pop(id, None)
             raise
 
-    async def _reading(self, stored: StoredDraft, visitor: str) -> DraftReading:
+    async def _reading(self, stored: DraftRecord, visitor: str) -> DraftReading:
         revision, reading = self._readings.get(stored.id, (0, None))
         if reading is None or revision != stored.revision:
             reading = await self._read(stored, visitor)
             self._remember(stored, reading)
         return reading
 
-    async def _read(self, stored: StoredDraft, visitor: str) -> DraftReading:
+    async def _read(self, stored: DraftRecord, visitor: str) -> DraftReading:
         return await self._scripts.read_draft(
             stored.source_name,
             stored.text,
@@ -173,36 +173,36 @@ class Drafts:
             stored.decisions,
         )
 
-    async def _store(self, stored: StoredDraft, reading: DraftReading) -> DraftState:
+    async def _store(self, stored: DraftRecord, reading: DraftReading) -> DraftState:
         await asyncio.shield(asyncio.to_thread(self._folder.store, stored))
         self._summaries[stored.id] = _summary(stored)
         self._remember(stored, reading)
         return _state(stored, reading)
 
-    def _remember(self, stored: StoredDraft, reading: DraftReading) -> None:
+    def _remember(self, stored: DraftRecord, reading: DraftReading) -> None:
         self._readings[stored.id] = stored.revision, reading
         self._readings.move_to_end(stored.id)
         while len(self._readings) > _MOST_READ:
             self._readings.popitem(last=False)
 
 
-def _require_newest(stored: StoredDraft, made_on: int | None) -> None:
+def _require_newest(stored: DraftRecord, made_on: int | None) -> None:
     if made_on is not None and made_on != stored.revision:
         raise StaleRevision(made_on, stored.revision)
 
 
-def _with_counts(stored: StoredDraft, draft: Draft) -> StoredDraft:
+def _with_counts(stored: DraftRecord, draft: Draft) -> DraftRecord:
     proposed = sum(line.state is LineState.PROPOSED for line in draft.left)
     counts = {"to_confirm": proposed, "to_answer": len(draft.left) - proposed}
     return stored.model_copy(update=counts)
 
 
-def _summary(stored: StoredDraft) -> DraftSummary:
+def _summary(stored: DraftRecord) -> DraftSummary:
     fields = {name: getattr(stored, name) for name in DraftSummary.model_fields}
     return DraftSummary.model_construct(**fields)
 
 
-def _state(stored: StoredDraft, reading: DraftReading) -> DraftState:
+def _state(stored: DraftRecord, reading: DraftReading) -> DraftState:
     return DraftState.model_construct(
         **dict(_summary(stored)),
         start_area=stored.start_area,

@@ -26,7 +26,7 @@ DRAFT_ID = r"[0-9a-f]{12}"
 _REMEDY = "restore the file from a copy, or delete it and import the script again"
 
 
-class StoredDraft(Model):
+class DraftRecord(Model):
     """A script, and what people have decided on its lines."""
 
     id: str
@@ -61,7 +61,7 @@ class DraftFolder:
             pass
         return id
 
-    def store(self, draft: StoredDraft) -> None:
+    def store(self, draft: DraftRecord) -> None:
         """Store a draft; on return it is on disk. Raises Unavailable if that fails."""
         path = self._file(draft.id)
         try:
@@ -73,16 +73,16 @@ class DraftFolder:
                 f"the draft can't be stored: {path}: {error.strerror}; nothing was changed"
             ) from error
 
-    def load(self, id: str) -> StoredDraft:
+    def load(self, id: str) -> DraftRecord:
         """Return a stored draft; raises NotFound if there is none, Unavailable if it is damaged."""
         try:
-            draft = read_stored(StoredDraft, self._file(id), _REMEDY)
+            draft = read_stored(DraftRecord, self._file(id), _REMEDY)
         except NotFound:
             raise _no_draft(id) from None
         require_own_id(self._file(id), draft.id, id, _REMEDY)
         return draft
 
-    def load_drafts(self) -> list[StoredDraft]:
+    def load_drafts(self) -> list[DraftRecord]:
         """Return all stored drafts, without those that can't be read."""
         found = []
         for path in self._path.glob("*.json"):

@@ -17,7 +17,8 @@ _LONGEST = 300
 """characters of a text that is paraphrased"""
 _ALONE = (("AREA", "NUMBER"),)
 """what can be where a mission starts, or where it ends"""
-_BLANKS = re.compile(r"\s{2,}|\s(?=[,;])")
+_BLANKS = re.compile(r"(?<=\s)\s+|\s+(?=[,;])")
+"""blanks that are left where words were removed"""
 _PART = {"n": r"[-\d.,]*\d(?:\s?(?:%|°|[a-z]{1,8}))?", "k": r"[\w-]+", "x": r".+?", "y": r".+"}
 """what stands for a slot: an amount, a word, or any words"""
 
@@ -42,8 +43,8 @@ def rephrased(text: ScriptText, understanding: Understanding) -> Rephrased:
             else:
                 dropped.append(found[0])
                 text = text.without(*found.span())
-    while (blanks := _BLANKS.search(text.content)) is not None:
-        text = text.without(blanks.start() + 1, blanks.end())
+    for blanks in reversed(list(_BLANKS.finditer(text.content))):
+        text = text.without(*blanks.span())
     return Rephrased(text.strip(), tuple(dropped))
 
 

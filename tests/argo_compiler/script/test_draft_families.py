@@ -380,3 +380,11 @@ def test_a_limit_before_then_is_of_the_whole_mission(catalog: Catalog) -> None:
         text = "Check #1.\n20 min max, then back to its dock"
         assert confirmed(text, catalog).max_duration == 1200
     assert confirmed("Check #1.\nCheck #4.\nmax 15 min", catalog).max_duration == 900
+
+
+@pytest.mark.parametrize(
+    "text", ["Do not forget the coffee ;-)", "Kaffee nicht vergessen ;-)", "x , y"]
+)
+def test_a_blank_before_a_sign_is_read(text: str, catalog: Catalog) -> None:
+    draft = draft_of(f"Start in starting area 1.\nCheck #1.\n{text}", catalog)
+    assert draft.lines

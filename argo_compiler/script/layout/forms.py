@@ -85,10 +85,12 @@ Columns = list[tuple[int, CellRole]]
 _BOXES = re.compile(r"[□☐]|\[\s+\]")
 """within a line, where `[]` may be a list without items: `with joints []`"""
 _QUOTED = re.compile(r'"[^"]*"')
-_BOX = re.compile(r"\s*(?:[-*•]\s+)?(?:\[([ xX*✓v~-]?)\]|([□☐☑☒✓✔✗✘]))\s*")
+_MARK = r"\s*(?:[-*•]\s+|[0-9]{1,3}\s*[.):]?\s+)?"
+"""a bullet, or the number of a row"""
+_BOX = re.compile(rf"{_MARK}(?:\[([ xX*✓v~-]?)\]|([□☐☑☒✓✔✗✘]))\s*")
 _TICKED = {"☑": "x", "☒": "x", "✓": "x", "✔": "x", "✗": "-", "✘": "-", "□": " ", "☐": " "}
-_OPEN_BOX = re.compile(r"\s*(?:[-*•]\s+)?(?:\[\s?\]|[□☐])")
-_STRUCK = re.compile(r"^\s*(?:[-*•]\s+)?~~.*~~\s*$")
+_OPEN_BOX = re.compile(rf"{_MARK}(?:\[\s?\]|[□☐])")
+_STRUCK = re.compile(r"~~[^~]+~~")
 _LEADER = re.compile(r"\s*(?:\.{3,}|…+)\s*")
 _CUTS = {
     "|": re.compile(r"\|"),
@@ -180,7 +182,7 @@ def forms(
         known = number in rows or number in texts or number in taken
         if known or len(content) > _LONGEST or len(rows) > _MOST_ROWS:
             continue
-        boxed, struck = _BOX.match(content), _STRUCK.match(content)
+        boxed, struck = _BOX.match(content), _STRUCK.search(content)
         doubt = _doubt_of(source, number) if content.strip() else ""
         ticked = boxed and not _OPEN_BOX.match(content)
         blank = BLANK.search(_QUOTED.sub("", content))
@@ -315,7 +317,7 @@ def _row(line: ScriptText, cells: Sequence[Cell], cut: str) -> FormRow:
         inner = _BOX.match(first.content)
         rest = first[inner.end() :].strip() if inner is not None else first
         cells = [replace(cells[0], text=rest), *cells[1:]]
-    elif _STRUCK.fullmatch(line.content):
+    elif _STRUCK.search(line.content):
         mark = "-"
     labelled = len(cells) == 2 and cut in (".", ";", "  ", "|")
     return FormRow(line.strip(), tuple(c for c in cells if c.text.content), mark, labelled=labelled)
@@ -361,7 +363,7 @@ def _cut_of(line: str) -> str:
         return ";"
     if inner.count(",") >= 2 and not re.search(r",\s", inner) and not inner.endswith("."):
         return ","
-    if _LEADER.search(inner) and re.match(r"[^\W\d].*?\s*\.{4,}\s*\S", inner):
+    if _LEADER.search(inner) and re.match(r"(?:[^\W\d]|#).*?\s*\.{4,}\s*\S", inner):
         return "."
     return "  " if '"' not in inner and re.search(r"\S\s{2,}\S", inner) else ""
 

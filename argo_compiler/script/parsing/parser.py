@@ -317,6 +317,7 @@ class _Parser:
         """What a plain item says with another text, in which some figures are not known; None if
         that hangs on them."""
         before, errors = len(self.diagnostics.entries), self.diagnostics.errors
+        pieces = len(self.pieces)
         self.understanding.unknown = unknown
         try:
             said = self._said(replace(item, text=text))
@@ -324,6 +325,7 @@ class _Parser:
             return None
         finally:
             self.understanding.unknown = {}
+            del self.pieces[pieces:]
             found = self.diagnostics.entries[before:]
             del self.diagnostics.entries[before:]
             self.diagnostics.errors = errors

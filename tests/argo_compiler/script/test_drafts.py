@@ -192,3 +192,13 @@ def test_every_line_with_text_is_in_the_draft(catalog: Catalog) -> None:
     covered = {n for line in draft.lines for n in range(line.line, line.last_line + 1)}
     wanted = {n for n, line in enumerate(text.split("\n"), 1) if any(map(str.isalnum, line))}
     assert wanted <= covered
+
+
+def test_lines_that_are_alike_but_for_their_figures_are_lines_of_their_own(
+    catalog: Catalog,
+) -> None:
+    numbers = range(1, 10)
+    text = "Start in starting area 1.\n" + "\n".join(f"- Check #{n}" for n in numbers)
+    draft = draft_of(text, catalog)
+    assert [line.text for line in draft.lines[1:]] == [f"Check #{n}" for n in numbers]
+    assert [line.label for line in draft.lines] == [str(n) for n in range(1, 11)]

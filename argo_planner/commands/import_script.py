@@ -129,7 +129,7 @@ def import_command(
     if kind is SourceKind.SCRIPT:
         deciding = Deciding(script, upload, opened, (start_area, end_area))
         if options.given:
-            deciding.carry_out(options)
+            deciding.act(options)
         if helper is not None:
             deciding.ask(helper)
             deciding.keep()

@@ -47,7 +47,7 @@ class Deciding:
         self.areas = areas
         self.draft = load_draft(upload, site.catalog, *areas)
 
-    def carry_out(self, options: ActOptions) -> None:
+    def act(self, options: ActOptions) -> None:
         """Carry out what options ask for. Raises Invalid, and changes nothing, if one can't be."""
         self.perform(acts_of(self.draft, options))
 

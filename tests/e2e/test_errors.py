@@ -58,7 +58,7 @@ def test_a_bad_script_is_refused(argo, tmp_path: Path, command, name, content, e
     script = tmp_path / name
     script.write_bytes(content)
     output = [] if command == "run" else ["-o", tmp_path / "out.json"]
-    answered = name in ("wrong_checkpoint.txt", "unknown_word.txt")
+    answered = name in ("prose.txt", "wrong_checkpoint.txt", "unknown_word.txt")
     message = require_refusal(argo(command, script, *output), 3 if answered else 2)
     assert name in message
     assert expected in message

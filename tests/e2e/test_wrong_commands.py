@@ -220,7 +220,7 @@ IN_ERRORS = {
 IN_OUTPUT = {
     # documents, pictures and other people's files as scripts
     "run mission.docx": "mission.docx is no mission, but a damaged ZIP archive",
-    "check mission.pdf": "mission.pdf is no mission, but a document (PDF): save it as plain text",
+    "check mission.pdf": "mission.pdf is a document (PDF) that is damaged",
     "run photo.png": "photo.png is no mission, but a picture (PNG)",
     "import photo.jpg -o n.json": "photo.jpg is no mission, but a picture (JPEG)",
     "run notes.rtf": "notes.rtf is no mission, but a document (RTF): save it as plain text",

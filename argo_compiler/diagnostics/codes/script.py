@@ -243,6 +243,10 @@ SCRIPT = {
     "script.no-checkpoint": error(
         "An exception leaves no checkpoint.", "Name the remaining checkpoints."
     ),
+    "script.comment": note(
+        "A line that is labelled as a hint, a note or a remark has no effect on the mission.",
+        "No action is needed; if it is an order, write it without the label.",
+    ),
     "script.no-effect": warning(
         "Words such as a greeting or a remark have no effect on the mission.",
         "If they are an order, write it in other words; else remove them, or set the line aside.",

@@ -52,8 +52,7 @@ class SentenceReader:
 
     def note(self, text: ScriptText, what: str) -> None:
         """Says that a text has no effect."""
-        said = text.content if len(text.content) <= 60 else f"{text.content[:57]}..."
-        message = f"`{said}` is taken for {what} and has no effect"
+        message = f"`{_shortened(text)}` is taken for {what} and has no effect"
         self.diagnostics.warning("no-effect", message, text.span())
         self.noted = text, what
 
@@ -72,9 +71,10 @@ class SentenceReader:
             message = f"`{text.content}` is taken for a remark: the command in it has no effect"
             hint = "write it as a step if the robot has to do it"
             self.diagnostics.warning("remark", message, text.span(), hint)
-            self.noted = text, "a remark"
         else:
-            self.note(text, "a remark")
+            message = f"`{_shortened(text)}` is a remark and has no effect"
+            self.diagnostics.note("comment", message, text.span())
+        self.noted = text, "a remark"
         return []
 
     def read(self, text: ScriptText, item: LineItem) -> list[Said]:
@@ -316,6 +316,10 @@ class SentenceReader:
         elif not self.asides.is_explicit_title(title):
             message = f"`{title.content}` is taken for the title, and has no effect on what is done"
             self.diagnostics.note("title", message, title.span())
+
+
+def _shortened(text: ScriptText) -> str:
+    return text.content if len(text.content) <= 60 else f"{text.content[:57]}..."
 
 
 def _is_amend(node: Said) -> bool:

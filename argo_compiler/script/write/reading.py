@@ -17,7 +17,13 @@ from argo_compiler.script.write.steps import Said
 from argo_compiler.script.write.text import INDENT, number, wrapped
 
 _NO_EFFECT = frozenset(
-    ["script.no-effect", "script.set-aside", "script.set-aside-by-hand", "script.order-taken"]
+    [
+        "script.comment",
+        "script.no-effect",
+        "script.set-aside",
+        "script.set-aside-by-hand",
+        "script.order-taken",
+    ]
 )
 _ASSUMING = frozenset(
     [

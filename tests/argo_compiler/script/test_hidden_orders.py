@@ -66,7 +66,11 @@ def test_a_remark_that_asks_for_something_is_a_warning(remark: str, catalog: Cat
 )
 def test_what_asks_for_nothing_is_a_warning(text: str, catalog: Catalog) -> None:
     resolved = import_whole(text, catalog)
-    assert {d.code for d in resolved.diagnostics} <= {"script.no-effect", "script.title"}
+    assert {d.code for d in resolved.diagnostics} <= {
+        "script.comment",
+        "script.no-effect",
+        "script.title",
+    }
     assert resolved.diagnostics
     assert measured(text, catalog) == ["1"]
 

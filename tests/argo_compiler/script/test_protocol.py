@@ -106,10 +106,10 @@ def test_a_waypoint_that_is_about_an_object_is_moved_and_deleted_like_any_other(
 
 def test_a_hint_is_kept_and_does_nothing(catalog: Catalog) -> None:
     text = steps("Check checkpoint #1") + "   Hint: at least 3 robots were here\n"
-    (warning,) = import_whole(text, catalog).diagnostics
-    assert (warning.code, warning.severity) == ("script.no-effect", Severity.WARNING)
-    assert warning.span is not None
-    assert (warning.span.line, warning.span.column, warning.span.length) == (4, 4, 33)
+    (note,) = import_whole(text, catalog).diagnostics
+    assert (note.code, note.severity) == ("script.comment", Severity.NOTE)
+    assert note.span is not None
+    assert (note.span.line, note.span.column, note.span.length) == (4, 4, 33)
 
 
 # ---- where it starts and ends

@@ -118,7 +118,7 @@ def test_a_sentence_that_is_not_understood_is_answered_with_its_message(service:
     [
         ({"kind": "confirm", "labels": ["99"]}, "has no line 99"),
         ({"kind": "confirm", "labels": ["3"]}, "line 3 of round.txt is open"),
-        ({"kind": "choose", "label": "2", "number": 1}, "offers no choice"),
+        ({"kind": "choose", "label": "2", "number": 1}, "line 2"),
         ({"kind": "choose", "label": "3", "number": 9}, "has 3 choices"),
         ({"kind": "say", "label": "3", "sentences": ["  "]}, "is empty"),
         ({"kind": "say", "label": "3", "sentences": ["x" * 1001]}, "at most 1000 characters"),

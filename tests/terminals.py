@@ -41,6 +41,8 @@ class Terminal:
         self.output = ""
         """all that the program has shown"""
         self._seen = 0
+        self.echoes_at_end = False
+        """whether the terminal shows what is typed after the program has ended"""
 
     def type(self, keys: str) -> None:
         os.write(self._fd, keys.encode())
@@ -79,6 +81,7 @@ class Terminal:
             pass
         assert time.monotonic() < deadline, f"it still runs:\n{self.output[self._seen :]}"
         status = self._process.wait(_WAIT_S)
+        self.echoes_at_end = self.echoes()
         os.close(self._fd)
         return status
 

@@ -1,4 +1,4 @@
-"""What an assistant's suggestion proposes for a piece of a script, and what it does not use.
+"""Proposals made of an assistant's suggestions, with the words of the script that they leave out.
 
 An assistant may claim words that its sentences do not use, or leave words out. So each word outside
 its claims is unused, and so is what means something to Argo and has no counterpart in the

@@ -1,4 +1,4 @@
-"""What an assistant is given: instructions, the catalogue of the site, and the script."""
+"""Request to an assistant: instructions, the catalogue of the site, and the script."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What an assistant suggests for a line of a script."""
+"""Suggestions of an assistant for lines of a script."""
 
 from argo_compiler.base.model import Model
 

@@ -16,6 +16,8 @@ MAX_LINE = 2000
 """characters in a line; a longer one is refused unread"""
 
 _BEGINNING = 80
+_LONGEST_SHOWN = 60
+"""characters of a text that a message shows"""
 MOST_KEPT = 2_000
 """errors; further ones are counted, but not kept"""
 _LINE_END = re.compile(r"\r\n|\r|\n")
@@ -169,6 +171,11 @@ class ScriptText:
             return self.source.span(offsets[start], offsets[last - 1] + 1)
         after = self.offsets[-1] + 1 if self.offsets else 0
         return self.source.span(after, after + 1)
+
+
+def shortened(text: str) -> str:
+    """Return a text as a message shows it: the beginning of a long one."""
+    return text if len(text) <= _LONGEST_SHOWN else f"{text[: _LONGEST_SHOWN - 3]}..."
 
 
 def quotes(content: str) -> list[tuple[int, int]]:

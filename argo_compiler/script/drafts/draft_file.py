@@ -44,7 +44,7 @@ _STANDS_FOR = " => "
 
 
 class StoredDraft(Model):
-    """What the file of a draft holds besides what each import makes anew."""
+    """Decisions and suggestions in the file of a draft; all else in it is made by each import."""
 
     decisions: tuple[LineDecision, ...] = ()
     suggestions: tuple[LineSuggestion, ...] = ()

@@ -19,6 +19,7 @@ from argo_compiler.il import Mission
 from argo_compiler.script.assistant.claims import suggested_proposals
 from argo_compiler.script.assistant.suggestion import LineSuggestion
 from argo_compiler.script.documents.document import Document
+from argo_compiler.script.documents.source import shortened
 from argo_compiler.script.drafts.draft import (
     Act,
     Draft,
@@ -47,9 +48,6 @@ BY_ASSISTANT = "suggested by an assistant"
 
 _UNCLEAR = "script.ambiguous-"
 """how codes of errors of a piece begin that has more than one meaning"""
-
-_LONGEST_SHOWN = 60
-"""characters of a text that a message shows"""
 
 
 @dataclass(frozen=True)
@@ -212,7 +210,7 @@ def text_of(piece: Piece) -> str:
 
 @dataclass(frozen=True)
 class _Known:
-    """What is known of pieces besides their text, by the offsets at which they begin."""
+    """Errors, decisions and proposals of pieces, by the offsets at which the pieces begin."""
 
     errors: Mapping[int, Diagnostic]
     acts: Mapping[int, LineDecision]
@@ -282,7 +280,7 @@ def _asides(reading: _Reading, proposals: Mapping[int, Proposal]) -> tuple[Diagn
             continue
         span = piece.text.span()
         if proposal.aside:
-            message = f"`{_shown(text_of(piece))}` is set aside: it is {proposal.aside}"
+            message = f"`{shortened(text_of(piece))}` is set aside: it is {proposal.aside}"
             hint = "write it as a step if the robot has to do something"
             found.append(diagnostic_of("script.set-aside", message, hint, span=span))
         for message in proposal.differences:
@@ -307,13 +305,13 @@ def _decided(
             effective.add(id(act))
         if line.act is None:
             continue
-        span, shown = piece.text.span(), f"`{_shown(line.text)}`"
+        span, shown = piece.text.span(), f"`{shortened(line.text)}`"
         if line.act is Act.SET_ASIDE:
             message = f"{shown} is set aside by hand"
             yield diagnostic_of("script.set-aside-by-hand", message, span=span)
         else:
             how = "as confirmed" if line.act is Act.CONFIRMED else "as a person has said"
-            message = f"{shown} counts as `{_shown(' '.join(line.sentences))}`, {how}"
+            message = f"{shown} counts as `{shortened(' '.join(line.sentences))}`, {how}"
             yield diagnostic_of("script.decided", message, span=span)
     matched = {id(act) for act in acts.values()}
     for decision in decisions:
@@ -322,13 +320,9 @@ def _decided(
             count = sum(line.text == decision.text for line in lines)
             now = f"{count} lines have this text now" if count > 1 else "one line has this text now"
             why = why or (now if count else "no line has this text")
-            message = f"what was decided on `{_shown(decision.text)}` has no effect: {why}"
+            message = f"what was decided on `{shortened(decision.text)}` has no effect: {why}"
             hint = "import the script again to forget the decision, or decide anew"
             yield diagnostic_of("script.decision-unused", message, hint)
-
-
-def _shown(text: str) -> str:
-    return text if len(text) <= _LONGEST_SHOWN else f"{text[: _LONGEST_SHOWN - 3]}..."
 
 
 def _lines_of(piece: Piece) -> tuple[int, int]:

@@ -100,7 +100,7 @@ class Asides:
         )
 
     def retracts(self, content: str) -> bool:
-        """Whether a line takes back what stands above it: `sorry, not R25 but R12`."""
+        """Return True if a line takes back what stands above it: `sorry, not R25 but R12`."""
         return begins(self.prose.cues["retracting"]).match(content) is not None
 
     def greeting(self, text: ScriptText) -> int:

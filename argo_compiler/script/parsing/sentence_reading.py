@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from argo_compiler.script.documents.source import Diagnostics, ScriptText
+from argo_compiler.script.documents.source import Diagnostics, ScriptText, shortened
 from argo_compiler.script.layout.asides import Asides, ask_of_remark
 from argo_compiler.script.layout.fields import ScriptFields
 from argo_compiler.script.layout.items import LineItem
@@ -52,7 +52,7 @@ class SentenceReader:
 
     def note(self, text: ScriptText, what: str) -> None:
         """Says that a text has no effect."""
-        message = f"`{_shortened(text)}` is taken for {what} and has no effect"
+        message = f"`{shortened(text.content)}` is taken for {what} and has no effect"
         self.diagnostics.warning("no-effect", message, text.span())
         self.noted = text, what
 
@@ -72,7 +72,7 @@ class SentenceReader:
             hint = "write it as a step if the robot has to do it"
             self.diagnostics.warning("remark", message, text.span(), hint)
         else:
-            message = f"`{_shortened(text)}` is a remark and has no effect"
+            message = f"`{shortened(text.content)}` is a remark and has no effect"
             self.diagnostics.note("comment", message, text.span())
         self.noted = text, "a remark"
         return []
@@ -316,10 +316,6 @@ class SentenceReader:
         elif not self.asides.is_explicit_title(title):
             message = f"`{title.content}` is taken for the title, and has no effect on what is done"
             self.diagnostics.note("title", message, title.span())
-
-
-def _shortened(text: ScriptText) -> str:
-    return text.content if len(text.content) <= 60 else f"{text.content[:57]}..."
 
 
 def _is_amend(node: Said) -> bool:

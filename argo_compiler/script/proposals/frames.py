@@ -316,18 +316,18 @@ def _wait(found: Mentions, _: Known) -> Sentences | None:
 
 
 def _before_unknown(mention: Mention, found: Mentions) -> bool:
-    """Whether an unknown word follows at once, as in `no ladder`."""
+    """Return True if an unknown word follows at once, as in `no ladder`."""
     return any(0 <= word.start - mention.end <= 1 for word in found.unknown)
 
 
 def _words_between(found: Mentions, named: Sequence[Mention]) -> bool:
-    """Whether an unknown word stands between two checkpoints: `valve R7 as long as R40 is open`."""
+    """Return True if an unknown word stands between checkpoints: `R7 as long as R40 is open`."""
     first, last = named[0].end, named[-1].start
     return any(first <= word.start < last for word in found.unknown)
 
 
 def _verb_before(found: Mentions, last: Mention) -> bool:
-    """Whether an unknown word stands where the verb of an order does: `paint valve R25`."""
+    """Return True if an unknown word stands where the verb of an order does: `paint valve R25`."""
     before = [w for w in found.unknown if found.occasion <= w.start and w.end <= last.start]
     return bool(before) and not found.has("MEASURE", "BE_MEASURED")
 

@@ -1,4 +1,4 @@
-"""What a script has named, measured and left out so far, for what is proposed next."""
+"""Record of what a script has named, measured and left out, by which later lines are proposed."""
 
 from collections.abc import Sequence
 from contextlib import suppress
@@ -18,7 +18,7 @@ State = tuple[Memory, CheckpointInfo | None, set[int], set[int], set[int]]
 
 
 class Known:
-    """What is known by the pieces that were read. Mutable: it grows piece by piece."""
+    """Record of checkpoints and readings of the pieces so far. Mutable: each piece adds to it."""
 
     def __init__(self, understanding: Understanding, catalog: Catalog) -> None:
         self.understanding = understanding

@@ -155,7 +155,7 @@ def _is_idle_field(row: FormRow, composer: Composer) -> bool:
 
 
 def _may_explain(row: FormRow, said: str) -> bool:
-    """Whether a row may only say which checkpoint a tag is, that the script uses elsewhere."""
+    """Return True if a row may only explain a tag that the script uses elsewhere."""
     plain = len(row.cells) == 2 and row.box is None and not _FILL.search(row.place.content)
     tag = tag_of(said)
     return plain and tag is not None and count_tag(tag, row.place.source.text) > 1

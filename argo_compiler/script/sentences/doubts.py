@@ -21,7 +21,12 @@ from argo_compiler.script.sentences.words.lexer import all_words, placed_words
 from argo_compiler.script.sentences.words.lexicon import Lexicon
 from argo_compiler.script.sentences.words.loading import everywhere, pattern
 from argo_compiler.script.sentences.words.prose import either
-from argo_compiler.script.sentences.words.without_effect import TOLD, WITHOUT_EFFECT
+from argo_compiler.script.sentences.words.without_effect import (
+    TOLD,
+    WITHOUT_EFFECT,
+    parts_list,
+    without_empty,
+)
 from argo_compiler.script.sentences.words.word import VERBS, Word
 
 _OPENS = frozenset(["IF", "IF_ONLY", "UNLESS", "UNTIL"])
@@ -39,19 +44,8 @@ _SMALL = (*sorted(TOLD), "ADDITION", "SEQUENCE", "THITHER")
 _SCOPED = frozenset(
     [
         *("TIMES", "MORE", "SPEED", "LEAVING", "EVERY", "RETRY", "MOST_TIMES", "PRIORITY"),
-        *(
-            "RATE",
-            "TIME_WORD",
-            "UNIT_S",
-            "ANY_ORDER",
-            "IF_TIME",
-            "FOR",
-            "DURATION",
-            "IF_ONLY",
-            "UNLESS",
-            "UNTIL",
-            "READING",
-        ),
+        *("RATE", "TIME_WORD", "UNIT_S", "ANY_ORDER", "IF_TIME", "FOR", "DURATION", "READING"),
+        *("IF_ONLY", "UNLESS", "UNTIL"),
     ]
 )
 """what may be meant of the last item of a list, or of all"""
@@ -154,8 +148,8 @@ def _doubts(words: Sequence[Word], content: str, ordered: bool) -> Iterator[tupl
             case "THITHER" if after[:2] == ["JOINT", "BACK"]:
                 yield i, _AND_BACK
             case "SEQUENCE" if _is_within_list(words, i):
-                clause = list(takewhile(lambda type_: type_ not in VERBS, after))
-                parted = "ANY_ORDER" in clause and "MEASURE" in (w.type for w in words[:i])
+                clause = takewhile(lambda type_: type_ not in VERBS, after)
+                parted = parts_list(words, i, without_empty(words[:i]))
                 if _SCOPED.intersection(clause) and not parted:
                     yield i, _LAST_OR_ALL
             case "JOINT" if _is(shown, "summing") and _names_subject(words, i):
@@ -176,7 +170,7 @@ def _opens_condition(words: Sequence[Word], i: int) -> bool:
 
 def _is_within_list(words: Sequence[Word], i: int) -> bool:
     """Return True for a word between two checkpoints of a list: `#1 and then #4`."""
-    before = [w.type for w in words[:i] if w.type not in WITHOUT_EFFECT]
+    before = [word.type for word in without_empty(words[:i])]
     after = next((w.type for w in words[i + 1 :] if w.type not in WITHOUT_EFFECT), "")
     joined = before[-1:] == ["JOINT"] and bool({*before} & {"MEASURE", "BE_MEASURED"})
     return joined and after in _NAMED | {"ALL", "EVERY"}
@@ -310,7 +304,7 @@ def _placing(lexicon: Lexicon) -> re.Pattern[str]:
     """What such words look like, so that few sentences are looked at once more."""
     types = (*Placing, "FIRST")
     phrases = [phrase for p in types for phrase in lexicon.phrases.get((p, None), ())]
-    return re.compile(rf"\b(?:{either('|'.join(phrases))}|first\W*$|(?<=^)first)\b", re.IGNORECASE)
+    return re.compile(rf"\b(?:{either('|'.join(phrases))}|first\W*$|^first)\b", re.IGNORECASE)
 
 
 def _is_other_way(case: Case | None) -> bool:

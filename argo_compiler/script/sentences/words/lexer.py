@@ -14,7 +14,7 @@ from argo_compiler.script.sentences.words.lexicon import Lexicon, folded
 from argo_compiler.script.sentences.words.merging import merged, negated
 from argo_compiler.script.sentences.words.numbers import Figure, compose, read_figure, split_number
 from argo_compiler.script.sentences.words.unknown import UnknownError, UnknownFigure, unknown_text
-from argo_compiler.script.sentences.words.without_effect import WITHOUT_EFFECT, with_effect
+from argo_compiler.script.sentences.words.without_effect import with_effect, without_empty
 from argo_compiler.script.sentences.words.word import VERBS, Word
 from argo_compiler.script.sentences.words.word_order import arranged
 
@@ -104,7 +104,7 @@ def placed_words(text: str, lexicon: Lexicon) -> list[Word]:
     """Return the words of a sentence by which it has a place: `at the end`, `there`, and `first` at
     its very end, or at its beginning if nothing in it comes `then`."""
     whole = all_words(text, lexicon)
-    found = [word for word in whole if word.type not in WITHOUT_EFFECT]
+    found = without_empty(whole)
     ends = found[-1:] if found and found[-1].type == "ORDINAL" and found[-1].value == 1 else []
     return [word for word in found if word.type in _PLACED] + ends + _opening(whole, found)
 
@@ -178,7 +178,7 @@ def _numbered(piece: re.Match[str], lexicon: Lexicon) -> list[Word]:
 
 def _is_name(before: list[Word]) -> bool:
     """Whether what stands in quotation marks behind these words is a name, whatever it says."""
-    before = [word for word in before[-4:] if word.type not in WITHOUT_EFFECT]
+    before = without_empty(before[-4:])
     if not before:
         return False
     listed = len(before) > 1 and before[-2].type == "STRING"

@@ -105,11 +105,16 @@ def with_effect(words: list[Word]) -> list[Word]:
     for i, word in enumerate(words):
         if word.type not in WITHOUT_EFFECT:
             found.append(word)
-        elif word.type == "SEQUENCE" and _parts_list(words, i, found):
+        elif word.type == "SEQUENCE" and parts_list(words, i, found):
             found.append(replace(word, type="MEASURE"))
         elif not places_of(words, i, found) & PLACES[word.type]:
             found.append(replace(word, type=MISPLACED, value=word.type))
     return found
+
+
+def without_empty(words: Sequence[Word]) -> list[Word]:
+    """Return the words of all other classes, in their order."""
+    return [word for word in words if word.type not in WITHOUT_EFFECT]
 
 
 def places_of(words: Sequence[Word], i: int, before: Sequence[Word]) -> WordPlace:
@@ -151,13 +156,13 @@ def places_of(words: Sequence[Word], i: int, before: Sequence[Word]) -> WordPlac
     return found
 
 
-def _parts_list(words: Sequence[Word], i: int, before: Sequence[Word]) -> bool:
+def parts_list(words: Sequence[Word], i: int, before: Sequence[Word]) -> bool:
     """Return True for `then` where an order begins: `#14, then #1 and #4 in any order`."""
     listed = before[-1:] and before[-1].type == "JOINT"
     verbs = [word.type for word in before if word.type in VERBS]
     if not listed or verbs[-1:] != ["MEASURE"] or _in_condition(before):
         return False
-    behind = [word.type for word in words[i + 1 :] if word.type not in WITHOUT_EFFECT]
+    behind = [word.type for word in without_empty(words[i + 1 :])]
     clause = list(takewhile(lambda type_: type_ not in VERBS, behind))
     return clause[:1] != [] and clause[0] in _NOUNS | {"ALL", "EVERY"} and "ANY_ORDER" in clause
 

@@ -5,6 +5,7 @@ from bisect import bisect_right
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from typing import NoReturn, TypeVar
 from unicodedata import normalize
 
@@ -130,6 +131,13 @@ class ScriptText:
         """The greatest of the offsets in the source; -1 for an empty text."""
         offsets = self.offsets
         return -1 if not offsets else offsets[-1] if type(offsets) is range else max(offsets)
+
+    @property
+    def original(self) -> str:
+        """The text as it stands in the source, if it is a part of one line of it."""
+        part = self.source.text[self.first : self.last + 1]
+        whole = "\n" not in part and all(a <= b for a, b in pairwise(self.offsets))
+        return part if whole else self.content
 
     @property
     def is_question(self) -> bool:

@@ -46,9 +46,6 @@ _UNREAD = frozenset(
 BY_ASSISTANT = "suggested by an assistant"
 """reason of a line that an assistant has suggested sentences for"""
 
-_UNCLEAR = "script.ambiguous-"
-"""how codes of errors of a piece begin that has more than one meaning"""
-
 
 @dataclass(frozen=True)
 class _Reading:
@@ -98,9 +95,9 @@ def import_script(
         reading = read(said)
     errors = _errors_by_piece(reading)
     unread = {at for at, error in errors.items() if error.code in _UNREAD and at not in said}
-    unclear = {at for at, e in errors.items() if e.code.startswith(_UNCLEAR) and at not in said}
+    unclear = {at for at in errors if at not in said}
     proposals = propose(reading.script, unread, unclear - unread, catalog, start_area)
-    proposed = {at: p.sentences for at, p in proposals.items() if _reads(p)}
+    proposed = {at: p.sentences for at, p in proposals.items() if not p.is_open}
     suggested = _match(tuple(suggestions), reading.script.pieces)
     assisted = _assisted(reading.script, unread - proposed.keys(), suggested, catalog)
     refused: dict[int, Diagnostic] = {}
@@ -146,11 +143,6 @@ def _assisted(
     sentences = {at: one.sentences for at, one in suggested.items() if at in open_pieces}
     found = suggested_proposals(script, sentences, texts, catalog)
     return {at: proposal for at, proposal in found.items() if proposal.sentences}
-
-
-def _reads(proposal: Proposal) -> bool:
-    """Return True if a proposal states what replaces its piece, or that nothing does."""
-    return bool(proposal.sentences or proposal.aside or proposal.certain)
 
 
 def _read(

@@ -68,6 +68,8 @@ _LONGEST_TITLE = 14
 _LONGEST_OCCASION = 10
 """words"""
 _BRACKETS = re.compile(r"\s*\([^()]*\)")
+_PROTOCOL = r"(?:protocol|protokoll)"
+"""the last word of a title that is numbered, in all languages"""
 _FIGURES = re.compile(r"\d\s*[,;]|[,;]\s*\S{0,6}\s?\d")
 """of coordinates or of a list"""
 _DASH = re.compile(r"\s-{1,2}\s")
@@ -160,15 +162,36 @@ class Asides:
     def _is_headline(self, text: ScriptText) -> bool:
         """Return True if a text that names a checkpoint or a floor is only a headline.
 
-        Example: `Leak test at pressure gauge 2`. It has no verb, and nothing that leaves out or
-        takes back.
+        Example: `Leak test at pressure gauge 2`. It has no verb, nothing that leaves out or takes
+        back, and the checkpoint stands behind a preposition.
         """
         content = text.content
         if content.endswith(".") or not _COUNTED.isdisjoint(self.understanding.types(text)):
             return False
+        if self.names_checkpoint(text) and not self._of_checkpoint(text):
+            return False
         cues = self.prose.cues
         spoken = ("forbidding", "past", "leave_out", "stating", "correction")
         return all(cue_pattern(name, cues[name]).search(content) is None for name in spoken)
+
+    def _of_checkpoint(self, text: ScriptText) -> bool:
+        """Return True for `Leak test at pressure gauge 2` and `Inspection protocol #47`."""
+        content = text.content
+        before = either(self.prose.headline_preposition)
+        if re.search(rf"^[^,:|]*\b{_PROTOCOL}\s*#?\s*\d+$", content, re.IGNORECASE):
+            return True
+        of = re.search(rf"^[^,:|]*\w (?={before} [^,:|]+$)", content, re.IGNORECASE)
+        return of is not None and not self.names_checkpoint(text[: of.end()])
+
+    def names_checkpoint(self, text: ScriptText) -> bool:
+        """Return True if a text names a checkpoint by its number or name."""
+        types = self.understanding.types(text)
+        words = self.understanding.words(text)
+        return (
+            any(a == "KIND" and b in _LABELS for a, b in pairwise(types))
+            or ("HASH", "NUMBER") in pairwise(types)
+            or any(w.type == "IDENT" and self._is_name(text, w) for w in words)
+        )
 
     def names_tasks(self, text: ScriptText) -> bool:
         """Return True if a text names a checkpoint, a floor, an area, a time or a count."""
@@ -176,11 +199,7 @@ class Asides:
         if self.is_explicit_title(text):
             return False
         return (
-            any(a == "KIND" and b in _LABELS for a, b in pairwise(types))
-            or ("HASH", "NUMBER") in pairwise(types)
-            or any(
-                w.type == "IDENT" and self._is_name(text, w) for w in self.understanding.words(text)
-            )
+            self.names_checkpoint(text)
             or not _COUNTED.isdisjoint(types)
             or any(pair in _FLOORS for pair in pairwise(types))
         )

@@ -99,6 +99,8 @@ _CUTS = {
     ",": re.compile(","),
     "  ": re.compile(r"\s{2,}|\t"),
 }
+_STEP_MARK = re.compile(r"^(?:[0-9]{1,3}|[a-z])[.)]\s+")
+"""the number of a step, behind which many blanks make no cells"""
 _SENTENCE = re.compile(r"[a-zäöüß)][.!?]\s{2,}[A-ZÄÖÜ]")
 _ENDED = re.compile(r"[!?]$|\w{4,}\.$")
 """at the end of a sentence, rather than of `n. a.`"""
@@ -352,7 +354,7 @@ def _groups(source: Source, taken: Mapping[int, ScriptText]) -> Iterator[tuple[l
 
 
 def _cut_of(line: str) -> str:
-    inner = line.strip()
+    inner = _STEP_MARK.sub("", line.strip())
     if not inner or len(line) > _LONGEST or _SENTENCE.search(inner):
         return ""
     if "|" in inner.strip("|"):

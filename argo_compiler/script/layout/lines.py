@@ -2,7 +2,8 @@
 sentences in them end: not behind `approx.`, in `Nr. R25` or in `2. Stock`."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -56,9 +57,10 @@ _RULE_SIGNS = ("-", "=", "_", "~", "*", "'", "+")
 _MAIL = re.compile(r"\s*(?:>\s?)+")
 """before the lines of a letter that is quoted in another one"""
 _STAMP = re.compile(
-    r"\s*(?:\[[0-9]{1,2}[:.][0-9]{2}(?::[0-9]{2})?(?:,?\s*[0-9./-]+)?\]|[0-9]{1,2}:[0-9]{2}(?=\s))"
-    r"\s*[^\W\d_][\w .-]{0,30}:\s+"
+    r"\s*(?:\[(?:[0-9./-]+,?\s*)?[0-9]{1,2}[:.][0-9]{2}(?::[0-9]{2})?(?:,?\s*[0-9./-]+)?\]"
+    r"|[0-9]{1,2}:[0-9]{2}(?=\s))\s*[^\W\d_][\w .-]{0,30}:\s+"
 )
+_SPEAKER = re.compile(r"\s*([^\W\d_]\w{1,20}):\s+(?=\S)")
 """before a line of a chat: `[07:52, 14/03] Jonas: `"""
 _RUN_IN = re.compile(r"(?:^|[,;.!])\s+([0-9]{1,3})[.)]\s+(?=[^\W\d_])")
 _LABEL = re.compile(r"\s*(?:[A-Za-z]?-?[0-9]|[A-Z](?!\w))")
@@ -72,6 +74,9 @@ _BEHIND_ORDINAL = (
 )
 """what stands behind an ordinal, where no line cuts it: `im 1. und 2. Stock`"""
 _FLOOR_ONLY = r"(?:<behind_ordinals>)\W*"
+_INITIAL = re.compile(r"(?:^|[:.(]\s*|\b(?:by|von)\s+|\b[^\W\d_a-z]\w+\s+)[^\W\d_a-z]\.$")
+"""`Operator: H. Ruiz`, `prepared by K. Haugen`, `M. Dos Santos`, in all languages"""
+_FAMILY_NAME = re.compile(r"\s+(?:[^\W\d_a-z]\.|[^\W\d_a-z][^\W\d_]+)")
 _NEXT_SIGN = re.compile(r"\s*(\S)")
 
 
@@ -100,11 +105,17 @@ def lines_of(texts: Sequence[ScriptText]) -> Iterator[ScriptLine]:
         yield above
 
 
-def stamped(source: Source) -> dict[int, ScriptText]:
-    """Return the lines of a chat without the time and the name before each, by their numbers."""
+def stamped(source: Source, known: Collection[str]) -> dict[int, ScriptText]:
+    """Return the lines of a chat without the time and the name before each, by their numbers.
+    `known` are words that are no names."""
     found: dict[int, ScriptText] = {}
+    names = Counter(name[1] for line in source.lines if (name := _SPEAKER.match(line)))
+    names = Counter({name: n for name, n in names.items() if name.lower() not in known})
+    talk = len(names) > 1 and max(names.values()) > 1
     for number, line in enumerate(source.lines, start=1):
         stamp = _STAMP.match(line)
+        if stamp is None and talk and (name := _SPEAKER.match(line)) and name[1] in names:
+            stamp = name
         if stamp is not None:
             text = source.line_text(number)[stamp.end() :]
             mark = ScriptText("- ", [text.first] * 2, source) if text.content else text
@@ -209,6 +220,8 @@ def sentence_bounds(content: str) -> list[tuple[int, int]]:
 def _goes_on_behind(content: str, stop: int) -> bool:
     """Whether a full stop belongs to `Nr. R25` or `2. Stock`."""
     if pattern(_NUMBERED).search(content, max(0, stop - 5), stop) and _LABEL.match(content, stop):
+        return True
+    if _INITIAL.search(content, max(0, stop - 30), stop) and _FAMILY_NAME.match(content, stop):
         return True
     ordinal = _ORDINAL.search(content, max(0, stop - 4), stop)
     return ordinal is not None and pattern(_BEHIND_ORDINAL).match(content, stop) is not None

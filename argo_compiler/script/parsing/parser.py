@@ -29,7 +29,7 @@ from argo_compiler.script.sentences.tree.orders import Measure, Sentence, Start
 from argo_compiler.script.sentences.tree.script import Said, ScriptStep, Unread
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.language import Language
-from argo_compiler.script.sentences.words.lexicon import Lexicon
+from argo_compiler.script.sentences.words.lexicon import Lexicon, expand
 from argo_compiler.script.sentences.words.prose import cue_pattern
 from argo_compiler.script.sentences.words.unknown import UnknownError, UnknownFigure
 
@@ -141,7 +141,7 @@ class _Parser:
         self.forms = sheet.rows
         rows = {number: _as_row(source.line_text(number)) for number in self.forms}
         words = _vocabulary(self.understanding, source.text)
-        read = {**stamped(source), **taken, **sheet.texts, **rows}
+        read = {**stamped(source, self._not_names()), **taken, **sheet.texts, **rows}
         healed = heal(source, words, read)
         unreadable = (source.line_text(number).strip() for number in healed.unreadable)
         self.pieces += [Piece(text) for text in unreadable]
@@ -171,6 +171,12 @@ class _Parser:
         )
 
     # ---- lines
+
+    def _not_names(self) -> frozenset[str]:
+        """Return words that are no names of speakers: those of sentences, fields and sheets."""
+        prose = self.understanding.language.prose
+        labels = (*prose.roles.values(), prose.form["labels"], *prose.labels.values(), prose.remark)
+        return self.understanding.known | {word for text in labels for word in expand(text)}
 
     def _asides_of_document(self) -> dict[int, ScriptText]:
         """Record the lines of a document that its reader tells to have no effect; return what is

@@ -1,6 +1,6 @@
 """Reads the sentences of a script one after the other: which say what, and which have no effect."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from argo_compiler.script.documents.source import Diagnostics, ScriptText, shortened
 from argo_compiler.script.layout.asides import Asides, ask_of_remark
@@ -47,12 +47,14 @@ class SentenceReader:
     """whether anything but a title has been read"""
     listed: str = ""
     """`Pressure gauges`, if that is what was read last"""
+    days: dict[str, int] = field(default_factory=dict)
+    """the days that sentences were of so far, each with its line"""
     noted: tuple[ScriptText, str] | None = None
     """the text last taken to be without effect, and what it is taken for"""
 
     def note(self, text: ScriptText, what: str) -> None:
         """Says that a text has no effect."""
-        message = f"`{shortened(text.content)}` is taken for {what} and has no effect"
+        message = f"`{shortened(text.original)}` is taken for {what} and has no effect"
         self.diagnostics.warning("no-effect", message, text.span())
         self.noted = text, what
 
@@ -84,7 +86,7 @@ class SentenceReader:
             message = f"the sentence has {length} characters; at most {MAX_SENTENCE} are read"
             self.diagnostics.error("too-long", message, text.span(), "write several sentences")
             return [Unread(span=text.span())]
-        text = self.understanding.figures(text)
+        text = self.understanding.figures(self.understanding.rewritten(text))
         if not self.understanding.types(text):
             self.note(text, "a remark")
             return []
@@ -202,7 +204,7 @@ class SentenceReader:
     def _node(self, text: ScriptText, reading: Reading) -> Said:
         self.begun = True
         lexicon = self.understanding.language.lexicon
-        ask_of_words(text, lexicon, self.diagnostics, self.ordered)
+        ask_of_words(text, lexicon, self.diagnostics, self.ordered, self.days)
         node = self.understanding.node(text, reading)
         if isinstance(node, Sentence):
             placed = placed_in(text, node, lexicon)

@@ -5,46 +5,27 @@ sentence uses, the clause stays open, and what it may become are choices.
 """
 
 import re
-from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
-from argo_compiler.base.catalog import CheckpointInfo, CheckpointKind
 from argo_compiler.script.documents.source import RefusedError, ScriptText
 from argo_compiler.script.proposals.evidence import evidence
 from argo_compiler.script.proposals.frames import Sentences, sentences_of
 from argo_compiler.script.proposals.known import Known
 from argo_compiler.script.proposals.mentions import (
-    Mention,
     Mentions,
-    checkpoint_words,
     mentions_in,
 )
 from argo_compiler.script.proposals.paraphrasing import reads, rephrased, sentence
 from argo_compiler.script.sentences.tree.nouns import (
     Nouns,
-    Pronoun,
-    Quantity,
 )
-from argo_compiler.script.sentences.tree.places import AreaLocation
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.prose import cue_pattern
 
-_SIGNALS = (
-    *("forbidding", "past", "question", "correction", "leave_out", "IF", "IF_ONLY", "UNLESS"),
-    *("ELSE", "UNTIL", "NOT", "EXCEPT", "pronoun", "STATE", "MORE", "again", "TIMES", "GREATER"),
-    *("INCLUDED", "RECHARGE", "in_place_of"),
-)
-"""kinds of mentions without which a text is looked at for choices"""
-_KINDS: dict[Quantity | None, CheckpointKind] = {
-    Quantity.PRESSURE: CheckpointKind.PRESSURE_GAUGE,
-    Quantity.LEVEL: CheckpointKind.LIQUID_LEVEL_GAUGE,
-    Quantity.POSITION: CheckpointKind.VALVE,
-}
-"""the kind of checkpoint that shows a quantity"""
-_EVENTS = (("EVENT",), ("BATTERY", "LESS", "QUANTITY"), ("BATTERY", "LESS", "NUMBER"))
-"""what stands before a colon, and what is to be done then behind it"""
-_DOCKING = ("home", "HOME", "DOCK", "END", "place")
+_EVENTS = ("EVENT", "BATTERY", "FAILS", "OCCURS")
+"""what a text mentions before a colon, if what is to be done then stands behind it"""
+_MOST_EVENT_WORDS = 7
 _COMMA = re.compile(r"\s*[,;:]\s+|\s+-\s+")
 _PLAIN = frozenset(
     [
@@ -55,13 +36,22 @@ _PLAIN = frozenset(
 """words that join others, of which none changes what a whole clause means"""
 _TOWARDS = frozenset(["TO", "IN", "AT", "ON", "FOR"])
 """words that join a place"""
-_UNSURE = ("pronoun", "last", "first", "later", "again", "past", "over", "limit", "LESS", "WITHIN")
+_UNSURE = (
+    "measuring",
+    "pronoun",
+    "last",
+    "first",
+    "later",
+    "again",
+    "past",
+    "over",
+    "limit",
+    "LESS",
+    "WITHIN",
+)
 """mentions beside which a proposal has to be confirmed"""
 _LIKE_CHECKS = re.compile(r"(?:Check|Order:|Maximum|Start|Return|End)")
-_ARTICLE = re.compile(r"\b(?:the|der|die|das)\s+$", re.IGNORECASE)
 _CUT_FIGURES = re.compile(r"(?<=\d)[ \t]+(?=\d)")
-_MOST_CHOSEN = 10
-"""checkpoints of an open text that may be chosen"""
 _MOST_CLAUSES = 14
 
 
@@ -82,6 +72,11 @@ class Proposal:
     certain: bool = False
     """whether every word of it is used, so that nobody has to confirm it"""
 
+    @property
+    def is_open(self) -> bool:
+        """Return True if nothing is proposed."""
+        return not (self.sentences or self.aside or self.certain)
+
 
 class Composer:
     """Proposes sentences for texts, one after the other. Mutable: a pronoun means what was measured
@@ -95,12 +90,15 @@ class Composer:
 
     def propose(self, text: ScriptText) -> Proposal:
         """Return what a sentence or a line proposes."""
+        text = self.understanding.rewritten(text)
         found = mentions_in(text, self.understanding)
         reason = evidence(text, found, self.understanding.language)
         if reason:
             return Proposal(aside=reason)
         if text.is_question and not found.has("MEASURE", "BE_MEASURED"):
-            return Proposal(choices=self._choices(text, found))  # `R9 as well?`
+            return Proposal()  # `R9 as well?`
+        if said := self.known.disagreement(found.of("checkpoints")):
+            return Proposal(doubt=said)
         before = self.known.state()
         made = self._composed(text, found)
         if made is None or made.unused:
@@ -112,11 +110,7 @@ class Composer:
             made = other or made
         if made is None and found.mentions:
             made = self._of_clauses(text, found)
-        return made if made is not None else Proposal(choices=self._choices(text, found))
-
-    def ask(self, text: ScriptText) -> Proposal:
-        """Return only the choices of a text."""
-        return Proposal(choices=self._choices(text, mentions_in(text, self.understanding)))
+        return made if made is not None else Proposal()
 
     def _joined(self, text: ScriptText) -> Proposal | None:
         """Return what a text is with its figures put together, `#1 3` as `#13`, if then number and
@@ -139,7 +133,7 @@ class Composer:
         """Return what a text is in words that the grammar, or a frame, takes."""
         if self._changes(found):
             return None
-        said = rephrased(self._within(self._on_event(self._alike(text))), self.understanding)
+        said = rephrased(self.within(self._on_event(self._alike(text))), self.understanding)
         if said.text.content == text.content:
             return None
         if reads(said.text, self.understanding):
@@ -162,8 +156,9 @@ class Composer:
     def _on_event(self, text: ScriptText) -> ScriptText:
         """Return `Gas alarm: go home` as a condition."""
         head, colon, rest = text.content.partition(":")
-        types = self.understanding.types(text[: len(head)])
-        if not colon or types not in _EVENTS or not rest.strip():
+        found = mentions_in(text[: len(head)], self.understanding)
+        short = len(head.split()) <= _MOST_EVENT_WORDS
+        if not (colon and rest.strip() and short and found.has(*_EVENTS)) or found.unknown:
             return text
         said = self.understanding.language.prose.say["event"].format(head.strip(), rest.strip())
         return text.replaced(said)
@@ -232,53 +227,7 @@ class Composer:
             i = k
         return Proposal(tuple(sentences), tuple(unused)) if sentences else None
 
-    def _choices(self, text: ScriptText, found: Mentions) -> tuple[Sentences, ...]:
-        """Return what an open text may become: each of its readings, what it would be without what
-        is not clear, that its checkpoints are read or not read, and nothing."""
-        choices: list[Sentences] = list(self._readings(text, found))
-        for bare in (found.without(*_SIGNALS), found.without(*_SIGNALS, *_DOCKING)):
-            said = sentences_of(bare, self.known) if bare.mentions else None
-            if said is not None:
-                choices.append(said)
-        named: dict[int, CheckpointInfo] = {}
-        for mention in found.of("checkpoints"):
-            with suppress(RefusedError):
-                named |= {c.id: c for c in self.known.checkpoints([mention])}
-                continue
-            choices += [(f"Check checkpoint {c.id}.",) for c in self.known.alike(mention)]
-        if 0 < len(named) <= _MOST_CHOSEN:
-            words = checkpoint_words(list(named.values()))
-            choices += [(f"Check {words}.",), (f"Do not check {words}.",)]
-        for mention in found.of("place"):
-            if isinstance(mention.value, AreaLocation) and not named:
-                area = mention.value.area
-                choices += [(f"Start in starting area {area}.",)]
-                choices += [(f"Return to the docking station in starting area {area}.",)]
-        return (*dict.fromkeys(choices), ())
-
-    def _readings(self, text: ScriptText, found: Mentions) -> Iterator[Sentences]:
-        """Yield the text with each checkpoint that its pronoun may be, if it makes sense then."""
-        pronouns = [m for m in found.of("pronoun") if _is_single(m)]
-        for checkpoint in {c.id: c for c in self._candidates(pronouns)}.values():
-            said = text
-            for mention in reversed(pronouns):
-                article = _ARTICLE.search(text.content[: mention.start])
-                start = mention.start if article is None else article.start()
-                said = said.replace(start, mention.end, f"checkpoint {checkpoint.id}")
-            said = rephrased(self._within(said), self.understanding).text
-            if pronouns and reads(said, self.understanding):
-                yield (sentence(said),)
-
-    def _candidates(self, pronouns: Sequence[Mention]) -> Sequence[CheckpointInfo]:
-        """Return what a pronoun may be: `the pressure` is that of any gauge that was read."""
-        nouns = pronouns[0].value if pronouns else None
-        first = nouns.nouns[0] if isinstance(nouns, Nouns) else None
-        kind = _KINDS.get(first.quantity) if isinstance(first, Pronoun) else None
-        if kind is None:
-            return self.known.memory.last
-        return [c for c in self.known.memory.so_far.values() if c.kind is kind]
-
-    def _within(self, text: ScriptText) -> ScriptText:
+    def within(self, text: ScriptText) -> ScriptText:
         """Return a text with `too high` as a limit of the checkpoint that is named before it."""
         prose = self.understanding.language.prose
         for name in ("too_high", "too_low"):
@@ -301,9 +250,3 @@ class Composer:
         if begins is None or not found.unknown or found.occasion:
             return False
         return all(mention.start > found.unknown[0].start for mention in found.mentions)
-
-
-def _is_single(mention: Mention) -> bool:
-    """Return True for a pronoun that means one checkpoint: `it`, `the level`."""
-    nouns = mention.value.nouns if isinstance(mention.value, Nouns) else ()
-    return all(isinstance(noun, Pronoun) and not noun.every for noun in nouns)

@@ -20,6 +20,10 @@ _LEAD_IN = re.compile(r"[^,]{3,60},\s+")
 _MOST_WORDS = 6
 """of a heading in capitals"""
 _BLANK_LABELS = re.compile(r"(?:[^\W\d][\w .-]{0,20}:[\s_.]*)+")
+_LABEL = re.compile(r"[^\W\d][\w ./'-]{1,40}?\s*:\s+(?=\S)")
+_MOST_OF_VALUE = 6
+"""words of the value of a field"""
+_ENDS = re.compile(r"[.!?;]\s*$")
 _FEW_WORDS = 3
 _FOR_PEOPLE = OF_FORMS | {
     "IF",
@@ -122,6 +126,14 @@ def _idle_fields(text: ScriptText, found: Mentions, language: Language) -> bool:
     return idle and not found.has("checkpoints", "place")
 
 
+def _has_no_field(text: ScriptText, found: Mentions, _: Language) -> bool:
+    """`Status: OPEN`: a label that no field has, and a value, which name nothing of a mission."""
+    label = _LABEL.match(text.content)
+    value = text.content[label.end() :] if label is not None else ""
+    short = 0 < len(value.split()) <= _MOST_OF_VALUE and not _ENDS.search(value)
+    return short and found.only(*OF_FORMS)
+
+
 def _is_none(text: ScriptText, found: Mentions, language: Language) -> bool:
     """`None open`"""
     nothing = cue_pattern("nothing", language.prose.form["nothing"]).match(text.content)
@@ -149,6 +161,7 @@ _OF_LINES: tuple[tuple[str, _Test], ...] = (
     ("a question that names nothing of the mission", _wonders),
     ("a field that a person fills in", _labels),
     ("a field that a mission does not have", _idle_fields),
+    ("a field that a mission does not have", _has_no_field),
     ("an entry that there is none", _is_none),
     ("a statement of what is not needed", _spares),
 )

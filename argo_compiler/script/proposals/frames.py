@@ -130,7 +130,7 @@ def _later(found: Mentions, known: Known) -> Sentences | None:
         return None
     if not found.only("DURATION", "later", "checkpoints", "MEASURE", "again", "MORE"):
         return None
-    text = _length(lengths[0].value)
+    text = length_words(lengths[0].value)
     checked = _check(found.without("DURATION", "later"), known)
     if text is None or checked is None or lengths[0].start > named[0].start:
         return None
@@ -145,7 +145,7 @@ def _spaced(found: Mentions, known: Known) -> Sentences | None:
         return None
     allowed = ("DURATION", "NUMBER", "TIMES", "checkpoints", "MEASURE", "pronoun", *spacing)
     count = counts[0].value
-    text = _length(lengths[0].value)
+    text = length_words(lengths[0].value)
     if not found.only(*allowed) or not isinstance(count, Figure) or text is None:
         return None
     checked = _check(found.without("DURATION", "NUMBER", "TIMES", "pronoun", *spacing), known)
@@ -160,6 +160,7 @@ def _check(found: Mentions, known: Known) -> Sentences | None:
     allowed = (
         "MEASURE",
         "BE_MEASURED",
+        "measuring",
         "TIMES",
         "last",
         "first",
@@ -222,7 +223,7 @@ def _placed(
         return None
     if len(floors) == 1 and len(named) == 1 and isinstance(named[0].value, Nouns):
         nouns = named[0].value
-        if all(map(_is_of_all, nouns.nouns)):
+        if all(map(_has_no_floor, nouns.nouns)):
             resolver = known.resolver()
             return resolver.all(resolver.on(floor_names(floors[0]), nouns))
     checkpoints = known.checkpoints(named)
@@ -234,11 +235,9 @@ def _placed(
     return checkpoints
 
 
-def _is_of_all(noun: Noun) -> bool:
-    """Return True for `all gauges`, and `valves` behind them, if no floor is named."""
-    if isinstance(noun, AllOf):
-        return not noun.floors
-    return isinstance(noun, TheOne) and noun.plural and not noun.floors
+def _has_no_floor(noun: Noun) -> bool:
+    """Return True for `all gauges` or `the gauge`, if no floor is named."""
+    return isinstance(noun, AllOf | TheOne) and not noun.floors
 
 
 def floor_names(place: Mention) -> list[FloorName]:
@@ -258,7 +257,7 @@ def _duration(found: Mentions, _: Known) -> Sentences | None:
         return None
     if len(lengths) != 1 or not found.only(*allowed):
         return None
-    text = _length(lengths[0].value)
+    text = length_words(lengths[0].value)
     return None if text is None else (f"Maximum duration: {text}.",)
 
 
@@ -266,7 +265,7 @@ def _start_and_end(found: Mentions, _: Known) -> Sentences | None:
     """`start in area 1`, `from area 2, back to its dock`"""
     allowed = ("place", "start", "home", "START", "FROM", "HOME", "DOCK", "END", "last", "GO")
     if found.has("EXACTLY"):  # `minute 0 = start from area 1`
-        zero = [m for m in found.of("DURATION") if _length(m.value) is None]
+        zero = [m for m in found.of("DURATION") if length_words(m.value) is None]
         found = found.without("EXACTLY", "DURATION") if len(zero) == 1 else found
     if found.has("DO_FOLLOWING", "THIS_ORDER"):  # over a list
         found = found.without("DO_FOLLOWING", "MEASURE", "KIND")
@@ -310,7 +309,7 @@ def _order(found: Mentions, _: Known) -> Sentences | None:
 def _wait(found: Mentions, _: Known) -> Sentences | None:
     lengths = found.of("DURATION")
     if len(lengths) == 1 and found.has("WAIT", "PAUSE") and found.only("WAIT", "PAUSE", "DURATION"):
-        text = _length(lengths[0].value)
+        text = length_words(lengths[0].value)
         return None if text is None else (f"Wait for {text}.",)
     return None
 
@@ -329,7 +328,7 @@ def _words_between(found: Mentions, named: Sequence[Mention]) -> bool:
 def _verb_before(found: Mentions, last: Mention) -> bool:
     """Return True if an unknown word stands where the verb of an order does: `paint valve R25`."""
     before = [w for w in found.unknown if found.occasion <= w.start and w.end <= last.start]
-    return bool(before) and not found.has("MEASURE", "BE_MEASURED")
+    return bool(before) and not found.has("MEASURE", "BE_MEASURED", "measuring")
 
 
 def _area_of(mention: Mention) -> int | None:
@@ -341,7 +340,8 @@ def _area_of(mention: Mention) -> int | None:
     return None
 
 
-def _length(value: object) -> str | None:
+def length_words(value: object) -> str | None:
+    """Return a time in words of the mission language; None if it is none that can be waited."""
     assert isinstance(value, Length)
     if value.other is not None or value.seconds <= 0:
         return None

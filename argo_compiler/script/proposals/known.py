@@ -1,19 +1,22 @@
 """Record of what a script has named, measured and left out, by which later lines are proposed."""
 
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 from copy import copy
 from dataclasses import replace
+from itertools import pairwise
 
 from argo_compiler.base.catalog import Catalog, CheckpointInfo
 from argo_compiler.script.documents.source import Diagnostics, RefusedError
 from argo_compiler.script.proposals.mentions import Mention
 from argo_compiler.script.resolve.lookup import Lookup, agrees
 from argo_compiler.script.resolve.nouns import Memory, NounResolver
-from argo_compiler.script.sentences.tree.nouns import Labelled, Nouns
+from argo_compiler.script.sentences.tree.nouns import Kind, Labelled, Nouns
 from argo_compiler.script.sentences.tree.places import FloorName
 from argo_compiler.script.sentences.understanding import Understanding
 
+_SIDE_BY_SIDE = 3
+"""characters between number and name of one checkpoint: `#8 - pressure gauge 5`"""
 State = tuple[Memory, CheckpointInfo | None, set[int], set[int], set[int]]
 
 
@@ -47,6 +50,15 @@ class Known:
         """Forget what was measured and left out since a state."""
         self.memory, self.last_named, self.excepted, self.deleted, self.spared = state
 
+    @contextmanager
+    def unchanged(self) -> Iterator[None]:
+        """Forget at the end what was measured and left out since the beginning."""
+        before = self.state()
+        try:
+            yield
+        finally:
+            self.reset(before)
+
     def measured(self, checkpoints: Sequence[CheckpointInfo]) -> None:
         """Remember what was measured, as an earlier line says."""
         self.memory.measured(checkpoints)
@@ -66,6 +78,23 @@ class Known:
             self.last_named = [*found, *excepted][-1] if isinstance(last, Labelled) else None
         return found
 
+    def disagreement(self, mentions: Sequence[Mention]) -> str:
+        """Return how number and name differ that stand side by side: `#10 valve R7`; empty if none
+        do."""
+        for first, second in pairwise(mentions):
+            by_number = [_is_number(first), _is_number(second)]
+            if second.start - first.end > _SIDE_BY_SIDE or by_number[0] == by_number[1]:
+                continue
+            with suppress(RefusedError):
+                a, b = (self.checkpoints([mention]) for mention in (first, second))
+                if len(a) == len(b) == 1 and a != b:
+                    one, other = (a[0], b[0]) if by_number[0] else (b[0], a[0])
+                    return (
+                        f"checkpoint #{one.id} is {one.name}, and {other.name} is checkpoint "
+                        f"#{other.id}"
+                    )
+        return ""
+
     def alike(self, mention: Mention) -> list[CheckpointInfo]:
         """Return the checkpoints that unclear words may stand for: `gauge 8`, by name and by
         number; `R40 or R9`."""
@@ -76,6 +105,10 @@ class Known:
             with suppress(RefusedError):
                 return self.resolver().each(nouns)
         noun = nouns.nouns[0] if len(nouns.nouns) == 1 else None
+        if isinstance(noun, Labelled) and noun.also is not None:  # `checkpoint #7: gauge 7`
+            apart = replace(nouns, nouns=(replace(noun, also=None), noun.also))
+            with suppress(RefusedError):
+                return self.resolver().each(apart)
         if not isinstance(noun, Labelled) or noun.kind is None:
             return []
         return [
@@ -94,3 +127,11 @@ class Known:
         diagnostics = Diagnostics(self.understanding.diagnostics.source)
         lookup = Lookup(self.catalog, diagnostics, None, None)
         return NounResolver(lookup, diagnostics, self.memory)
+
+
+def _is_number(mention: Mention) -> bool:
+    """Return True for a checkpoint by its number: `#10`, `checkpoint 10`."""
+    nouns = mention.value.nouns if isinstance(mention.value, Nouns) else ()
+    return all(
+        isinstance(noun, Labelled) and (noun.hash or noun.kind is Kind.CHECKPOINT) for noun in nouns
+    )

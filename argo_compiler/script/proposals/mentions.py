@@ -40,7 +40,17 @@ _WEAK = frozenset(
 """types of words that only join others"""
 OF_FORMS = frozenset(
     [
-        *("MEASURE", "BE_MEASURED", "NUMBER", "TIME_WORD", "OF", "pronoun", "question", "past"),
+        *(
+            "MEASURE",
+            "BE_MEASURED",
+            "measuring",
+            "NUMBER",
+            "TIME_WORD",
+            "OF",
+            "pronoun",
+            "question",
+            "past",
+        ),
         *("GREATER", "LESS", "STATE", "DONE", "QUANTITY", "REPORT", "MODE", "IN_BETWEEN", "PERSON"),
     ]
 )
@@ -222,7 +232,8 @@ def _kind_of(nouns: Nouns) -> str:
     is the whole mission or site, else `checkpoints`."""
     if all(isinstance(noun, Pronoun) for noun in nouns.nouns):
         return "pronoun"
-    whole = len(nouns.nouns) == 1 and isinstance(nouns.nouns[0], AllOf) and nouns.nouns[0].whole
+    (first, *others) = nouns.nouns
+    whole = not others and isinstance(first, AllOf) and first.whole and not first.floors
     return "everything" if whole and not nouns.but else "checkpoints"
 
 

@@ -10,6 +10,7 @@ from argo_compiler.base.catalog import Catalog
 from argo_compiler.script.documents.signs import CLOCK
 from argo_compiler.script.documents.source import Diagnostics, RefusedError, ScriptText
 from argo_compiler.script.parsing.script import Piece, Script
+from argo_compiler.script.proposals.choices import choices_of
 from argo_compiler.script.proposals.clock import (
     NO_DATES,
     find_plan,
@@ -21,7 +22,7 @@ from argo_compiler.script.proposals.clock import (
 )
 from argo_compiler.script.proposals.composing import Composer, Proposal
 from argo_compiler.script.proposals.evidence import is_name
-from argo_compiler.script.proposals.frames import floor_names
+from argo_compiler.script.proposals.frames import Sentences, floor_names
 from argo_compiler.script.proposals.known import Known
 from argo_compiler.script.proposals.mentions import Mention, Mentions, mentions_in
 from argo_compiler.script.proposals.rows import propose_row
@@ -40,6 +41,7 @@ _OF_NAMES = frozenset(["WORD", "SIGN", "UNIT", "UNIT_S"])
 """types of words that initials and names may be taken for"""
 _LAST = 3
 """pieces at the end of a script in which a name alone is a signature"""
+_RETURN = re.compile(r"Return to the docking station(?: in starting area ([0-9]+))?\.")
 _NAME = re.compile(r"[^\W\d_a-zäöü][^\W\d_A-ZÄÖÜ]+,")
 
 
@@ -99,20 +101,43 @@ class _Proposer:
             if start in self.unread and len(self.found) < MAX_PROPOSED:
                 proposal = self._proposal(piece, i)
             elif start in self.unclear and len(self.found) < MAX_PROPOSED:
-                proposal = self.composer.ask(piece.text)
+                proposal = Proposal(choices=choices_of(piece.text, self.composer))
             elif self.plan is not None and has_date(piece.text) and not named:
                 proposal = Proposal(choices=((),), doubt=NO_DATES)
             elif named and self._is_spared(named, piece.text):
                 proposal = Proposal(aside="left out, as another line says")
             if proposal is not None and self._is_left_out(proposal):
                 proposal = Proposal(aside="left out, as another line says")
+            if proposal is not None and proposal.is_open and proposal.choices in ((), ((),)):
+                choices = choices_of(self._whole(piece), self.composer)
+                proposal = replace(proposal, choices=choices)
             if proposal is not None:
                 self.found[start] = proposal
             else:
                 self._remember(named)
             said = proposal.sentences if proposal is not None else ()
             self.composer.before = said[-1] if said else piece.text.content
+        self._end_later({*measured})
         return self.found
+
+    def _end_later(self, measured: set[int]) -> None:
+        """Let a return that tasks follow say where the mission ends: `Arrival: starting area 1`
+        above the checkpoints."""
+        checking = (at for at, one in self.found.items() if any(map(_checks, one.sentences)))
+        last = max((*measured, *checking), default=-1)
+        for at, proposal in self.found.items():
+            if at < last:
+                choices = tuple(map(self._ending, proposal.choices))
+                sentences = self._ending(proposal.sentences)
+                self.found[at] = replace(proposal, sentences=sentences, choices=choices)
+
+    def _ending(self, sentences: Sentences) -> Sentences:
+        """Return sentences of which the last, a return, says only where the mission ends."""
+        returned = _RETURN.fullmatch(sentences[-1]) if sentences else None
+        area = returned and (returned[1] or self.composer.known.start_area)
+        if returned is None or area is None:
+            return sentences
+        return (*sentences[:-1], f"End of the mission: starting area {area}.")
 
     def _whole(self, piece: Piece) -> ScriptText:
         row = self.script.rows.get(piece.text.first)
@@ -200,6 +225,11 @@ class _Proposer:
         for mention in named:
             with suppress(RefusedError):
                 self.composer.known.measured(self.composer.known.checkpoints([mention]))
+
+
+def _checks(sentence: str) -> bool:
+    """Return True for a sentence that measures something."""
+    return sentence.startswith("Check ")
 
 
 def _start_area(script: Script) -> int | None:

@@ -111,7 +111,8 @@ def propose_row(row: FormRow, composer: Composer, first: bool = False) -> Propos
         doubt = f"this can be a task, or only say what `{found.tag}` stands for"
         return Proposal(choices=((check,), ()), doubt=doubt)
     if found.doubts:
-        return Proposal(choices=((spare,), (check,)), doubt=found.doubts[0])
+        single = [(f"Check checkpoint {id}.",) for id in ids] if len(ids) > 1 else []
+        return Proposal(choices=((spare,), (check,), *single), doubt=found.doubts[0])
     if found.left_out:
         return Proposal((spare,), tuple(found.unused))
     if len(ids) > 1 and len(row.cells) > 1 and not (found.together and found.manner):
@@ -180,11 +181,12 @@ def _without_checkpoint(row: FormRow, composer: Composer, first: bool) -> Propos
         return Proposal(aside="a heading")
     if row.computed:
         return Proposal(aside="a result that the sheet computes")
-    if row.labelled and plain and len(row.cells) == 2 and _needed(row.place, composer):
-        # `Robot starts from | starting area 2`
-        inner = composer.propose(join([cell.text for cell in row.cells]))
-        if inner.sentences:
-            return inner
+    if plain and len(row.cells) == 2 and _needed(row.place, composer):
+        # `Robot starts from | starting area 2`, `Gas detected | return to the dock`
+        for joint in (" ", ": "):
+            inner = composer.propose(join([cell.text for cell in row.cells], joint))
+            if inner.sentences:
+                return inner
     labels = composer.understanding.language.prose.form["labels"]
     idle = cue_pattern("labels", labels).search(row.cells[0].text.content) is not None
     named = mentions_in(row.place, composer.understanding).has("checkpoints", "place")
@@ -379,6 +381,8 @@ def _read_cell(text: ScriptText, found: _Row, composer: Composer) -> None:
     mentions = mentions_in(text, composer.understanding)
     named = mentions.of("checkpoints")
     found.together = bool(named) and not found.named
+    if said := composer.known.disagreement(named):
+        found.doubts.append(said)
     for mention in named:
         with suppress(RefusedError):
             found.named += composer.known.checkpoints([mention])

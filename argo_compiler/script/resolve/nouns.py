@@ -113,6 +113,7 @@ class NounResolver:
                 self.diagnostics.refuse("ambiguous-exception", message, noun.span, hint)
             for checkpoint in excepted:
                 if checkpoint not in found:
+                    self._require_no_name(noun, checkpoint, found)
                     message = f"{told(checkpoint)} is not in this list anyway"
                     hint = "remove it, or name another one"
                     self.diagnostics.warning("needless-exception", message, noun.span, hint)
@@ -135,6 +136,19 @@ class NounResolver:
         if isinstance(noun.label, int) and not (inside and said.isdigit()):
             message = f"`{said}` can be {told(excepted[0])}, or the number of exceptions"
             hint = f"write `except checkpoint {noun.label}`, or name the checkpoints to measure out"
+            self.diagnostics.refuse("ambiguous-exception", message, noun.span, hint)
+
+    def _require_no_name(
+        self, noun: Noun, excepted: CheckpointInfo, found: list[CheckpointInfo]
+    ) -> None:
+        """Asks about `all level gauges except number 3`, which may be that of the name."""
+        label = str(noun.label) if isinstance(noun, Labelled) and noun.kind is None else ""
+        named = [c for c in found if label and c.name.split()[-1].lower() == label.lower()]
+        if named:
+            said = self.diagnostics.source.said(noun.span)
+            message = f"`{said}` can be {told(excepted)}, which is not in this list, or "
+            message += f"{named[0].name}, which is"
+            hint = f"write `except {named[0].name}`, or remove the exception"
             self.diagnostics.refuse("ambiguous-exception", message, noun.span, hint)
 
     def warn_of_empty(

@@ -72,7 +72,17 @@ class Planner:
             self._step(step, self.context.program, number)
 
     def _check_numbers(self, steps: Sequence[ScriptStep]) -> None:
-        """Warns where the steps' numbers are not one after the other: a line may have been lost."""
+        """Warns where the steps' numbers are not one after the other: a line may have been lost.
+
+        Steps with the numbers 1 to n in another order are asked about.
+        """
+        numbers = [step.number for step in steps if step.number is not None]
+        in_order = list(range(1, len(numbers) + 1))
+        if numbers != in_order and sorted(numbers) == in_order:
+            message = "the steps can be meant in the order of their numbers, or as they are written"
+            hint = "number them in the order in which they are done"
+            self.diagnostics.error("ambiguous-step", message, steps[0].span, hint)
+            return
         expected = 1
         for step in steps:
             if step.number is None:

@@ -109,10 +109,14 @@ def is_question(text: ScriptText, lexicon: Lexicon) -> bool:
 
 
 def ask_of_words(
-    text: ScriptText, lexicon: Lexicon, diagnostics: Diagnostics, ordered: bool
+    text: ScriptText,
+    lexicon: Lexicon,
+    diagnostics: Diagnostics,
+    ordered: bool,
+    days: dict[str, int],
 ) -> None:
     """Asks about the words of a sentence that may change what is meant. `ordered`: something is
-    to be done before it."""
+    to be done before it; `days`: the days of which sentences were so far, each with its line."""
     doubtful = pattern(_DOUBTFUL).search(text.content) or _small(lexicon).search(text.content)
     if doubtful is None:
         return
@@ -124,6 +128,14 @@ def ask_of_words(
         if doubt is not None:
             diagnostics.error("ambiguous-word", f"`{shown}` {doubt.message}", span, doubt.hint)
         elif word.type in TOLD and not _opens_condition(words, i):
+            other = next((day for day in days if day != shown.lower()), None)
+            if word.type == "DAY" and other is not None:
+                message = f"`{shown}` is another day than `{other}` in line {days[other]}"
+                hint = "write a script for each day, without the name of the day"
+                diagnostics.error("ambiguous-word", message, span, hint)
+                continue
+            if word.type == "DAY":
+                days.setdefault(shown.lower(), span.line)
             diagnostics.warning("no-effect", f"`{shown}` has no effect", span)
 
 

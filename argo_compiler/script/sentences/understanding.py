@@ -33,6 +33,11 @@ _WORD = re.compile(r"(?<![\w.'-])(?=[^\W\d_]*[0-9])[^\W_]{4,}(?![\w-])")
 _LETTERS = {"0": "o", "1": "li", "5": "s", "8": "b"}
 """what text recognition takes for figures"""
 _DIGITS = str.maketrans("lIi|Oo", "111100")
+_ARROW = re.compile(r"\s*(?:-+>|=+>|→|➔|»)\s*")
+_COMPARING = frozenset(
+    [*("LESS", "GREATER", "AT_LEAST", "AT_MOST", "OR_MORE", "OR_LESS", "STATE", "OUTSIDE", "FAILS")]
+)
+"""types of words before an arrow that make a condition of what stands there"""
 _MOST_TOLD = 8
 _UNTOLD = frozenset(
     [
@@ -148,6 +153,30 @@ class Understanding:
             self._warn(text, word.start, word.end, meant_word)
         return fixed
 
+    def rewritten(self, text: ScriptText) -> ScriptText:
+        """Return a text with contractions in full, and arrows as words: `R7 -> R9` is `R7, then
+        R9`, and `R7 is closed -> R9` is a condition."""
+        if "'" in text.content or "’" in text.content:
+            for short, full in _contractions(self.language.prose.contractions):
+                for found in reversed(list(short.finditer(text.content))):
+                    text = text.replace(*found.span(), full)
+        arrows = [] if '"' in text.content else list(_ARROW.finditer(text.content))
+        if arrows and arrows[0].start() == 0:
+            text = text[arrows[0].end() :]
+            arrows = list(_ARROW.finditer(text.content))
+        if not arrows:
+            return text
+        say = self.language.prose.say
+        before = {*self.types(text[: arrows[0].start()])}
+        if before & _COMPARING and "MEASURE" not in before:
+            text = text.replace(*arrows[0].span(), ", ")
+            if not before & {"IF", "UNLESS", "ELSE"}:
+                text = text.replace(0, 1, f"{say['if']} {text.content[0]}")
+            arrows = list(_ARROW.finditer(text.content))
+        for arrow in reversed(arrows):
+            text = text.replace(*arrow.span(), say["then"])
+        return text
+
     def figures(self, text: ScriptText) -> ScriptText:
         """The text with letters among digits read as digits, `#l7`, and with words that have
         digits in them read as those that they can only be: `p0int`. Digits by themselves are never
@@ -250,6 +279,14 @@ def _both(one: Lexicon) -> list[dict[Entry, list[str]]]:
 
 def _joints(lexicon: Lexicon, meaning: str) -> list[str]:
     return [said for phrases in _both(lexicon) for said in phrases["JOINT", meaning]]
+
+
+@cache
+def _contractions(phrases: str) -> list[tuple[re.Pattern[str], str]]:
+    """Return patterns of short forms, each with its words."""
+    pairs = [pair.split("=>") for pair in phrases.split("|")]
+    apostrophe = [(short.strip().replace("'", "['’]"), full.strip()) for short, full in pairs]
+    return [(re.compile(rf"\b{short}\b", re.IGNORECASE), full) for short, full in apostrophe]
 
 
 @cache

@@ -11,6 +11,12 @@ from argo_compiler.script.sentences.words.numbers import Figure
 from argo_compiler.script.sentences.words.word import Word
 
 _UNITS = ("UNIT_S", "A_UNIT")
+_DAY_S = 86400.0
+_BEFORE_MINUTE = (
+    *("EARLIEST", "LATEST", "BETWEEN", "AND_", "JOINT", "BY", "AT", "FROM", "TO", "UNTIL", "UPTO"),
+    *("AFTER", "BEFORE", "DASH", "WITHIN", "IN", "SINCE_START"),
+)
+"""how the types of words begin behind which `minute 10` is a time: `not before minute 10`"""
 _LIMITS = {"TIMES": "MOST_TIMES", "DURATION": "MOST_TIME"}
 _GLUED = re.compile(r"(?:([0-9]+)(?:h|std))?(?:([0-9]+)(?:min|m)?)?(?:([0-9]+)(?:sec|sek|s))?")
 _NAMES = {3600.0: "h", 60.0: "min", 1.0: "s"}
@@ -65,14 +71,16 @@ def read_glued(said: str) -> Length | None:
     return Length(hours * 3600.0 + minutes * 60 + rest)
 
 
-def counted(word: Word, after: Word) -> Word | None:
-    """A number and what it counts, as one word."""
+def counted(word: Word, after: Word, before: str = "") -> Word | None:
+    """A number and what it counts, as one word. `before`: the type of the word before them."""
     if word.type == "HALF" and after.type in _UNITS:
         return Word("DURATION", Length(after.value / 2, after.value), word.start, after.end)
     if word.type == "DURATION" and after.type in _UNITS:
         clock = _of_clock(word.value, after.value)
         return None if clock is None else Word("DURATION", clock, word.start, after.end)
-    if word.type == "UNIT_S" and after.type == "NUMBER":  # `not before minute 10`
+    if word.type == "UNIT_S" and after.type == "NUMBER":
+        if word.value >= _DAY_S or not before.startswith(_BEFORE_MINUTE):
+            return None  # `Day 1: #4`, `Minute 5: #4`
         return Word("DURATION", _length(after.value, word.value), word.start, after.end)
     if word.type != "NUMBER":
         return None

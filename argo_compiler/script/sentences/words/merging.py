@@ -48,7 +48,8 @@ def merged(words: list[Word]) -> list[Word]:
     while i < len(words):
         word = words[i]
         after = words[i + 1] if i + 1 < len(words) else None
-        pair = counted(word, after) if after is not None else None
+        before = found[-1].type if found else ""
+        pair = counted(word, after, before) if after is not None else None
         if pair is not None:
             word = pair
             i += 1

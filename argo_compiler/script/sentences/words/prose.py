@@ -57,6 +57,8 @@ class Prose:
     around_reactions: str
     """words of a heading that says no more than that what follows always holds"""
     explicit_title: str
+    headline_preposition: str
+    """words before a checkpoint in a title"""
     left_open: str
     """how a sentence begins that leaves the starting areas to the preparation"""
     sheet: str
@@ -66,6 +68,8 @@ class Prose:
     """words that a table's columns stand for"""
     cues: Mapping[str, str]
     """words by which a line is proposed that the grammar does not take, by what they show"""
+    contractions: str
+    """short forms with an apostrophe, each with its words: `it's => it is`"""
     paraphrases: str
     """phrases that a proposal replaces by others which the grammar takes: `is not open => is below
     80 degrees`; `<n>` is an amount, `<k>` a word, `<x>` and `<y>` are any words"""

@@ -14,12 +14,22 @@ from typing import Any
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.il import Mission
-from argo_compiler.script import Draft, LineState, import_script
+from argo_compiler.script import Draft, DraftLine, LineState, import_script
 
 _MOST_TURNS = 12
 _POINT = re.compile(r"(?:#|checkpoint )(\d+)")
 _CASE = re.compile(r"\b(?:if|when|unless|at least)\b", re.IGNORECASE)
 _SPARED = re.compile(r"left out|without|do not|delete", re.IGNORECASE)
+_EXCEPT = re.compile(r"\b(?:except|but not) [^:.;]*", re.IGNORECASE)
+"""in what a line means: which checkpoints are none of those that are named behind it"""
+_OF_HEADER = (
+    re.compile(r"\bstarts? (?:docked )?in (?:the )?starting area (\d)", re.IGNORECASE),
+    re.compile(r"\b(?:return|end)[^.]*?starting area (\d)", re.IGNORECASE),
+    re.compile(r"\bwait (?:for )?(\d+)", re.IGNORECASE),
+    re.compile(r"\b(?:at most|maximum duration:?) (\d+)", re.IGNORECASE),
+)
+"""what a line without checkpoints may mean: where the mission starts and ends, waits, limits"""
+_TO = re.compile(r"#(\d+) to #(\d+)")
 _ASKED = ("asked", "open")
 _NEEDED = re.compile(r"duration|area|docking|order is|stands for|rounds|When|If")
 """in what a line means: it has an effect without naming a checkpoint"""
@@ -153,17 +163,39 @@ def _answered(
     """Return the decisions with the first open line answered."""
     line = draft.left[0]
     numbers = [n for n in range(line.line, line.last_line + 1) if n in case.lines]
-    expected = case.lines[numbers[0]] if numbers else ExpectedLine("set aside", None)
-    wanted = expected.means
+    all_expected = [case.lines[number] for number in numbers]
+    effective = [one for one in all_expected if one.must != "set aside"]
+    expected = next(iter(effective or all_expected), ExpectedLine("set aside", None))
+    wanted = None if line.line in without_words else expected.means
     if wanted:
+        means = meaning([wanted])
         for number, sentences in enumerate(line.choices, start=1):
-            if sentences and meaning(sentences) == meaning([wanted]):
+            if sentences and meaning.whole(sentences) == meaning.whole([wanted]):
                 return draft.choose(line.label, number)
+        if sum(other.means == wanted for other in case.lines.values()) > 1:
+            return _part_of(means, draft, line, meaning)
         needed = meaning([wanted]) or _NEEDED.search(wanted)
-        needed = needed and line.line not in without_words
         if expected.must.startswith("understood") and needed:
             verdict.problems.append(f"line {line.label} has no choice `{wanted}`: {line.reason}")
     return draft.set_aside([line.label])
+
+
+def _part_of(means: Meaning, draft: Draft, line: DraftLine, meaning: "_Meanings") -> tuple:
+    """Return the decisions for a line that shares what it means with others: it becomes as much of
+    that as it can, or nothing; the mission shows whether anything is missing."""
+    parts = [
+        (meaning(sentences).total(), -number)
+        for number, sentences in enumerate(line.choices, start=1)
+        if meaning(sentences) and not meaning(sentences) - means
+    ]
+    if not parts:
+        return draft.set_aside([line.label])
+    return draft.choose(line.label, -max(parts)[1])
+
+
+def _expanded(found: re.Match[str]) -> str:
+    """Return all of `#1 to #4`."""
+    return " ".join(f"#{number}" for number in range(int(found[1]), int(found[2]) + 1))
 
 
 class _Meanings:
@@ -174,10 +206,20 @@ class _Meanings:
         longest_first = sorted(self._ids, key=len, reverse=True)
         self._named = re.compile(rf"\b(?:{'|'.join(longest_first)})\b", re.IGNORECASE)
 
+    def whole(self, sentences: Sequence[str]) -> Meaning:
+        """Return the meaning; of sentences without checkpoints, what they set or wait for."""
+        found = self(sentences)
+        if not found:
+            text = " ".join(sentences)
+            for kind, pattern in enumerate(_OF_HEADER, start=1):
+                found.update((False, -1000 * kind - int(n)) for n in pattern.findall(text))
+        return found
+
     def __call__(self, sentences: Sequence[str]) -> Meaning:
         """Return the checkpoints, which are spared, and how many conditions there are."""
         found: Meaning = Counter()
         for text in sentences:
+            text = _TO.sub(_expanded, _EXCEPT.sub("", text))
             said = self._named.sub(lambda name: f"#{self._ids[name[0].lower()]}", text)
             for part in re.split(r"(?<=\.)\s+(?=[A-Z])", said):
                 spared = _SPARED.search(part) is not None

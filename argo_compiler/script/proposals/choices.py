@@ -1,0 +1,335 @@
+"""What an open text may become: its nearest readings, of which a person chooses one.
+
+A choice may pass over words that a proposal must not pass over, as it counts only once a person has
+taken it. The likeliest comes first.
+"""
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+
+from argo_compiler.base.catalog import CheckpointInfo, CheckpointKind
+from argo_compiler.script.documents.source import RefusedError, ScriptText
+from argo_compiler.script.proposals.composing import Composer
+from argo_compiler.script.proposals.frames import Sentences, length_words, sentences_of
+from argo_compiler.script.proposals.mentions import (
+    Mention,
+    Mentions,
+    checkpoint_words,
+    mentions_in,
+)
+from argo_compiler.script.proposals.paraphrasing import reads, rephrased, sentence
+from argo_compiler.script.sentences.tree.nouns import Labelled, Nouns, Pronoun, Quantity
+from argo_compiler.script.sentences.tree.places import AreaLocation
+from argo_compiler.script.sentences.words.numbers import Figure
+from argo_compiler.script.sentences.words.prose import cue_pattern
+from argo_compiler.script.sentences.words.spelling import candidates
+from argo_compiler.script.sentences.words.without_effect import MISPLACED
+
+_MOST_CHOICES = 9
+_MOST_CHOSEN = 10
+"""checkpoints of a text that may be chosen together"""
+_FEW = 3
+"""checkpoints of a text each of which may be meant alone"""
+_MOST_PARTS = 24
+_LONGEST_PART = 8
+"""parts that are read as one"""
+_LONGEST = 500
+"""characters of a text that is taken apart"""
+_KINDS: dict[Quantity | None, CheckpointKind] = {
+    Quantity.PRESSURE: CheckpointKind.PRESSURE_GAUGE,
+    Quantity.LEVEL: CheckpointKind.LIQUID_LEVEL_GAUGE,
+    Quantity.POSITION: CheckpointKind.VALVE,
+}
+"""the kind of checkpoint that shows a quantity"""
+_SIGNALS = (
+    *("forbidding", "past", "question", "correction", "leave_out", "IF", "IF_ONLY", "UNLESS"),
+    *("ELSE", "UNTIL", "NOT", "EXCEPT", "pronoun", "STATE", "MORE", "again", "TIMES", "GREATER"),
+    *("INCLUDED", "RECHARGE", "in_place_of", MISPLACED),
+)
+"""kinds of mentions without which a text is looked at"""
+_DOCKING = ("home", "HOME", "DOCK", "END", "place")
+_PASSED_OVER = ("WORD", "SIGN", "STRAY", "DONE", MISPLACED)
+"""types of words that a text is read without"""
+_ORDERS = (
+    *("MEASURE", "KEEP_MEASURING", "GO", "HOME", "START", "PATROL", "WAIT", "RECHARGE", "REPEAT"),
+    *("ADD", "DELETE", "REPLACE", "MOVE", "IF", "UNLESS", "ELSE", "UNTIL", "EVERY"),
+)
+"""types of words of which a text has one that the grammar may read alone"""
+_CUT = re.compile(r"[,;:]\s+|\s+[-–/|]\s+|\s*(?:->|→|>)\s*|\s+(?=\()|[()]\s*|[.!?]\s+")
+_CUT_WORDS = ("AND_", "JOINT", "NEXT", "COLON", "THEN")
+"""how types of words begin that part a text"""
+_AREA = re.compile(r"(?<![\w#-])([^\W\d_])\s?([1-9])(?![\w-])")
+"""an area by its initial: `A2`"""
+_ARTICLE = re.compile(r"\b(?:the|der|die|das)\s+$", re.IGNORECASE)
+_EVENTS = {
+    "gas_leak": "a gas leak is detected",
+    "hot_spot": "a hot spot is detected",
+    "abnormal_sound": "an abnormal sound is heard",
+    "platform_alarm": "the platform alarm sounds",
+    "positive_obstacle": "a positive obstacle is detected",
+    "negative_obstacle": "a negative obstacle is detected",
+    "obstacle": "a positive obstacle is detected",
+    "low_battery": "the battery is low",
+    "connection_lost": "the connection is lost",
+    "emergency_stop": "an emergency stop occurs",
+    "dysfunction": "a dysfunction occurs",
+    "abnormal_reading": "a reading is abnormal",
+    "time_up": "the time is up",
+}
+
+
+def choices_of(text: ScriptText, composer: Composer) -> tuple[Sentences, ...]:
+    """Return what an open text may become, the likeliest first; at the end that nothing comes of
+    it."""
+    text = _with_areas(composer.understanding.rewritten(text), composer)
+    open_text = _OpenText(text, mentions_in(text, composer.understanding), composer)
+    made: dict[Sentences, None] = {}
+    for way in _WAYS if len(text.content) <= _LONGEST else (_by_mentions,):
+        with composer.known.unchanged():
+            made |= dict.fromkeys(filter(None, way(open_text)))
+    return (*list(made)[:_MOST_CHOICES], ())
+
+
+@dataclass(frozen=True)
+class _OpenText:
+    text: ScriptText
+    found: Mentions
+    composer: Composer
+
+
+# ---- with pronouns replaced
+
+
+def _by_pronouns(of: _OpenText) -> Iterator[Sentences]:
+    """Yield the text with each checkpoint that its pronoun may be, if it makes sense then."""
+    pronouns = [m for m in of.found.of("pronoun") if _is_single(m)]
+    for checkpoint in {c.id: c for c in _candidates(pronouns, of.composer)}.values():
+        meant = of.text
+        for mention in reversed(pronouns):
+            article = _ARTICLE.search(of.text.content[: mention.start])
+            start = mention.start if article is None else article.start()
+            meant = meant.replace(start, mention.end, f"checkpoint {checkpoint.id}")
+        meant = rephrased(of.composer.within(meant), of.composer.understanding).text
+        if pronouns and reads(meant, of.composer.understanding):
+            yield (sentence(meant),)
+
+
+def _candidates(pronouns: Sequence[Mention], composer: Composer) -> Sequence[CheckpointInfo]:
+    """Return what a pronoun may be: `the pressure` is that of any gauge that was read."""
+    nouns = pronouns[0].value if pronouns else None
+    first = nouns.nouns[0] if isinstance(nouns, Nouns) else None
+    kind = _KINDS.get(first.quantity) if isinstance(first, Pronoun) else None
+    if kind is None:
+        return composer.known.memory.last
+    return [c for c in composer.known.memory.so_far.values() if c.kind is kind]
+
+
+def _is_single(mention: Mention) -> bool:
+    """Return True for a pronoun that means one checkpoint: `it`, `the level`."""
+    nouns = mention.value.nouns if isinstance(mention.value, Nouns) else ()
+    return all(isinstance(noun, Pronoun) and not noun.every for noun in nouns)
+
+
+# ---- by its parts
+
+
+def _by_parts(of: _OpenText) -> Iterator[Sentences]:
+    """Yield what the parts of a text mean that mean something: the longest that make sense."""
+    starts = [0, *_cuts(of.text, of.composer), len(of.text.content)]
+    made: list[str] = []
+    i = 0
+    while i < len(starts) - 1:
+        for k in range(min(len(starts) - 1, i + _LONGEST_PART), i, -1):
+            part = _part(of.text[starts[i] : starts[k]], of.composer)
+            if part is not None:
+                made += part
+                break
+        i = k
+    yield tuple(made)
+
+
+def _cuts(text: ScriptText, composer: Composer) -> list[int]:
+    """Return where the parts of a text begin, but for the first."""
+    words = composer.understanding.words(text)
+    cuts = {m.end() for m in _CUT.finditer(text.content)}
+    cuts |= {m.start() for m in _CUT.finditer(text.content)}
+    cuts |= {word.start for word in words if word.type.startswith((*_CUT_WORDS, "WORD"))}
+    cuts |= {word.end for word in words if word.type == "WORD"}
+    cues = composer.understanding.language.prose.cues
+    cuts |= {m.start() for m in cue_pattern("clause", cues["clause"]).finditer(text.content)}
+    return sorted(cuts - {0, len(text.content)})[: _MOST_PARTS - 1]
+
+
+def _part(text: ScriptText, composer: Composer) -> Sentences | None:
+    """Return what a part means without the words that nobody knows; None if it makes no sense."""
+    bare = _bare(text, composer)
+    found = mentions_in(bare, composer.understanding).without(*_PASSED_OVER)
+    rewritten = rephrased(bare, composer.understanding).text if bare.content else bare
+    for meant in (bare, rewritten):
+        made = sentences_of(found, composer.known) if found.mentions else None
+        if made:
+            return made
+        if found.has(*_ORDERS) and reads(meant, composer.understanding):
+            return (sentence(_numbered(meant, composer)),)
+        found = mentions_in(meant, composer.understanding)
+    return None
+
+
+def _numbered(text: ScriptText, composer: Composer) -> ScriptText:
+    """Return a text with its checkpoints by number, but for `all valves` and the like."""
+    for mention in reversed(mentions_in(text, composer.understanding).of("checkpoints")):
+        nouns = mention.value
+        assert isinstance(nouns, Nouns)
+        if not nouns.but and all(isinstance(noun, Labelled) for noun in nouns.nouns):
+            with suppress(RefusedError):
+                words = checkpoint_words(composer.known.checkpoints([mention]))
+                text = text.replace(mention.start, mention.end, words)
+    return text
+
+
+def _bare(text: ScriptText, composer: Composer) -> ScriptText:
+    """Return a text without words that mean nothing, and without what joins it to others; words
+    that are misspelt are put right."""
+    understanding = composer.understanding
+    for word in reversed(understanding.words(text)):
+        if word.type == "WORD":
+            meant = candidates(text.content[word.start : word.end], understanding.known)
+            if meant:
+                text = text.replace(word.start, word.end, min(meant))
+    words = understanding.words(text)
+    while words and words[0].type.startswith((*_CUT_WORDS, *_PASSED_OVER)):
+        words = words[1:]
+    start = words[0].start if words else len(text.content)
+    for word in reversed([word for word in words if word.type in _PASSED_OVER]):
+        text = text.without(word.start, word.end)
+    return _tidied(text[start:])
+
+
+def _with_areas(text: ScriptText, composer: Composer) -> ScriptText:
+    """Return a text with `area 2` for `A2`, if the site has that area."""
+    phrases = composer.understanding.language.lexicon.phrases["AREA", None]
+    for found in reversed(list(_AREA.finditer(text.content))):
+        names = [phrase for phrase in phrases if phrase.startswith(found[1].lower())]
+        if names and composer.known.catalog.area(int(found[2])):
+            text = text.replace(*found.span(), f"{names[0]} {found[2]}")
+    return text
+
+
+def _tidied(text: ScriptText) -> ScriptText:
+    for blanks in reversed(list(re.finditer(r"(?<=\s)\s+|\s+(?=[,;.])", text.content))):
+        text = text.without(*blanks.span())
+    content = text.content
+    first = len(content) - len(content.lstrip(" ,;:.-–/>|()"))
+    return text[first : max(first, len(content.rstrip(" ,;:.-–/>|(")))]
+
+
+# ---- by what is mentioned
+
+
+def _by_events(of: _OpenText) -> Iterator[Sentences]:
+    """Yield what the robot may do where an event is named."""
+    events = of.found.of("EVENT")
+    if len(events) != 1 or str(events[0].value) not in _EVENTS:
+        return
+    when = f"If {_EVENTS[str(events[0].value)]}"
+    where = next((f" in starting area {a}" for a in _areas(of.found)), "")
+    answers = {
+        ("home", "HOME", "DOCK", "place"): f"return to the docking station{where}",
+        ("PAUSE", "WAIT"): "pause until all clear is given, and resume",
+        ("END", "ABORT"): "abort the mission",
+        ("REPORT",): "report it",
+    }
+    likely = [answer for kinds, answer in answers.items() if of.found.has(*kinds)]
+    for answer in (*likely, *answers.values()):
+        yield (f"{when}, {answer}.",)
+
+
+def _by_mentions(of: _OpenText) -> Iterator[Sentences]:
+    """Yield what a text would be without what is not clear, and that its checkpoints are read."""
+    for bare in (of.found.without(*_SIGNALS), of.found.without(*_SIGNALS, *_DOCKING)):
+        made = sentences_of(bare, of.composer.known) if bare.mentions else None
+        if made:
+            yield made
+    named: dict[int, CheckpointInfo] = {}
+    for mention in of.found.of("checkpoints"):
+        with suppress(RefusedError):
+            named |= {c.id: c for c in of.composer.known.checkpoints([mention])}
+            continue
+        yield from ((f"Check checkpoint {c.id}.",) for c in of.composer.known.alike(mention))
+    if 0 < len(named) <= _MOST_CHOSEN:
+        words = checkpoint_words(list(named.values()))
+        yield (f"Check {words}.",)
+        yield (f"Do not check {words}.",)
+        if len(named) <= _FEW:
+            yield from ((f"Check checkpoint {id}.",) for id in named)
+    elif not named:
+        for area in _areas(of.found):
+            start, end = f"Start in starting area {area}.", f"starting area {area}."
+            yield (start,)
+            yield (f"Return to the docking station in {end}",)
+            yield (start, f"End of the mission: {end}")
+        for mention in of.found.of("DURATION", "MOST_TIME"):
+            if (length := length_words(mention.value)) is not None:
+                yield (f"Maximum duration: {length}.",)
+                yield (f"Wait for {length}.",)
+
+
+def _areas(found: Mentions) -> list[int]:
+    """Return the numbers of the areas that are named; also of `starting area is 2`."""
+    places = (mention.value for mention in found.of("place"))
+    areas = [place.area for place in places if isinstance(place, AreaLocation)]
+    numbers = [m.value.whole for m in found.of("NUMBER") if isinstance(m.value, Figure)]
+    return areas or [n for n in numbers if n is not None and found.has("AREA")]
+
+
+def _by_corrections(of: _OpenText) -> Iterator[Sentences]:
+    """Yield the checkpoints without those that are taken back: `R12 - wait, not R12, R31`."""
+    named: list[CheckpointInfo] = []
+    taken_back: set[int] = set()
+    for mention in of.found.of("checkpoints"):
+        with suppress(RefusedError):
+            checkpoints = of.composer.known.checkpoints([mention])
+            before = [m for m in of.found.of("NOT", "forbidding") if m.end <= mention.start]
+            if before and not of.text.content[before[-1].end : mention.start].strip():
+                again = {c.id for c in checkpoints} & {c.id for c in named}
+                taken_back |= again or {c.id for c in checkpoints}
+            named += checkpoints
+    left = {c.id: c for c in named if c.id not in taken_back}
+    if taken_back and left:
+        yield (f"Check {checkpoint_words(list(left.values()))}.",)
+
+
+def _by_order(of: _OpenText) -> Iterator[Sentences]:
+    """Yield what a text may be that speaks of the order."""
+    labels = of.composer.understanding.language.prose.labels["order"]
+    if cue_pattern("order", labels).search(of.text.content) and not of.found.has("checkpoints"):
+        yield ("Order: precise.",)
+        yield ("Order: any.",)
+
+
+def _by_figures(of: _OpenText) -> Iterator[Sentences]:
+    """Yield the checkpoints that a bare number may be, those that were named before it first."""
+    if of.found.has("checkpoints", "place", "AREA"):
+        return
+    figures = {of.text.content[m.start : m.end] for m in of.found.of("NUMBER")}
+    known = of.composer.known
+    alike = [c for c in known.catalog.checkpoints if {str(c.id), c.name.split()[-1]} & figures]
+    alike.sort(key=lambda c: c.id not in known.memory.so_far)
+    for checkpoint in alike:
+        verb = "Check"
+        if of.found.has("leave_out", "forbidding", "NOT", "correction"):
+            verb = "Delete" if checkpoint.id in known.memory.so_far else "Do not check"
+        yield (f"{verb} checkpoint {checkpoint.id}.",)
+
+
+_WAYS: tuple[Callable[[_OpenText], Iterator[Sentences]], ...] = (
+    _by_pronouns,
+    _by_corrections,
+    _by_parts,
+    _by_events,
+    _by_order,
+    _by_mentions,
+    _by_figures,
+)

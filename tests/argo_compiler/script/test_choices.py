@@ -1,0 +1,63 @@
+"""Choices of open lines: the nearest readings, of which a person takes one."""
+
+import pytest
+
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.script import LineState
+from tests.argo_compiler.script.conftest import draft_of, measured_in
+
+BEFORE = "Check pressure gauge 3 and valve R12.\n"
+
+
+@pytest.mark.parametrize(
+    ("line", "choice"),
+    [
+        # by parts
+        ("PG3 > LG2 > PG5 hmm", "Check checkpoint 6. Check checkpoint 7. Check checkpoint 8."),
+        (
+            "then go up to the top floor and read the liquid level gauge there, um, if it isn't foggy, and come home",
+            "Check checkpoint 20. Return to the docking station.",
+        ),
+        ("hmm than level guage 3, its up there", "Check checkpoint 12."),
+        (
+            "Kim: hmm, everything on floor 6, but why?",
+            "Check checkpoint 19 and checkpoint 20 in any order.",
+        ),
+        # what is taken back
+        ("R7, then R31 - oh wait, not R31, R40", "Check checkpoint 11 and checkpoint 17."),
+        # areas, also by their initial
+        ("the bot parks in A2 over the weekend", "Start in starting area 2."),
+        ("yep, docked at area 2 since 6", "Start in starting area 2."),
+        (
+            "Area 2, there and back again",
+            "Start in starting area 2. End of the mission: starting area 2.",
+        ),
+        # events
+        (
+            "In the event of gas alarm everybody leaves, robot goes to its dock",
+            "If a gas leak is detected, return to the docking station.",
+        ),
+        # the order, times, and numbers that can be checkpoints
+        ("The exact sequence is up to you", "Order: any."),
+        ("Hurry up, lunch is in 20 minutes", "Maximum duration: 20 minutes."),
+        ("oh, and 14 too I guess", "Check checkpoint 14."),
+    ],
+)
+def test_an_open_line_offers_its_nearest_readings(line: str, choice: str, catalog: Catalog) -> None:
+    (*_, last) = draft_of(BEFORE + line, catalog).lines
+    assert last.state is LineState.OPEN
+    assert choice in [" ".join(sentences) for sentences in last.choices]
+    assert last.choices[-1] == (), "it can be set aside"
+
+
+def test_a_choice_is_worked_into_the_mission(catalog: Catalog) -> None:
+    draft = draft_of(f"{BEFORE}R7, then R31 - oh wait, not R31, R40", catalog)
+    decisions = draft.choose("2", 1)
+    mission = draft_of(draft.text, catalog, decisions).require_mission()
+    assert measured_in(mission) == ["6", "5", "11", "17"]
+
+
+def test_a_line_that_does_not_fit_offers_its_readings_too(catalog: Catalog) -> None:
+    (line,) = draft_of("Checkpoint #7: read pressure gauge 7", catalog).lines
+    assert line.is_question
+    assert {("Check checkpoint 7.",), ("Check checkpoint 15.",)} <= {*line.choices}

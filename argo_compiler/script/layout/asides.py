@@ -180,7 +180,7 @@ class Asides:
         before = either(self.prose.headline_preposition)
         if re.search(rf"^[^,:|]*\b{_PROTOCOL}\s*#?\s*\d+$", content, re.IGNORECASE):
             return True
-        of = re.search(rf"^[^,:|]*\w (?={before} [^,:|]+$)", content, re.IGNORECASE)
+        of = re.search(rf"^[^,:|]*\w (?=(?:{before}) [^,:|]+$)", content, re.IGNORECASE)
         return of is not None and not self.names_checkpoint(text[: of.end()])
 
     def names_checkpoint(self, text: ScriptText) -> bool:
@@ -301,6 +301,8 @@ class Asides:
         start = 0
         for found in _BRACKETS.finditer(text.content):
             inner = text[found.start() : found.end()].strip()
+            if not any(map(str.isalnum, inner.content)):
+                continue  # `(-)`, `(x)` may mean that it is left out, or done
             if self.adds(inner[1:-1]) or _FIGURES.search(inner.content):
                 continue
             kept.append(text[start : found.start()])

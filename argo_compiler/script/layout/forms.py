@@ -43,6 +43,8 @@ class CellRole(StrEnum):
     """what is reported, such as `pressure in bar`"""
     POINTS = "points"
     REMARK = "remark"
+    REACTION = "reaction"
+    """what is done if the reading is not normal"""
     WINDOW = "window"
     """minutes from and to which it is done"""
     OTHER = "other"
@@ -99,11 +101,17 @@ _CUTS = {
     ",": re.compile(","),
     "  ": re.compile(r"\s{2,}|\t"),
 }
+_BLANK_CELL = re.compile(r"_{2,}|\.{4,}")
 _STEP_MARK = re.compile(r"^(?:[0-9]{1,3}|[a-z])[.)]\s+")
 """the number of a step, behind which many blanks make no cells"""
 _SENTENCE = re.compile(r"[a-zäöüß)][.!?]\s{2,}[A-ZÄÖÜ]")
 _ENDED = re.compile(r"[!?]$|\w{4,}\.$")
 """at the end of a sentence, rather than of `n. a.`"""
+_BOX_SIGN = r"\[[ xX*✓✔]?\]|[□☐☑☒✓✔]"
+_OPTION = re.compile(rf"({_BOX_SIGN})\s*([^\[\]□☐☑☒✓✔|]+)")
+_OPTIONS = re.compile(rf"[\s|]*([^:\[\]|]{{1,40}}:)\s*(?:(?:{_BOX_SIGN})\s*[^\[\]□☐☑☒✓✔|]+)+[\s|]*")
+"""a label, and options with a box before each"""
+_KEYED = re.compile(r"\s*([^\W\d]\w{2,40})\s?[,;=]\s?([^,;=]{1,60})")
 _LONGEST = 2000
 """characters of a row"""
 _DEEP = 8
@@ -134,7 +142,12 @@ def forms(
     """Return the rows of sheets in a script; lines that are `taken` are none, and neither are those
     that `is_plain` tells to make sense without columns."""
     rows: dict[int, FormRow] = {}
-    texts: dict[int, ScriptText] = {}
+    texts = {
+        number: text
+        for number in range(1, len(source.lines) + 1)
+        if number not in taken and (text := _simple_field(source.line_text(number), prose))
+    }
+    taken = {**taken, **texts}
     columns_of: dict[int | None, Columns | None] = {}
     """by the table of a document, which sections may part"""
     cut_rows: dict[int, tuple[int, list[Cell]]] = {}
@@ -254,17 +267,22 @@ def _with_filled(
 ) -> dict[int, list[Cell]]:
     """Return the cells of rows, by line; marked are those that are filled in while other rows of
     the table have nothing there, or something else."""
-    filled: dict[tuple[int, int], set[str]] = defaultdict(set)
+    filled: dict[tuple[int, int], list[str]] = defaultdict(list)
     for table, cells in rows.values():
         for i, cell in enumerate(cells):
-            filled[table, i].add(cell.text.content.lower())
+            filled[table, i].append(cell.text.content.lower())
+
+    def told(cell: Cell, number: int, column: tuple[int, int]) -> Cell:
+        said = filled[column]
+        blank = 2 * sum(_BLANK_CELL.fullmatch(text) is not None for text in said) >= len(said)
+        role = CellRole.FILL if blank and cell.role is CellRole.OTHER else cell.role
+        if role is CellRole.FILL or (role is CellRole.OTHER and number in headed):
+            differs = bool(cell.text.content) and len({*said}) > 1
+            return replace(cell, role=role, filled=differs)
+        return cell
+
     return {
-        number: [
-            replace(cell, filled=bool(cell.text.content) and len(filled[table, i]) > 1)
-            if cell.role is CellRole.FILL or (cell.role is CellRole.OTHER and number in headed)
-            else cell
-            for i, cell in enumerate(cells)
-        ]
+        number: [told(cell, number, (table, i)) for i, cell in enumerate(cells)]
         for number, (table, cells) in rows.items()
     }
 
@@ -308,6 +326,29 @@ def _field(cells: Sequence[Cell], prose: Prose) -> ScriptText | None:
     colon = ScriptText(": ", [said.last, value.first], label.source)
     unit = value[-1:].replaced(f" {named[2]}") if named is not None else value[:0]
     return join([said, colon, value, unit], "")
+
+
+def _simple_field(line: ScriptText, prose: Prose) -> ScriptText | None:
+    """Return a line of which one option is ticked, `Start area: [ ] 1 [x] 2`, or with a key as data
+    files have them, `start_area,2`, as a field; None for another line."""
+    if len(line.content) > _LONGEST:
+        return None
+    if (boxed := _OPTIONS.fullmatch(line.content)) is not None:
+        options = list(_OPTION.finditer(line.content, boxed.end(1)))
+        ticked = [one for one in options if one[1].strip("[] □☐")]
+        if len(options) > 1 and len(ticked) == 1:
+            label = line[boxed.start(1) : boxed.end(1)].strip()
+            return join([label, line[ticked[0].start(2) : ticked[0].end(2)].strip()])
+    if (keyed := _KEYED.fullmatch(line.content)) is not None:
+        words = keyed[1].replace("_", " ").strip()
+        unit = next((u for u in ("min", "s", "h") if words.endswith(f" {u}")), "")
+        words = words.removesuffix(unit).strip()
+        if prose.label.fullmatch(f"{words}:") is not None:
+            value = line[keyed.start(2) : keyed.end(2)].strip()
+            said = f"{value.content} {unit}".strip() if unit else value.content
+            label = line[keyed.start(1) : keyed.end(1)].replaced(f"{words}: ")
+            return join([label, value.replaced(said)], "")
+    return None
 
 
 def _row(line: ScriptText, cells: Sequence[Cell], cut: str) -> FormRow:
@@ -365,7 +406,7 @@ def _cut_of(line: str) -> str:
         return ";"
     if inner.count(",") >= 2 and not re.search(r",\s", inner) and not inner.endswith("."):
         return ","
-    if _LEADER.search(inner) and re.match(r"(?:[^\W\d]|#).*?\s*\.{4,}\s*\S", inner):
+    if _LEADER.search(inner) and re.match(r"(?:[^\W\d]|#).*?\s*\.{4,}\s*[^\s.]", inner):
         return "."
     return "  " if '"' not in inner and re.search(r"\S\s{2,}\S", inner) else ""
 
@@ -405,6 +446,8 @@ def _headings(cells: Sequence[Cell], prose: Prose) -> Columns | None:
         heading = cell.text.content
         if cue_pattern("history", prose.form["history"]).search(heading) is not None:
             return CellRole.OTHER
+        if cue_pattern("abnormal", prose.form["abnormal"]).fullmatch(heading) is not None:
+            return CellRole.REACTION
         role = _role(cell, prose) or prose.role_by_last_words(heading)
         return CellRole(role or CellRole.OTHER)
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from argo_compiler.script.documents.source import ScriptText, join
 from argo_compiler.script.layout.asides import Asides
 from argo_compiler.script.layout.fields import ScriptFields
+from argo_compiler.script.layout.forms import ROW
 from argo_compiler.script.layout.lines import LineMark, ScriptLine, sentence_bounds, sentences
 from argo_compiler.script.sentences.grammar.parser import StumbleError
 from argo_compiler.script.sentences.tree.places import FloorName
@@ -107,11 +108,15 @@ class LineSense:
     def stands_alone(self, text: ScriptText) -> bool:
         """Whether a line never goes on with the one above it."""
         content = text.content
+        if ROW in content:
+            return True
         asides = self.asides
         numbered = content[-1:].isdigit() and asides.is_explicit_title(text)
         apart = _SEPARATOR.match(content) is not None or asides.retracts(content)
         alone = numbered or apart or asides.is_remark(content) or asides.opens(content)
-        return alone or self.fields.is_field(text)
+        bare = text[: len(content.rstrip(" .!"))]
+        limit = self.understanding.types(bare) == ("MOST_TIME",)  # of the mission, not of a task
+        return alone or limit or self.fields.is_field(text)
 
     def is_broken(self, line: str, below: ScriptText) -> bool:
         """Return True if a line was broken for its length and goes on in the next one."""

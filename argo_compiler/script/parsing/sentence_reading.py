@@ -99,11 +99,15 @@ class SentenceReader:
         stands_over = item.line.heading or text.content.endswith(":")
         if stands_over and self.fields.introduces(text):
             return []
-        if item.line.heading and {*self.understanding.types(text)} == {"KIND"}:
+        if {*self.understanding.types(text)} == {"KIND"}:
             if self.asides.sets_aside(text):
                 self._ask_of_heading(text)  # `Valves only`
-            else:
+                return []
+            if item.line.heading:
                 self.note(text, "a heading")  # `Pressure gauges` over steps
+                return []
+        if text.content.endswith(":") and self.understanding.types(text) == ("VALUE",):
+            self.note(text, "a field that a person fills in")
             return []
         whole = text.content == item.text.content.rstrip(".! ") and text.content[-1] != ":"
         alone = whole and item.line.mark is LineMark.NONE and not item.items

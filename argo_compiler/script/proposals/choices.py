@@ -262,6 +262,8 @@ def _by_mentions(of: _OpenText) -> Iterator[Sentences]:
         words = checkpoint_words(list(named.values()))
         yield (f"Check {words}.",)
         yield (f"Do not check {words}.",)
+        lengths = [length_words(mention.value) for mention in of.found.of("DURATION")]
+        yield from ((f"Wait for {length}.", f"Check {words}.") for length in lengths if length)
         if len(named) <= _FEW:
             yield from ((f"Check checkpoint {id}.",) for id in named)
     elif not named:
@@ -301,6 +303,34 @@ def _by_corrections(of: _OpenText) -> Iterator[Sentences]:
         yield (f"Check {checkpoint_words(list(left.values()))}.",)
 
 
+def _by_place_in_order(of: _OpenText) -> Iterator[Sentences]:
+    """Yield that a checkpoint is read earlier than what stands above: `before all that, R25`."""
+    known = of.composer.known
+    named: list[CheckpointInfo] = []
+    for mention in of.found.of("checkpoints"):
+        with suppress(RefusedError):
+            named += known.checkpoints([mention])
+    above = [*known.memory.so_far]
+    if not named or not above:
+        return
+    items = [known.items.get(of.text.content[m.start : m.end]) for m in of.found.of("NUMBER")]
+    others = [c.id for c in named[1:] if c.id in above] + [id for id in items if id in above]
+    for kind, word in (("BEFORE", "before"), ("AFTER", "after")):
+        if of.found.has(kind) and others:
+            yield (f"Add checkpoint {named[0].id} {word} checkpoint {others[0]}.",)
+    if of.found.has("BEFORE", "first", "AT_BEGIN"):
+        yield (f"Add checkpoint {named[0].id} before checkpoint {above[0]}.",)
+
+
+def _by_rounds(of: _OpenText) -> Iterator[Sentences]:
+    """Yield what a text asks for that counts rounds: `2 rounds, 30 min start to start`."""
+    counts = [m.value.whole for m in of.found.of("TIMES") if isinstance(m.value, Figure)]
+    lengths = [length_words(m.value) for m in of.found.of("DURATION")]
+    for count in counts if not of.found.has("checkpoints") else ():
+        yield from ((f"Repeat everything every {length}, {count} times.",) for length in lengths)
+        yield (f"Repeat everything {count} times.",)
+
+
 def _by_order(of: _OpenText) -> Iterator[Sentences]:
     """Yield what a text may be that speaks of the order."""
     labels = of.composer.understanding.language.prose.labels["order"]
@@ -315,11 +345,16 @@ def _by_figures(of: _OpenText) -> Iterator[Sentences]:
         return
     figures = {of.text.content[m.start : m.end] for m in of.found.of("NUMBER")}
     known = of.composer.known
-    alike = [c for c in known.catalog.checkpoints if {str(c.id), c.name.split()[-1]} & figures]
-    alike.sort(key=lambda c: c.id not in known.memory.so_far)
+    items = {known.items[figure] for figure in figures if figure in known.items}
+    alike = [
+        c
+        for c in known.catalog.checkpoints
+        if c.id in items or {str(c.id), c.name.split()[-1]} & figures
+    ]
+    alike.sort(key=lambda c: (c.id not in items, c.id not in known.memory.so_far))
     for checkpoint in alike:
         verb = "Check"
-        if of.found.has("leave_out", "forbidding", "NOT", "correction"):
+        if of.found.has("leave_out", "forbidding", "NOT", "correction", "DELETE", "past"):
             verb = "Delete" if checkpoint.id in known.memory.so_far else "Do not check"
         yield (f"{verb} checkpoint {checkpoint.id}.",)
 
@@ -329,6 +364,8 @@ _WAYS: tuple[Callable[[_OpenText], Iterator[Sentences]], ...] = (
     _by_corrections,
     _by_parts,
     _by_events,
+    _by_place_in_order,
+    _by_rounds,
     _by_order,
     _by_mentions,
     _by_figures,

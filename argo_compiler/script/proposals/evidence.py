@@ -20,6 +20,7 @@ _LEAD_IN = re.compile(r"[^,]{3,60},\s+")
 _MOST_WORDS = 6
 """of a heading in capitals"""
 _BLANK_LABELS = re.compile(r"(?:[^\W\d][\w .-]{0,20}:[\s_.]*)+")
+_COUNTER = re.compile(r"\W*[^\W\d]+(?: [^\W\d]+\.?)? [0-9]+ ?(?:of|von|/) ?[0-9]+\W*")
 _LABEL = re.compile(r"[^\W\d][\w ./'-]{1,40}?\s*:\s+(?=\S)")
 _MOST_OF_VALUE = 6
 """words of the value of a field"""
@@ -54,8 +55,10 @@ def evidence(text: ScriptText, found: Mentions, language: Language, clause: bool
 
 
 def is_name(content: str) -> bool:
-    """Return True if a text can be a person's name or initials."""
-    return bool(_INITIALS.fullmatch(content) or _NAME.fullmatch(content))
+    """Return True if a text can be a person's name or initials, perhaps with what the person is."""
+    name, _, role = content.strip(" /-").partition(", ")
+    plain = len(role.split()) <= _FEW_WORDS and role.replace(" ", "").isalpha() if role else True
+    return plain and bool(_INITIALS.fullmatch(name) or _NAME.fullmatch(name))
 
 
 def _cue(name: str, language: Language) -> re.Pattern[str]:
@@ -103,7 +106,7 @@ def _states(text: ScriptText, found: Mentions, language: Language) -> bool:
     for begun in (0, lead_in.end() if lead_in is not None else 0):
         begins = _cue("subject", language).match(content, begun)
         verb = begins and _cue("stating", language).search(content, begins.end())
-        if begins and verb and found.only("pronoun"):
+        if begins and verb and found.only("pronoun", "measuring"):
             return any(begins.end() <= w.start < verb.start() for w in found.unknown)
     return False
 
@@ -126,12 +129,20 @@ def _idle_fields(text: ScriptText, found: Mentions, language: Language) -> bool:
     return idle and not found.has("checkpoints", "place")
 
 
-def _has_no_field(text: ScriptText, found: Mentions, _: Language) -> bool:
-    """`Status: OPEN`: a label that no field has, and a value, which name nothing of a mission."""
+def _counts(text: ScriptText, found: Mentions, _: Language) -> bool:
+    """`Item 2 of 3`, `Page 1 / 2`"""
+    return _COUNTER.fullmatch(text.content) is not None and found.only(*OF_FORMS, "STEP")
+
+
+def _has_no_field(text: ScriptText, found: Mentions, language: Language) -> bool:
+    """`Status: OPEN`: a label that no field has, and a value, which name nothing of a mission; no
+    legend: `Black dot: chosen`."""
     label = _LABEL.match(text.content)
+    if cue_pattern("legend", language.prose.form["legend"]).search(text.content) is not None:
+        return False
     value = text.content[label.end() :] if label is not None else ""
     short = 0 < len(value.split()) <= _MOST_OF_VALUE and not _ENDS.search(value)
-    return short and found.only(*OF_FORMS)
+    return short and found.only(*OF_FORMS - {"MEASURE", "BE_MEASURED", "question"})
 
 
 def _is_none(text: ScriptText, found: Mentions, language: Language) -> bool:
@@ -162,6 +173,7 @@ _OF_LINES: tuple[tuple[str, _Test], ...] = (
     ("a field that a person fills in", _labels),
     ("a field that a mission does not have", _idle_fields),
     ("a field that a mission does not have", _has_no_field),
+    ("a number of a part of the sheet", _counts),
     ("an entry that there is none", _is_none),
     ("a statement of what is not needed", _spares),
 )

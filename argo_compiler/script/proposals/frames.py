@@ -16,6 +16,7 @@ from argo_compiler.script.sentences.words.amounts import Length
 from argo_compiler.script.sentences.words.numbers import Figure
 
 Sentences = tuple[str, ...]
+_LONGEST_S = 1e7
 _MOST_READINGS = 10
 """of one checkpoint, one after the other"""
 
@@ -179,6 +180,8 @@ def _check(found: Mentions, known: Known) -> Sentences | None:
             return None
     if _verb_before(found, named[-1]) or _words_between(found, named):
         return None
+    if found.has("measuring") and found.announces:
+        return None  # `It takes these checkpoints:`
     if found.has("first") and known.memory.so_far:
         return None
     with suppress(RefusedError):
@@ -343,7 +346,7 @@ def _area_of(mention: Mention) -> int | None:
 def length_words(value: object) -> str | None:
     """Return a time in words of the mission language; None if it is none that can be waited."""
     assert isinstance(value, Length)
-    if value.other is not None or value.seconds <= 0:
+    if value.other is not None or not 0 < value.seconds < _LONGEST_S:
         return None
     return _seconds(value.seconds)
 

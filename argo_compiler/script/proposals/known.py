@@ -37,6 +37,10 @@ class Known:
         """the checkpoints that were asked for and taken back"""
         self.spared: set[int] = set()
         """the checkpoints that are to be left out"""
+        self.listed: Kind | None = None
+        """the kind of the points in the rows below a heading: `PRESSURE GAUGES (bar)`"""
+        self.items: dict[str, int] = {}
+        """the checkpoints of numbered items and rows, by their numbers"""
         self.start_area: int | None = None
         """where the mission starts, if that is known"""
 
@@ -82,7 +86,7 @@ class Known:
         """Return how number and name differ that stand side by side: `#10 valve R7`; empty if none
         do."""
         for first, second in pairwise(mentions):
-            by_number = [_is_number(first), _is_number(second)]
+            by_number = [is_number(first), is_number(second)]
             if second.start - first.end > _SIDE_BY_SIDE or by_number[0] == by_number[1]:
                 continue
             with suppress(RefusedError):
@@ -94,6 +98,19 @@ class Known:
                         f"#{other.id}"
                     )
         return ""
+
+    def of_list(self, checkpoint: CheckpointInfo) -> Sequence[CheckpointInfo]:
+        """Return what `no. 4` means in a row below a heading, if that names a kind: the one with
+        this name, and the one with this number if it is of the kind as well."""
+        if self.listed is None:
+            return [checkpoint]
+        named = [
+            c
+            for c in self.catalog.checkpoints
+            if agrees(c, self.listed) and c.name.endswith(f" {checkpoint.id}")
+        ]
+        own = [checkpoint] if agrees(checkpoint, self.listed) or not named else []
+        return [*named, *(c for c in own if c not in named)]
 
     def alike(self, mention: Mention) -> list[CheckpointInfo]:
         """Return the checkpoints that unclear words may stand for: `gauge 8`, by name and by
@@ -129,7 +146,7 @@ class Known:
         return NounResolver(lookup, diagnostics, self.memory)
 
 
-def _is_number(mention: Mention) -> bool:
+def is_number(mention: Mention) -> bool:
     """Return True for a checkpoint by its number: `#10`, `checkpoint 10`."""
     nouns = mention.value.nouns if isinstance(mention.value, Nouns) else ()
     return all(

@@ -95,6 +95,8 @@ class Mentions:
     unknown: tuple[Word, ...]
     joining: frozenset[str] = frozenset()
     """types of words that were passed over, as they only join others"""
+    announces: bool = False
+    """whether the text ends with a colon"""
     occasion: int = 0
     """where the words end that say what the text is for: `For the acceptance`"""
 
@@ -130,6 +132,8 @@ def mentions_in(text: ScriptText, understanding: Understanding) -> Mentions:
         found.append(Mention("question", end, end))
     occasion = begins(understanding.language.prose.occasion).match(text.content)
     named_first = min((m.start for m in (*cues, *named)), default=0)
+    joints = understanding.joints("or")
+    found += [Mention("OR", w.start, w.start) for w in words if w.before.lower() in joints]
     unknown: list[Word] = []
     joining = {cue.kind for cue in cues if cue.kind == "courtesy"}
     i = 0
@@ -147,13 +151,14 @@ def mentions_in(text: ScriptText, understanding: Understanding) -> Mentions:
             continue
         if word.type == "WORD":
             unknown.append(word)
-        elif word.type in _WEAK and not misplaced:
+        elif word.type in _WEAK and not misplaced and word.value != "or":
             joining.add(word.type)
         else:
             found.append(Mention(word.type, word.start, word.end, word.value))
     in_order = tuple(sorted(found, key=lambda m: m.start))
     behind = named_first if occasion is not None else 0
-    return Mentions(in_order, tuple(unknown), frozenset(joining), behind)
+    announces = text.content.rstrip().endswith(":")
+    return Mentions(in_order, tuple(unknown), frozenset(joining), announces, behind)
 
 
 def _overlaps(mention: Mention, others: Sequence[Mention]) -> bool:

@@ -9,6 +9,7 @@ from dataclasses import replace
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.script.documents.signs import CLOCK
 from argo_compiler.script.documents.source import Diagnostics, RefusedError, ScriptText
+from argo_compiler.script.layout.forms import CellRole
 from argo_compiler.script.parsing.script import Piece, Script
 from argo_compiler.script.proposals.choices import choices_of
 from argo_compiler.script.proposals.clock import (
@@ -24,8 +25,9 @@ from argo_compiler.script.proposals.composing import Composer, Proposal
 from argo_compiler.script.proposals.evidence import is_name
 from argo_compiler.script.proposals.frames import Sentences, floor_names
 from argo_compiler.script.proposals.known import Known
-from argo_compiler.script.proposals.mentions import Mention, Mentions, mentions_in
+from argo_compiler.script.proposals.mentions import OF_FORMS, Mention, Mentions, mentions_in
 from argo_compiler.script.proposals.rows import propose_row
+from argo_compiler.script.sentences.tree.nouns import AllOf, TheOne
 from argo_compiler.script.sentences.tree.orders import Measure, Sentence
 from argo_compiler.script.sentences.tree.script import ScriptStep
 from argo_compiler.script.sentences.understanding import Understanding
@@ -93,9 +95,15 @@ class _Proposer:
                 ids = {c.id for c in self.composer.known.checkpoints(named)}
                 self.composer.known.asked |= ids
         self.composer.known.excepted.clear()
+        for number, mention in _numbered(self.script.steps):
+            with suppress(RefusedError):
+                checkpoint, *others = self.composer.known.checkpoints([mention])
+                self.composer.known.items |= {} if others else {str(number): checkpoint.id}
         for i, piece in enumerate(self.script.pieces):
             start = piece.text.first
             self._note_heading(piece)
+            if start not in self.script.rows:
+                self.composer.known.listed = None
             named = measured.get(start, [])
             proposal: Proposal | None = None
             if start in self.unread and len(self.found) < MAX_PROPOSED:
@@ -104,6 +112,8 @@ class _Proposer:
                 proposal = Proposal(choices=choices_of(piece.text, self.composer))
             elif self.plan is not None and has_date(piece.text) and not named:
                 proposal = Proposal(choices=((),), doubt=NO_DATES)
+            elif self._is_heading_of_rows(piece, i):
+                proposal = Proposal(aside="a heading")
             elif named and self._is_spared(named, piece.text):
                 proposal = Proposal(aside="left out, as another line says")
             if proposal is not None and self._is_left_out(proposal):
@@ -113,6 +123,7 @@ class _Proposer:
                 proposal = replace(proposal, choices=choices)
             if proposal is not None:
                 self.found[start] = proposal
+                self._note_item(piece, proposal)
             else:
                 self._remember(named)
             said = proposal.sentences if proposal is not None else ()
@@ -138,6 +149,28 @@ class _Proposer:
         if returned is None or area is None:
             return sentences
         return (*sentences[:-1], f"End of the mission: starting area {area}.")
+
+    def _is_heading_of_rows(self, piece: Piece, i: int) -> bool:
+        """Return True for a kind over rows of a sheet: `PRESSURE GAUGES (bar)`. What these name by
+        a number alone is of that kind."""
+        found = mentions_in(piece.text, self.understanding)
+        below = self.script.pieces[i + 1 : i + 2]
+        over_rows = all(one.text.first in self.script.rows for one in below)
+        kinds = {n.kind for m in found.of("checkpoints") for n in m.value.nouns if _is_kind(n)}  # type: ignore[attr-defined]
+        alone = found.only("checkpoints", *OF_FORMS, "UNIT", "LPAR_HOW")
+        if not (below and over_rows and len(kinds) == 1 and alone):
+            return False
+        (self.composer.known.listed,) = kinds
+        return True
+
+    def _note_item(self, piece: Piece, proposal: Proposal) -> None:
+        """Note which checkpoint a numbered row is about."""
+        row = self.script.rows.get(piece.text.first)
+        numbers = [c.text.content for c in row.cells if c.role is CellRole.NUMBER] if row else []
+        named = _NUMBERED.findall(" ".join(proposal.sentences))
+        first = row.place.content.split()[0].strip(".):|") if row and row.place.content else ""
+        if row is not None and len({*named}) == 1:
+            self.composer.known.items[(numbers or [first])[0].strip(".")] = int(named[0])
 
     def _whole(self, piece: Piece) -> ScriptText:
         row = self.script.rows.get(piece.text.first)
@@ -195,7 +228,8 @@ class _Proposer:
             before = pieces[i - 1].text
             same_line = text.source.line_at(before.first) == text.source.line_at(text.first)
             return same_line and self.found.get(before.first) == Proposal(aside="a signature")
-        if not is_name(text.content) or not {*self.understanding.types(text)} <= _OF_NAMES:
+        named = is_name(text.content) and {*self.understanding.types(text)} <= _OF_NAMES
+        if not named or mentions_in(text, self.understanding).mentions:
             return False
         ends = i >= len(pieces) - _LAST
         header = text.source.lines[:_FIRST]
@@ -227,6 +261,11 @@ class _Proposer:
                 self.composer.known.measured(self.composer.known.checkpoints([mention]))
 
 
+def _is_kind(noun: object) -> bool:
+    """Return True for `pressure gauges`, without a number."""
+    return isinstance(noun, AllOf) or (isinstance(noun, TheOne) and noun.plural)
+
+
 def _checks(sentence: str) -> bool:
     """Return True for a sentence that measures something."""
     return sentence.startswith("Check ")
@@ -250,6 +289,14 @@ def _measured(steps: Sequence[ScriptStep], pieces: Sequence[Piece]) -> dict[int,
         at = max(bisect_right(starts, offset) - 1, 0)
         found.setdefault(starts[at], []).append(Mention("checkpoints", 0, 0, order.what))
     return found
+
+
+def _numbered(steps: Sequence[ScriptStep]) -> Iterator[tuple[int, Mention]]:
+    """Yield the numbers of steps that measure one noun phrase, with that."""
+    for step in steps:
+        orders = list(_measures([replace(step, steps=())]))
+        if step.number is not None and len(orders) == 1 and len(orders[0].what.nouns) == 1:
+            yield step.number, Mention("checkpoints", 0, 0, orders[0].what)
 
 
 def _measures(steps: Sequence[ScriptStep]) -> Iterator[Measure]:

@@ -16,6 +16,7 @@ from argo_compiler.script.documents.tags import count_tag, tag_of
 from argo_compiler.script.layout.forms import SHEET_HEADINGS, Cell, CellRole, FormRow
 from argo_compiler.script.proposals.composing import Composer, Proposal
 from argo_compiler.script.proposals.evidence import is_name
+from argo_compiler.script.proposals.known import is_number
 from argo_compiler.script.proposals.mentions import (
     OF_FORMS,
     Mention,
@@ -28,6 +29,10 @@ from argo_compiler.script.sentences.words.lexicon import expand
 from argo_compiler.script.sentences.words.prose import cue_pattern
 
 _FILL = re.compile(r"_{2,}|\.{3,}|…+|[□☐]|\[\s*\]|\(\s*y\s*/\s*n\s*\)|/", re.IGNORECASE)
+_UNIT_BEHIND = re.compile(
+    r"^\s*[^\W\d_].*?(?:_{2,}|\.{4,})\s*([^\W\d_]\S{0,5}|[%°]\w?)\s*(?:[<>(\[].*)?$"
+)
+"""a blank to fill in with a unit behind it: `Conductivity ______ uS`"""
 _TICK = re.compile(r"[xX✓✔☑☒]")
 _HASH = re.compile(r"#\d+")
 """a checkpoint by its number, or by its tag, which was replaced by that"""
@@ -71,6 +76,8 @@ class _Row:
     """words of the service that a plant tag has: `contactor overhead`"""
     together: bool = False
     """whether a single cell names all of several checkpoints"""
+    reaction: ScriptText | None = None
+    """what is done if the reading is not normal"""
     sentences: tuple[str, ...] = ()
     """what a cell says of how and when the checkpoint is read"""
 
@@ -119,6 +126,15 @@ def propose_row(row: FormRow, composer: Composer, first: bool = False) -> Propos
         return Proposal(choices=((check,), ()), doubt="this row names several checkpoints")
     composer.known.measured(list(ids.values()))
     unused = tuple(found.unused)
+    if found.reaction is not None:
+        case = composer.understanding.language.prose.say["if_abnormal"]
+        said = case.format(next(iter(ids)), found.reaction.content)
+        inner = composer.propose(found.reaction.replaced(said)) if len(ids) == 1 else Proposal()
+        if not inner.sentences:
+            doubt = f"`{found.reaction.content}` is not understood here"
+            return Proposal(choices=((check,), (spare,)), doubt=doubt)
+        differences = tuple(found.differences)
+        return Proposal((check, *inner.sentences), unused, differences=differences)
     if found.sentences:
         return Proposal(found.sentences, unused, differences=tuple(found.differences))
     return Proposal((check,), unused, differences=tuple(found.differences), certain=not unused)
@@ -174,6 +190,10 @@ def _without_checkpoint(row: FormRow, composer: Composer, first: bool) -> Propos
     if tags:
         return Proposal(choices=((),), doubt=f"the tag `{tags[0]}` is not known")
     blank = _FILL.search(row.place.content) is not None
+    if plain and (unit := _UNIT_BEHIND.search(row.place.content)) and not tags:
+        form = composer.understanding.language.prose.form
+        if _without_fill(unit[1], form) and "UNIT_S" not in composer.understanding.types(row.place):
+            return Proposal(doubt="this asks for a reading of what the site does not have")
     if plain and blank and not _needed(row.place, composer):
         return Proposal(aside="a field that a person fills in")
     found = mentions_in(row.place, composer.understanding)
@@ -301,6 +321,10 @@ def _read_sheet_cell(cell: Cell, found: _Row, composer: Composer) -> bool:
             return True
         case CellRole.FILL if not _without_fill(text, form):
             return True
+        case CellRole.REACTION:
+            idle = nothing or cue_pattern("no_action", form["no_action"]).fullmatch(text)
+            found.reaction = None if idle else cell.text
+            return True
         case CellRole.REMARK:
             return _read_remark(cell.text, found, composer)
     return False
@@ -385,7 +409,13 @@ def _read_cell(text: ScriptText, found: _Row, composer: Composer) -> None:
         found.doubts.append(said)
     for mention in named:
         with suppress(RefusedError):
-            found.named += composer.known.checkpoints([mention])
+            checkpoints = composer.known.checkpoints([mention])
+            if len(checkpoints) == 1 and is_number(mention):
+                checkpoints = list(composer.known.of_list(checkpoints[0]))
+                if len(checkpoints) > 1:
+                    both = " or ".join(f"{c.name} (#{c.id})" for c in checkpoints)
+                    found.doubts.append(f"`{content}` can be {both}")
+            found.named += checkpoints
             continue
         said = content[mention.start : mention.end]
         found.doubts.append(f"it is not clear which checkpoint `{said}` is")

@@ -7,7 +7,7 @@ from functools import cache
 from itertools import islice, product
 
 from argo_compiler.base.listing import listed
-from argo_compiler.script.documents.source import Diagnostics, ScriptText, quotes
+from argo_compiler.script.documents.source import Diagnostics, ScriptText, join, quotes
 from argo_compiler.script.sentences.building.sentences import build
 from argo_compiler.script.sentences.grammar.parser import Branch, StumbleError, sentence_grammar
 from argo_compiler.script.sentences.tree.nouns import Kind
@@ -33,6 +33,7 @@ _WORD = re.compile(r"(?<![\w.'-])(?=[^\W\d_]*[0-9])[^\W_]{4,}(?![\w-])")
 _LETTERS = {"0": "o", "1": "li", "5": "s", "8": "b"}
 """what text recognition takes for figures"""
 _DIGITS = str.maketrans("lIi|Oo", "111100")
+_LISTED = re.compile(r"([^():\d]{3,40}?)\s*\(([^():\d]{3,40})\)\s*:\s+(?=\S)")
 _ARROW = re.compile(r"\s*(?:-+>|=+>|→|➔|»)\s*")
 _COMPARING = frozenset(
     [*("LESS", "GREATER", "AT_LEAST", "AT_MOST", "OR_MORE", "OR_LESS", "STATE", "OUTSIDE", "FAILS")]
@@ -154,12 +155,16 @@ class Understanding:
         return fixed
 
     def rewritten(self, text: ScriptText) -> ScriptText:
-        """Return a text with contractions in full, and arrows as words: `R7 -> R9` is `R7, then
-        R9`, and `R7 is closed -> R9` is a condition."""
+        """Return a text with contractions in full, and signs as words: `R7 -> R9` is `R7, then
+        R9`, `R7 is closed -> R9` a condition, and `Checkpoints (in any order): 1, 4` a list."""
         if "'" in text.content or "’" in text.content:
             for short, full in _contractions(self.language.prose.contractions):
                 for found in reversed(list(short.finditer(text.content))):
                     text = text.replace(*found.span(), full)
+        listed = _LISTED.match(text.content)
+        if listed is not None and self.types(text[: listed.end(1)]) == ("KIND",):
+            inner = text[listed.start(2) : listed.end(2)]
+            text = join([text[listed.end() :].strip(), inner], ", ")
         arrows = [] if '"' in text.content else list(_ARROW.finditer(text.content))
         if arrows and arrows[0].start() == 0:
             text = text[arrows[0].end() :]

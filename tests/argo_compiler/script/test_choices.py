@@ -15,7 +15,8 @@ BEFORE = "Check pressure gauge 3 and valve R12.\n"
         # by parts
         ("PG3 > LG2 > PG5 hmm", "Check checkpoint 6. Check checkpoint 7. Check checkpoint 8."),
         (
-            "then go up to the top floor and read the liquid level gauge there, um, if it isn't foggy, and come home",
+            "then go up to the top floor and read the liquid level gauge there, um, "
+            "if it isn't foggy, and come home",
             "Check checkpoint 20. Return to the docking station.",
         ),
         ("hmm than level guage 3, its up there", "Check checkpoint 12."),

@@ -37,6 +37,8 @@ class Known:
         """the checkpoints that were asked for and taken back"""
         self.spared: set[int] = set()
         """the checkpoints that are to be left out"""
+        self.warnings: list[str] = []
+        """what the names of checkpoints were warned of: `a valve has no pressure`"""
         self.start_area: int | None = None
         """where the mission starts, if that is known"""
 
@@ -75,6 +77,8 @@ class Known:
             excepted = resolver.each(replace(nouns, nouns=nouns.but, but=())) if nouns.but else []
             self.excepted |= {c.id for c in excepted}
             last = (*nouns.nouns, *nouns.but)[-1]
+            self.warnings += [d.message for d in resolver.diagnostics.entries]
+            resolver.diagnostics.entries.clear()
             self.last_named = [*found, *excepted][-1] if isinstance(last, Labelled) else None
         return found
 

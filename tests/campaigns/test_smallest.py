@@ -12,6 +12,7 @@ pytestmark = pytest.mark.long
 
 COMMANDS = {
     "charging --missions 5": r"5 missions, \d+ reports of a low battery, .* 0 faults",
+    "deletions --only people/email --generated 20": r"\d+ scripts, .* 0 swallowed",
     "fault_pairs --runs 1 --drive route": r"of \d findings 0 without a cause; 0 missions failed",
     "faults --clean 1 --drive route --site darmstadt": r"0 false alarms, 0 missions without succ",
     "faults --bricks 1 --seed 1": r"detected in 1, contacts in 0, successful all the same 1",

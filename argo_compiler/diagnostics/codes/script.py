@@ -393,7 +393,7 @@ SCRIPT = {
         "Confirm what is proposed for it, or say it as a sentence.",
     ),
     "script.other-range": warning(
-        "A normal range or position in the script is not that of the site; the site's counts.",
+        "A normal range, position or quantity in the script is not the site's; the site's counts.",
         "Correct the script, or the site.",
     ),
     "script.set-aside": warning(

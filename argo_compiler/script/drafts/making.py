@@ -275,6 +275,8 @@ def _asides(reading: _Reading, proposals: Mapping[int, Proposal]) -> tuple[Diagn
             message = f"`{shortened(text_of(piece))}` is set aside: it is {proposal.aside}"
             hint = "write it as a step if the robot has to do something"
             found.append(diagnostic_of("script.set-aside", message, hint, span=span))
+        for word in proposal.ignored if proposal.certain else ():
+            found.append(diagnostic_of("script.no-effect", f"`{word}` has no effect", span=span))
         for message in proposal.differences:
             hint = "correct one of the two; the mission uses that of the site"
             found.append(diagnostic_of("script.other-range", message, hint, span=span))

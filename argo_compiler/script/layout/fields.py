@@ -467,6 +467,10 @@ class ScriptFields:
             return False
         order = Order.ANY if types[-1] == "ANY_ORDER" else Order.PRECISE
         self._set("order", order, text)
+        for word in self.understanding.named_kinds(text):
+            said = text[word.start : word.end]
+            message = f"`{said.content}` has no effect: the lines below name what is checked"
+            self.diagnostics.warning("no-effect", message, said.span())
         return True
 
     def leaves_open(self, text: ScriptText) -> bool:

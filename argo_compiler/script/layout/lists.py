@@ -181,7 +181,7 @@ class Lists:
         types = self.understanding.types(last)
         named = [kind for kind in types if kind not in _INTRODUCING]
         if named == ["KIND", "THIS_ORDER"]:
-            self.record(last, "")
+            self.record(last, "a heading" if self.understanding.named_kinds(last) else "")
             item.text = item.text[: len(item.text.content) - len(last.content)].strip()
 
     def _without(self, item: LineItem | None, head: _Head) -> LineItem | None:

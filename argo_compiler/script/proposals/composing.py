@@ -69,6 +69,8 @@ class Proposal:
     """for an open text: what is not clear"""
     differences: tuple[str, ...] = ()
     """what the text says otherwise than the site"""
+    ignored: tuple[str, ...] = ()
+    """words of a certain proposal that ask for nothing"""
     certain: bool = False
     """whether every word of it is used, so that nobody has to confirm it"""
 
@@ -95,7 +97,9 @@ class Composer:
         reason = evidence(text, found, self.understanding.language)
         if reason:
             return Proposal(aside=reason)
-        if text.is_question and not found.has("MEASURE", "BE_MEASURED"):
+        joint = self.understanding.unfinished(text)
+        either = joint is not None and joint.content.lower() in self.understanding.joints("or")
+        if either or (text.is_question and not found.has("MEASURE", "BE_MEASURED")):
             return Proposal()  # `R9 as well?`
         if said := self.known.disagreement(found.of("checkpoints")):
             return Proposal(doubt=said)
@@ -178,6 +182,7 @@ class Composer:
     def _composed(self, text: ScriptText, found: Mentions) -> Proposal | None:
         if not found.mentions or self._depends(text, found):
             return None
+        self.known.warnings.clear()
         sentences = sentences_of(found, self.known)
         if sentences is None:
             return None
@@ -189,7 +194,11 @@ class Composer:
         plain = bidden and found.joining <= {*_PLAIN, *towards, "courtesy"}
         whole = plain and not unused and not found.has(*_UNSURE)
         certain = whole and all(map(_LIKE_CHECKS.match, sentences))
-        return Proposal(sentences, unused, certain=certain)
+        differences = tuple(dict.fromkeys(self.known.warnings))
+        ignored = found.idle if certain else ()
+        return Proposal(
+            sentences, unused, differences=differences, ignored=ignored, certain=certain
+        )
 
     def _of_clauses(self, text: ScriptText, found: Mentions) -> Proposal | None:
         """Return what the clauses of a text propose, if each of them proposes something or names

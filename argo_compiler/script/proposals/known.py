@@ -41,6 +41,8 @@ class Known:
         """the kind of the points in the rows below a heading: `PRESSURE GAUGES (bar)`"""
         self.items: dict[str, int] = {}
         """the checkpoints of numbered items and rows, by their numbers"""
+        self.warnings: list[str] = []
+        """what the names of checkpoints were warned of: `a valve has no pressure`"""
         self.start_area: int | None = None
         """where the mission starts, if that is known"""
 
@@ -79,6 +81,8 @@ class Known:
             excepted = resolver.each(replace(nouns, nouns=nouns.but, but=())) if nouns.but else []
             self.excepted |= {c.id for c in excepted}
             last = (*nouns.nouns, *nouns.but)[-1]
+            self.warnings += [d.message for d in resolver.diagnostics.entries]
+            resolver.diagnostics.entries.clear()
             self.last_named = [*found, *excepted][-1] if isinstance(last, Labelled) else None
         return found
 

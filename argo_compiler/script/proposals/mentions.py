@@ -12,8 +12,14 @@ from argo_compiler.script.sentences.grammar.parser import StumbleError
 from argo_compiler.script.sentences.tree.nouns import AllOf, Nouns, Pronoun
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.amounts import Length
+from argo_compiler.script.sentences.words.lexer import all_words
 from argo_compiler.script.sentences.words.prose import begins, cue_pattern
-from argo_compiler.script.sentences.words.without_effect import HARMLESS, MISPLACED
+from argo_compiler.script.sentences.words.without_effect import (
+    HARMLESS,
+    MISPLACED,
+    TOLD,
+    WITHOUT_EFFECT,
+)
 from argo_compiler.script.sentences.words.word import Word
 
 _NOUNS = frozenset(["KIND", "HASH", "IDENT", "ALL", "OF", "EVERYTHING", "IT", "THEM", "VALUE"])
@@ -97,6 +103,8 @@ class Mentions:
     """types of words that were passed over, as they only join others"""
     announces: bool = False
     """whether the text ends with a colon"""
+    idle: tuple[str, ...] = ()
+    """phrases that were passed over as they ask for nothing: `noch`, `I think`"""
     occasion: int = 0
     """where the words end that say what the text is for: `For the acceptance`"""
 
@@ -158,7 +166,17 @@ def mentions_in(text: ScriptText, understanding: Understanding) -> Mentions:
     in_order = tuple(sorted(found, key=lambda m: m.start))
     behind = named_first if occasion is not None else 0
     announces = text.content.rstrip().endswith(":")
-    return Mentions(in_order, tuple(unknown), frozenset(joining), announces, behind)
+    idle = tuple(_idle(text.content, cues, understanding))
+    return Mentions(in_order, tuple(unknown), frozenset(joining), announces, idle, behind)
+
+
+def _idle(content: str, cues: Sequence[Mention], understanding: Understanding) -> Iterator[str]:
+    """Yield the passed-over phrases that the lexicon does not list as without effect."""
+    for cue in cues:
+        phrase = content[cue.start : cue.end]
+        types = {word.type for word in all_words(phrase, understanding.language.lexicon)}
+        if cue.kind == "courtesy" and (types & TOLD or not types <= WITHOUT_EFFECT):
+            yield phrase
 
 
 def _overlaps(mention: Mention, others: Sequence[Mention]) -> bool:

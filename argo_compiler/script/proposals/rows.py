@@ -208,7 +208,8 @@ def _without_checkpoint(row: FormRow, composer: Composer, first: bool) -> Propos
             if inner.sentences:
                 return inner
     labels = composer.understanding.language.prose.form["labels"]
-    idle = cue_pattern("labels", labels).search(row.cells[0].text.content) is not None
+    first_cell = row.cells[0].text.content if row.cells else ""
+    idle = cue_pattern("labels", labels).search(first_cell) is not None
     named = mentions_in(row.place, composer.understanding).has("checkpoints", "place")
     if plain and ((row.labelled and idle and not named) or _names_people(row)):
         return Proposal(aside="a field that a mission does not have")
@@ -498,7 +499,12 @@ def _range_difference(content: str, checkpoint: CheckpointInfo) -> Iterator[str]
     factor = _BAR.get(unit, 1.0) if checkpoint.kind is CheckpointKind.PRESSURE_GAUGE else 1.0
     low, high = (float(said[k].replace(",", ".")) * factor for k in ("low", "high"))
     known = checkpoint.nominal
-    if abs(low - known.low) > 1e-6 or abs(high - known.high) > 1e-6:
+    if unit in _ALL_UNITS - _UNITS[checkpoint.kind]:
+        yield (
+            f"the normal range of {checkpoint.name} is in {unit} here, "
+            f"but in {checkpoint.unit} on the site"
+        )
+    elif abs(low - known.low) > 1e-6 or abs(high - known.high) > 1e-6:
         yield (
             f"the normal range of {checkpoint.name} is {low:g} to {high:g} here, "
             f"but {known.low:g} to {known.high:g} {checkpoint.unit} on the site"

@@ -78,6 +78,11 @@ class Understanding:
     def types(self, text: ScriptText) -> tuple[str, ...]:
         return tuple(word.type for word in self.words(text))
 
+    def named_kinds(self, text: ScriptText) -> list[Word]:
+        """The nouns of a text for one kind of checkpoint: `valves`, but not `points`."""
+        kinds = (word for word in self.words(text) if word.type == "KIND")
+        return [word for word in kinds if word.value[0] is not Kind.CHECKPOINT]
+
     def read(self, text: ScriptText, start: str = "sentence") -> Reading | StumbleError:
         """The tree of a sentence, or of what `start` names, or where the grammar can't go on."""
         found = self.words(text)

@@ -20,6 +20,9 @@ _IN_BRACKETS = frozenset(
     [*("KIND", "HASH", "NUMBER", "IDENT", "STRING", "MINUS", "AREA", "IN", "AT", "ON", "TO")]
 )
 """what may begin the other name of a checkpoint, or coordinates"""
+_ENDING = frozenset(["UNTIL", "FOR", "TIMES", "MOST_TIMES", "MOST_TIME"])
+"""what may end a repetition"""
+_CASES = frozenset(["IF", "IF_ONLY", "UNLESS"])
 _JOINED = {
     **dict.fromkeys(VERBS, "DO"),
     **dict.fromkeys(_NOUNS, "NOUN"),
@@ -53,6 +56,8 @@ def joined(words: list[Word]) -> list[Word]:
                 kind = "NEXT"
             elif named == len(found) - 1 >= 0:
                 kind = "COLON"
+            if kind is None and "or" in said and not _ends_either_way(found, word):
+                kind = "OR_DO"
             if kind is not None and (found or "or" in said):
                 found.append(Word(kind, said, joints[0].start, joints[-1].end))
             word = Word(word.type, word.value, word.start, word.end, said)
@@ -60,6 +65,14 @@ def joined(words: list[Word]) -> list[Word]:
         named = len(found) if name else named
         found.append(word)
     return found
+
+
+def _ends_either_way(found: list[Word], word: Word) -> bool:
+    """Return True for `twice or until ...`, where what comes first ends it, and for `if ..., or if
+    ...`; any other `or` that joins no two of a kind is left to be asked about."""
+    before = {other.type for other in found}
+    ends = word.type in _ENDING and not before.isdisjoint(_ENDING)
+    return ends or (word.type in _CASES and not before.isdisjoint(_CASES))
 
 
 def _is_name(words: list[Word], i: int) -> bool:

@@ -28,6 +28,8 @@ _UPTO = ("TO", "UNTIL")
 """`1 to 4`, `1 bis 4`"""
 _LABELS = frozenset(["NUMBER", "NUMBER_WORD", "IDENT", "STRING"])
 _LISTING = frozenset(["JOINT", "TO", "UNTIL", "DASH", "UPTO"])
+_ADDING = frozenset(["and", ","])
+"""joints between the parts of a length of time: `an hour and a half`"""
 _PREDICATES = frozenset(
     ["GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "STATE", "FAILS", "OLDER", "OUTSIDE"]
 )
@@ -226,7 +228,8 @@ def _joined_bounds(words: list[Word]) -> list[Word]:
 def _add(word: Word, after: Word | None, found: list[Word]) -> None:
     """Adds a word, by what stands beside it."""
     last = found[-1] if found else None
-    before = found[-2] if last is not None and last.type == "JOINT" and len(found) > 1 else last
+    added = last is not None and last.type == "JOINT" and last.value in _ADDING
+    before = found[-2] if added and len(found) > 1 else last
     sum_ = total(before, word) if before is not None else None
     clock = hours_and(last, word, after) if last is not None else None
     if before is not None and sum_ is not None:

@@ -70,6 +70,9 @@ MISPLACED = "MISPLACED"
 """type of such a word in another place; its value is the terminal"""
 HARMLESS = frozenset(["ARTICLE", "SUBJECT", "BIDDING", "COURTESY", "WHOLE_SITE", "THANKS"])
 """words that change nothing in another place either, where a proposal is made"""
+LINKING = frozenset(["IN", "AT", "TO", "ON", "FROM", "FOR", "BY", "IS", "HASH"])
+"""words that link others and mean nothing by themselves, where the grammar takes a sentence without
+them as well"""
 TOLD = frozenset(["FOCUS", "CARE", "DAY"])
 """words that a reader may mean something by, of which a warning tells that they have no effect"""
 
@@ -110,6 +113,12 @@ def with_effect(words: list[Word]) -> list[Word]:
         elif not places_of(words, i, found) & PLACES[word.type]:
             found.append(replace(word, type=MISPLACED, value=word.type))
     return found
+
+
+def left_out(words: list[Word]) -> list[Word]:
+    """Return the words of a sentence that have no effect where they stand."""
+    starts = {word.start for word in with_effect(words)}
+    return [word for word in words if word.start not in starts]
 
 
 def without_empty(words: Sequence[Word]) -> list[Word]:

@@ -17,10 +17,8 @@ from argo_compiler.script.sentences.tree.node import Node
 from argo_compiler.script.sentences.tree.script import Said
 from argo_compiler.script.sentences.words.lexicon import Lexicon
 from argo_compiler.script.sentences.words.unknown import (
-    Fill,
     Unknown,
     UnknownFigure,
-    UnknownText,
     unknown_figure,
 )
 
@@ -65,8 +63,8 @@ def _changed(figure: str, digits: dict[int, str] | dict[int, int]) -> str:
 def _mover(part: object) -> _Move | None:
     """What makes the same part for another place; None if it says nothing of its place, nor of
     a figure that is not known."""
-    if type(part) in (Unknown, UnknownText):
-        fill: Fill = part.fill  # type: ignore[attr-defined]
+    if type(part) is Unknown:
+        fill = part.fill
         return lambda _lines, _columns, figures: fill(figures)
     match part:
         case Span(line=line, column=column, length=length):

@@ -311,9 +311,8 @@ class Cases:
         if not others or len(others) == len(last):
             return
         names = listed((f"{c.name} (#{c.id})" for c in last[:6]), "or")
-        message = f"this can apply to {names}"
         hint = "write it after the task that it applies to: `check checkpoint 4; if it fails, ...`"
-        self.diagnostics.refuse("ambiguous-pronoun", message, case.span, hint)
+        self.diagnostics.refuse("ambiguous-pronoun", f"this can apply to {names}", case.span, hint)
 
     def _require_each(self, recent: Sequence[Do], case: Case) -> None:
         """Asks about `if both fail`, as each task has a failure path of its own."""

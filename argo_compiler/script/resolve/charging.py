@@ -72,6 +72,5 @@ def _share(amount: Amount, span: Span, hint: str, diagnostics: Diagnostics) -> f
         message = f"the battery's charge is given in %, not as a number {unit}"
         diagnostics.refuse("battery", message, span, hint)
     if not 0.0 < amount.value < 100.0:
-        message = "this must be more than 0 % and less than 100 %"
-        diagnostics.refuse("battery", message, span, hint)
+        diagnostics.refuse("battery", "this must be more than 0 % and less than 100 %", span, hint)
     return amount.value / 100.0

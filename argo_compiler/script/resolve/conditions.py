@@ -125,13 +125,10 @@ class ConditionResolver:
     def _subjects(self, test: Test) -> Sequence[CheckpointInfo]:
         """Which checkpoints are asked for; `it` is the only one whose unit is that of the value."""
         if test.subject is not None and test.subject.but:
-            message = (
-                "the excepted checkpoint can have any value, or must not satisfy the condition"
-            )
-            hint = (
-                "if any value is allowed, remove the exception; otherwise write "
-                "`if #1 is above 5 and #4 is at most 5`"
-            )
+            message = "the excepted checkpoint can have any value, or must not satisfy the "
+            message += "condition"
+            hint = "if any value is allowed, remove the exception; otherwise write "
+            hint += "`if #1 is above 5 and #4 is at most 5`"
             if not any(isinstance(noun, AllOf) for noun in test.subject.nouns):
                 self.diagnostics.refuse("condition", message, test.subject.span, hint)
         match test.subject:
@@ -144,20 +141,19 @@ class ConditionResolver:
 
     def _of(self, test: Test, checkpoint: CheckpointInfo) -> list[tuple[Condition, ...]]:
         """Alternatives for one checkpoint."""
-        return [
-            (
-                Condition(
-                    type=kind,
-                    id=test.id,
-                    object_id=str(checkpoint.id),
-                    param1=low,
-                    param2=test.second_bound if high is None else high,
-                    inclusive=inclusive,
-                    max_age=test.max_age,
-                ),
+        found: list[tuple[Condition, ...]] = []
+        for kind, low, high, inclusive in self._bounds(test, checkpoint):
+            condition = Condition(
+                type=kind,
+                id=test.id,
+                object_id=str(checkpoint.id),
+                param1=low,
+                param2=test.second_bound if high is None else high,
+                inclusive=inclusive,
+                max_age=test.max_age,
             )
-            for kind, low, high, inclusive in self._bounds(test, checkpoint)
-        ]
+            found.append((condition,))
+        return found
 
     def _bounds(self, test: Test, checkpoint: CheckpointInfo) -> "list[_Bound]":
         match test.predicate:
@@ -194,10 +190,7 @@ class ConditionResolver:
             self.diagnostics.refuse("condition", message, test.span, hint)
         low, high = POSITIONS_DEG[position]
         if low is not None and high is not None:
-            if not test.negated:
-                return [(ConditionType.WITHIN, low, high, True)]
-            outside = ((ConditionType.LESS, low), (ConditionType.GREATER, high))
-            return [(kind, bound, None, False) for kind, bound in outside]
+            return _within(low, high, True, test.negated)
         greater = (low is not None) is not test.negated
         kind = ConditionType.GREATER if greater else ConditionType.LESS
         return [(kind, low if low is not None else high, None, not test.negated)]
@@ -210,10 +203,7 @@ class ConditionResolver:
         if low > high or (low == high and not predicate.inclusive):
             message = "no value is between these bounds"
             self.diagnostics.refuse("condition", message, test.span, "write the lower bound first")
-        if not test.negated:
-            return [(ConditionType.WITHIN, low, high, predicate.inclusive)]
-        outside = ((ConditionType.LESS, low), (ConditionType.GREATER, high))
-        return [(kind, bound, None, not predicate.inclusive) for kind, bound in outside]
+        return _within(low, high, predicate.inclusive, test.negated)
 
     def _bound(self, amount: Amount, checkpoint: CheckpointInfo) -> float:
         """The amount in the checkpoint's unit."""
@@ -228,6 +218,14 @@ class ConditionResolver:
             hint = f"write the value in {checkpoint.unit}, not in {amount.unit}"
             self.diagnostics.refuse("unit", message, amount.span, hint)
         return value
+
+
+def _within(low: float, high: float, inclusive: bool, negated: bool) -> "list[_Bound]":
+    """Return what holds between two bounds, or what does outside of them."""
+    if not negated:
+        return [(ConditionType.WITHIN, low, high, inclusive)]
+    outside = ((ConditionType.LESS, low), (ConditionType.GREATER, high))
+    return [(kind, bound, None, not inclusive) for kind, bound in outside]
 
 
 def _in_unit_of(checkpoint: CheckpointInfo, amount: Amount) -> float | None:

@@ -162,8 +162,7 @@ class Manners:
             if manner.object_id is not None:
                 if do.action is Action.MEASURE:
                     message = "a measurement always concerns its checkpoint"
-                    hint = "remove `about object`"
-                    self.diagnostics.error("stray-clause", message, span, hint)
+                    self.diagnostics.error("stray-clause", message, span, "remove `about object`")
                 do.object_id = manner.object_id
         if tasks:
             self._set(tasks[-1], "leaving", manner.leaving, span)

@@ -219,8 +219,7 @@ class Planner:
         said = self.header.max_duration
         if said is not None and said[0] != seconds:
             message = f"line {said[1].span.line} has another maximum duration"
-            hint = "remove one of the two"
-            self.diagnostics.error("repeated-field", message, fact.span, hint)
+            self.diagnostics.error("repeated-field", message, fact.span, "remove one of the two")
         self.header.max_duration = (seconds, fact)
 
     # ---- sentences and orders

@@ -126,8 +126,7 @@ class Repeating:
             return False
         if round_.limits.duration:
             message = "the duration is given twice"
-            hint = "remove one of them"
-            self.diagnostics.refuse("repeated-limit", message, order.span, hint)
+            self.diagnostics.refuse("repeated-limit", message, order.span, "remove one of them")
         soft = bool(manner.finishing)
         round_.limits = replace(round_.limits, duration=manner.duration, soft=soft)
         return True
@@ -232,8 +231,7 @@ class Repeating:
         if tail and leave is not None:
             if tail[-1].otherwise.first is not None:
                 message = "this leads elsewhere after the last round, and so does `otherwise`"
-                hint = "remove one of the two"
-                self.diagnostics.error("second-route", message, leave.span, hint)
+                self.diagnostics.error("second-route", message, leave.span, "remove one of the two")
             block.remove(leave)
             tail[-1].otherwise.append(leave)
         self.context.put(tail, block, round_)
@@ -296,8 +294,7 @@ class Repeating:
         listed = len(order.steps.points) > 1 and not order.steps.through
         if listed and any(_repeats(node) and id(node) not in ends for node in found):
             message = "these steps are not next to each other"
-            hint = "repeat consecutive steps"
-            self.diagnostics.refuse("step-range", message, order.span, hint)
+            self.diagnostics.refuse("step-range", message, order.span, "repeat consecutive steps")
         return found
 
     # ---- pauses between rounds, and not behind the last one

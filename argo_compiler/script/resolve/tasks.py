@@ -53,9 +53,8 @@ class TaskMaker:
             case orders.Plain(word=PlainWord.MEET):
                 return [Do("MEET", Action.WAIT, span, wait=WaitRule(duration=0))]
         if isinstance(order, orders.Follow):
-            message = "this step has no sub-steps"
             hint = "write `repeat this three times`, or write the sub-steps below it"
-            self.context.diagnostics.refuse("route", message, span, hint)
+            self.context.diagnostics.refuse("route", "this step has no sub-steps", span, hint)
         message = "this is not possible here"
         self.context.diagnostics.refuse("route", message, span, "write it as a separate step")
 

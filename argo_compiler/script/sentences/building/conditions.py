@@ -74,9 +74,8 @@ def _between(part: RulePart) -> Between:
 
 def _exactly(part: RulePart) -> Between:
     amount = part.the(Amount)
-    message = "a measured value is hardly ever exactly equal to this"
     hint = "write `between 4.9 and 5.1 bar`, `at least 5 bar` or `at most 5 bar`"
-    part.error("condition", message, hint)
+    part.error("condition", "a measured value is hardly ever exactly equal to this", hint)
     return Between(span=part.span, low=amount, high=amount, inclusive=True)
 
 
@@ -108,9 +107,8 @@ def _test(part: RulePart) -> Test:
     subject = part.first(Nouns)
     several = subject is not None and len(subject.nouns) > 1
     if subject is not None and several and how_many == ("both" if subject.either else "either"):
-        message = "this can apply to one of them, or to both"
         hint = "write `if either #1 or #5 is abnormal`, or `if both #1 and #5 are abnormal`"
-        part.error("ambiguous-and-or", message, hint)
+        part.error("ambiguous-and-or", "this can apply to one of them, or to both", hint)
     age = part.first(float)
     detail = part.first(dict) or {"id": "", "second": None}
     return Test(
@@ -263,8 +261,7 @@ def _ask(part: RulePart, joints: Sequence[_Joint], hint: str) -> None:
     for joint in (joints[second], joints[second - 1]):
         before, behind = content[part.start : joint.start], content[joint.start : part.end]
         readings.append(f"`{before.rstrip(' ,;')}, {behind.lstrip(' ,;')}`")
-    message = f"this can be read as {readings[0]} or as {readings[1]}"
-    part.error("ambiguous-and-or", message, hint)
+    part.error("ambiguous-and-or", f"this can be read as {readings[0]} or as {readings[1]}", hint)
 
 
 def _is_named(test: Asked) -> bool:

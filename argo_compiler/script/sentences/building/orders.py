@@ -77,8 +77,7 @@ def where(part: RulePart) -> Location | FloorName:
     inside = part.every(AreaLocation)[-1:] if part.has("LPAR") else ()
     if inside:
         if found is None or found.area is not None:
-            hint = "remove one of the two"
-            part.error("several-places", "this names two places", hint)
+            part.error("several-places", "this names two places", "remove one of the two")
             return inside[0]
         return replace(found, area=inside[0])
     for child in part.children:

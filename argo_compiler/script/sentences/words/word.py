@@ -26,3 +26,7 @@ class Word:
     """indices in the text, of the first character and behind the last"""
     before: str = ""
     """the joining signs and words that stood before it: `, and`"""
+
+    @property
+    def is_and(self) -> bool:
+        return self.type == "JOINT" and self.value == "and"

@@ -183,7 +183,7 @@ class SentenceReader:
         if not isinstance(node, Sentence) or node.cases or not node.orders:
             return [node]
         *orders, last = node.orders
-        if not isinstance(last, Follow) or last.manner is not None or last.name is not None:
+        if not isinstance(last, Follow) or last.manner or last.name is not None:
             return [node]
         self.diagnostics.warning(
             "no-effect", f"`{text.content}` has no effect by itself", text.span()

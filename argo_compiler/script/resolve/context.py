@@ -1,6 +1,7 @@
 """What all parts of the planning share: the program, and what the script has said so far."""
 
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field, fields, replace
 from functools import cache
 from typing import Any, NoReturn
@@ -130,6 +131,25 @@ class Context:
                 self.diagnostics.refuse("step-range", message, steps.span, hint)
             points = list(range(first, min(last, first + len(self.steps) + 1) + 1))
         return [node for point in points for node in self._of_point(point, steps.span)]
+
+    def target_of(self, steps: Steps) -> ProgramNode | None:
+        """The node with which the mission goes on at steps; None if it ends, or with an error."""
+        with suppress(RefusedError):
+            nodes = self.nodes_of(steps)
+            if nodes and steps.behind:
+                last = nodes[-1]
+                if last.after is None and last.block is not self.program:
+                    message = "this can't skip the last step of a repetition or of a case"
+                    hint = "write the opposite condition before that step: `if ..., check "
+                    hint += "checkpoint 4`"
+                    self.diagnostics.refuse("step-range", message, steps.span, hint)
+                return last.after
+            if nodes:
+                return nodes[0]
+            message = f"step {steps.points[0]} has no task with which the mission could go on"
+            hint = "name a step that measures or drives"
+            self.diagnostics.error("empty-step", message, steps.span, hint)
+        return None
 
     def _by_own_name(self, name: str) -> Do | None:
         """A task by the name that it has where the script gives none: `MEASURE 4 (2)`."""

@@ -58,6 +58,17 @@ class ProgramNode(ListItem):
 
     block: "ProgramBlock | None" = field(default=None, init=False, repr=False)
 
+    @property
+    def home(self) -> "ProgramBlock":
+        """The block that it stands in."""
+        assert self.block is not None
+        return self.block
+
+    @property
+    def owner(self) -> "ProgramNode | None":
+        """The node in whose block it stands; None: in the program itself, or not at all."""
+        return None if self.block is None else self.block.owner
+
 
 class ProgramBlock(LinkedList[ProgramNode]):
     """Nodes that are carried out one after the other."""
@@ -104,6 +115,11 @@ class Do(ProgramNode):
     priority: int = 1
     window: TimeWindow | None = None
     ways: list[Way] = field(default_factory=list)
+
+    @property
+    def branches(self) -> bool:
+        """Whether it may lead elsewhere than to what follows."""
+        return bool(self.ways or self.failure or self.missed)
 
 
 @dataclass(eq=False, slots=True)
@@ -191,7 +207,7 @@ def _behind(node: ProgramNode) -> ProgramNode | None:
     """What follows a node and all that lies in it."""
     at: ProgramNode | None = node
     while at is not None and at.after is None:
-        owner = at.block.owner if at.block is not None else None
+        owner = at.owner
         if owner is None:
             return None
         blocks = inner_blocks(owner)
@@ -230,11 +246,10 @@ def inner_blocks(node: ProgramNode) -> tuple[ProgramBlock, ...]:
 
 def in_branch(block: ProgramBlock) -> bool:
     """Whether a block is carried out in one case only."""
-    while block.owner is not None:
-        if not isinstance(block.owner, ProgramRound) or block.owner.block is None:
-            return not isinstance(block.owner, ProgramRound)
-        block = block.owner.block
-    return False
+    owner = block.owner
+    while isinstance(owner, ProgramRound):
+        owner = owner.owner
+    return owner is not None
 
 
 def leads_away(node: ProgramNode | None) -> bool:

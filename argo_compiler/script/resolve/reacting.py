@@ -24,7 +24,6 @@ from argo_compiler.script.sentences.tree.conditions import (
     Occurs,
     SaidCondition,
 )
-from argo_compiler.script.sentences.tree.manner import Manner
 from argo_compiler.script.sentences.tree.orders import Case, PlainWord, ScriptOrder
 from argo_compiler.script.sentences.tree.places import FloorName, Location
 
@@ -174,7 +173,7 @@ class Reactions:
 
     def _furnish(self, answer: _Answer, order: ScriptOrder) -> None:
         """Adds what is said of how long it holds, for what, and how urgent it is."""
-        manner = order.manner or Manner()
+        manner = order.manner
         own = {orders.Home: {"pose"}, orders.WaitOrder: {"person"}}.get(type(order), set())
         left = sorted(said(manner) - _USED - own)
         if left or order.name is not None:
@@ -233,7 +232,7 @@ class Reactions:
         answer.afterwards = afterwards
 
     def _wait(self, answer: _Answer, order: orders.WaitOrder) -> None:
-        person = order.manner is not None and order.manner.person
+        person = order.manner.person
         held = answer.until is not None or answer.hold_limit is not None
         if order.stays and answer.response is Response.RETURN and not (person or held):
             self._go_on(answer, Afterwards.END, order.span)  # it stays in its dock
@@ -248,7 +247,7 @@ class Reactions:
             area = self.lookup.area(order.dock.area.area, order.dock.span)
             answer.pose, answer.area = area.dock, area.number
         self._respond(answer, Response.RETURN, order.span)
-        if order.manner is not None and order.manner.pose is not None:
+        if order.manner.pose is not None:
             answer.pose = self.lookup.point(order.manner.pose)
 
     def _drive(self, answer: _Answer, where: Location | FloorName, span: Span) -> None:

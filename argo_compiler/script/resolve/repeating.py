@@ -73,7 +73,7 @@ class Repeating:
     def _again(self, order: orders.Repeat) -> orders.Repeat:
         """`Repeat step 2 once`: a repetition of one round in all would change nothing."""
         manner = order.manner
-        if manner is None or manner.more is not None or 1 not in (manner.times, manner.at_most):
+        if manner.more is not None or 1 not in (manner.times, manner.at_most):
             return order
         if manner.every is not None and manner.times == 1:  # `once every ten minutes`
             return replace(order, manner=replace(manner, times=None))
@@ -117,7 +117,7 @@ class Repeating:
         """`Stop with it after 5 minutes`, `wait 1 minute in between`: said of the round before.
         False: that is not what it says, or of none."""
         manner, round_ = order.manner, block.last
-        if manner is None or not isinstance(round_, ProgramRound):
+        if not isinstance(round_, ProgramRound):
             return False
         if said(manner) == {"pause"} and manner.pause is not None and not round_.limits.pause:
             round_.limits = replace(round_.limits, pause=manner.pause)
@@ -134,7 +134,7 @@ class Repeating:
     def _is_once_more(self, order: orders.Repeat, steps: Steps, block: ProgramBlock) -> bool:
         """Whether steps are done here again, and not in a round where they stand."""
         manner = order.manner
-        if manner is None:
+        if not manner:
             return len(steps.points) == 1
         if not manner.more or manner != Manner(times=manner.times, more=True):
             return False
@@ -159,13 +159,12 @@ class Repeating:
     def _once_more(self, order: orders.Repeat, steps: Steps, block: ProgramBlock) -> None:
         """`4. Repeat step 2`: what it does is done here again."""
         nodes = self.context.nodes_of(steps)
-        tasks = [n for n in nodes if isinstance(n, Do) and not (n.ways or n.failure or n.missed)]
+        tasks = [n for n in nodes if isinstance(n, Do) and not n.branches]
         if not nodes or len(tasks) < len(nodes):
             message = "this does not say how often, and it can't be done once more"
             hint = "write how often: `twice`, `three times in total`, `until ...`"
             self.diagnostics.refuse("endless-repeat", message, order.span, hint)
-        times = order.manner.times if order.manner is not None else 1
-        tasks *= min(times or 1, _MOST_AGAIN)
+        tasks *= min(order.manner.times or 1, _MOST_AGAIN)
         again = [replace(task, ways=[], name=None) for task in tasks]
         self.context.put(again, block, block.last)
         self.context.step += again
@@ -202,7 +201,6 @@ class Repeating:
         order, round_ = repetition.order, repetition.round
         tail = list(_conditions_behind(round_))
         found = self._range(repetition, {id(node) for node in tail})
-        assert round_.block is not None
         if not found:
             return
         follows = _leads_to(found[-1], round_)
@@ -212,11 +210,9 @@ class Repeating:
             hint = "write the repetition after the steps that it repeats"
             self.diagnostics.refuse("not-planned", message, order.span, hint)
         for node in (round_, *tail):
-            assert node.block is not None
-            node.block.remove(node)
+            node.home.remove(node)
         found = [node for node in found if node is not round_]
-        block, anchor = found[0].block, found[0].before
-        assert block is not None
+        block, anchor = found[0].home, found[0].before
         for node in found:
             block.remove(node)
             round_.body.append(node)
@@ -225,8 +221,7 @@ class Repeating:
 
     def _behind(self, round_: ProgramRound, tail: list[Choice]) -> None:
         """Conditions behind a round come before a way that leads on from its last task."""
-        block = round_.block
-        assert block is not None
+        block = round_.home
         leave = round_.after if isinstance(round_.after, Leave) else None
         if tail and leave is not None:
             if tail[-1].otherwise.first is not None:
@@ -310,9 +305,7 @@ class Repeating:
     def _put_pause(self, round_: ProgramRound) -> None:
         context = self.context
         limits = round_.limits
-        tasks = [
-            n for n in round_.body if isinstance(n, Do) and not (n.ways or n.failure or n.missed)
-        ]
+        tasks = [n for n in round_.body if isinstance(n, Do) and not n.branches]
         whole = len(tasks) == len(list(round_.body))
         ends = limits.count > 1 or (limits.until and not limits.count)
         if limits.duration or limits.every or not whole or not tasks or not ends:
@@ -321,8 +314,7 @@ class Repeating:
             hint = "write the tasks and `wait 1 minute` as often as needed"
             context.diagnostics.error("pause", message, round_.span, hint)
             return
-        block, anchor = round_.block, round_.before
-        assert block is not None
+        block, anchor = round_.home, round_.before
         for task in tasks:
             round_.body.remove(task)
         wait = Do("WAIT", Action.WAIT, round_.span, wait=WaitRule(duration=limits.pause))
@@ -356,7 +348,7 @@ def _topmost(nodes: Iterable[ProgramNode], block: ProgramBlock) -> list[ProgramN
     for node in nodes:
         at: ProgramNode | None = node
         while at is not None and at.block is not block:
-            at = at.block.owner if at.block is not None else None
+            at = at.owner
         if at is not None:
             found.setdefault(id(at), at)
     return list(found.values())
@@ -381,8 +373,7 @@ def _leads_to(last: ProgramNode, round_: ProgramRound) -> bool:
     node: ProgramNode | None = last
     while node is not None:
         if node.after is None:
-            owner = node.block.owner if node.block is not None else None
-            node = owner if isinstance(owner, ProgramRound) else None
+            node = node.owner if isinstance(node.owner, ProgramRound) else None
             continue
         node = node.after
         if node is round_:
@@ -411,10 +402,8 @@ def _around(
     common = {id(block): i for i, block in enumerate(chain)}
     at = 0
     for node in nodes[1:]:
-        block = node.block
-        while block is not None and id(block) not in common:
-            block = block.owner.block if block.owner is not None else None
-        at = max(at, common[id(block)] if block is not None else len(chain) - 1)
+        around = (common.get(id(block)) for block in _blocks_around(node))
+        at = max(at, next((i for i in around if i is not None), len(chain) - 1))
     while at + 1 < len(chain):
         owner = chain[at].owner
         if not (isinstance(owner, ProgramRound) and _covered(owner, known)):
@@ -428,10 +417,10 @@ def _around(
 
 def _blocks_around(node: ProgramNode) -> list[ProgramBlock]:
     found: list[ProgramBlock] = []
-    block = node.block
-    while block is not None:
-        found.append(block)
-        block = block.owner.block if block.owner is not None else None
+    at: ProgramNode | None = node
+    while at is not None and at.block is not None:
+        found.append(at.block)
+        at = at.owner
     return found
 
 

@@ -13,7 +13,7 @@ from itertools import takewhile
 
 from argo_compiler.script.documents.source import Diagnostics, ScriptText
 from argo_compiler.script.sentences.tree import orders
-from argo_compiler.script.sentences.tree.conditions import InState, Test, TooLate
+from argo_compiler.script.sentences.tree.conditions import Test, TooLate
 from argo_compiler.script.sentences.tree.nouns import AllOf, Labelled, TheOne
 from argo_compiler.script.sentences.tree.orders import Case, Placed, Placing, ScriptOrder, Sentence
 from argo_compiler.script.sentences.tree.script import ScriptStep
@@ -323,13 +323,7 @@ def _is_other_way(case: Case | None) -> bool:
     """Whether a case is what is done instead of something: if it failed, or otherwise."""
     if case is None or case.condition is None:
         return case is not None
-    tests = [test for tests in case.condition.alternatives for test in tests]
     return all(
-        isinstance(test, TooLate)
-        or (
-            isinstance(test, Test)
-            and isinstance(test.predicate, InState)
-            and test.predicate.is_failure
-        )
-        for test in tests
+        isinstance(test, TooLate) or (isinstance(test, Test) and test.is_of_failure)
+        for test in case.condition.tests
     )

@@ -47,15 +47,10 @@ def require_moment(part: RulePart) -> None:
     if opening is None or opening.value != "whenever":
         return
     condition = part.the(SaidCondition)
-    tests = [test for tests in condition.alternatives for test in tests]
-    if any(isinstance(test, Test) and not _is_failure(test) for test in tests):
+    if any(isinstance(test, Test) and not test.is_of_failure for test in condition.tests):
         message = "a condition on a value is evaluated after a task, not at any time"
         hint = "write `if ...` after each measurement"
         part.diagnostics.error("ambiguous-case", message, condition.span, hint)
-
-
-def _is_failure(test: Test) -> bool:
-    return isinstance(test.predicate, InState) and test.predicate.is_failure
 
 
 def _compared(part: RulePart) -> Compared:

@@ -49,8 +49,7 @@ def _case(part: RulePart) -> Case:
     elif part.has("LAST_ROUND"):
         rest = Rest.LAST_ROUND
     condition = part.first(SaidCondition)
-    late = orders[0].manner if orders else None
-    if condition is not None and late is not None and late.delay is not None:
+    if condition is not None and orders and orders[0].manner.delay is not None:
         behind = part.children[part.children.index(condition) + 1]
         if not isinstance(behind, Word):
             message = "this time can belong to the condition, or be a wait before the command"
@@ -109,7 +108,8 @@ def _joined(part: RulePart) -> tuple[ScriptOrder, ...]:
             ):
                 found[-1] = _both(last, child)
             elif isinstance(last, Follow | Repeat) and isinstance(child, Amend) and _pauses(child):
-                found[-1] = _with_pause(last, child)
+                # `Do the following twice, and wait 1 minute in between:`
+                found[-1] = replace(last, manner=replace(last.manner, pause=child.manner.pause))
             else:
                 if last is not None and _may_be_step(part, last, joint):
                     message = "this number can be that of a checkpoint or of a step"
@@ -126,22 +126,14 @@ def _joined(part: RulePart) -> tuple[ScriptOrder, ...]:
 
 def _pauses(order: Amend) -> bool:
     """Whether an order says nothing but how long to wait between rounds."""
-    manner = order.manner
-    return manner is not None and manner == Manner(pause=manner.pause)
-
-
-def _with_pause(order: ScriptOrder, pause: Amend) -> ScriptOrder:
-    """`Do the following twice, and wait 1 minute in between:`"""
-    assert pause.manner is not None
-    manner = order.manner or Manner()
-    return replace(order, manner=replace(manner, pause=pause.manner.pause))
+    return order.manner == Manner(pause=order.manner.pause)
 
 
 def _is_same_reading(order: ScriptOrder) -> bool:
     """Whether an order measures what another one has just measured: `and note the value`."""
     return (
         isinstance(order, Measure)
-        and order.manner is None
+        and not order.manner
         and all(isinstance(noun, Pronoun) for noun in order.what.nouns)
     )
 

@@ -27,6 +27,9 @@ class TaskState(StrEnum):
     STALE = "stale"
 
 
+_FAILURES = (TaskState.FAILED, TaskState.UNREADABLE, TaskState.UNREACHABLE)
+
+
 @node
 class Amount(Node):
     """A value with the unit that is said with it, if one is."""
@@ -59,11 +62,6 @@ class InState(Node):
     state: TaskState
     age: float | None = None
     """s, of STALE"""
-
-    @property
-    def is_failure(self) -> bool:
-        """Whether it says that a task has failed, which is known as soon as it has ended."""
-        return self.state in (TaskState.FAILED, TaskState.UNREADABLE, TaskState.UNREACHABLE)
 
 
 class ValvePosition(StrEnum):
@@ -98,6 +96,11 @@ class Test(Node):
     second_bound: float | None = None
     """an upper bound that the comparison does not need, kept for the plan's sake"""
 
+    @property
+    def is_of_failure(self) -> bool:
+        """Whether it asks if a task has failed, which is known as soon as it has ended."""
+        return isinstance(self.predicate, InState) and self.predicate.state in _FAILURES
+
 
 @node
 class Occurs(Node):
@@ -129,3 +132,8 @@ class SaidCondition(Node):
     alternatives: tuple[tuple[Asked, ...], ...]
     negated: bool = False
     """`unless`"""
+
+    @property
+    def tests(self) -> list[Asked]:
+        """All that is asked, of whichever alternative."""
+        return [test for tests in self.alternatives for test in tests]

@@ -5,7 +5,7 @@ from enum import StrEnum
 from typing import Self
 
 from argo_compiler.script.sentences.tree.conditions import SaidCondition
-from argo_compiler.script.sentences.tree.manner import Manner
+from argo_compiler.script.sentences.tree.manner import NOTHING_SAID, Manner
 from argo_compiler.script.sentences.tree.node import Node, node
 from argo_compiler.script.sentences.tree.nouns import Nouns
 from argo_compiler.script.sentences.tree.places import DockLocation, FloorName, Location, Steps
@@ -17,7 +17,7 @@ class ScriptOrder(Node):
 
     name: str | None = None
     """of the task or the round, if the script gives one"""
-    manner: Manner | None = None
+    manner: Manner = NOTHING_SAID
     joint: str = ""
     """what stood before it: `, and`"""
 
@@ -81,8 +81,6 @@ class Patrol(ScriptOrder):
 class WaitOrder(ScriptOrder):
     """`Wait 90 s`, `wait until #1 is below 3`, `wait for the all-clear`."""
 
-    person: bool = False
-    """for the operator"""
     where: Location | FloorName | None = None
     """None: where it is"""
     stays: bool = False

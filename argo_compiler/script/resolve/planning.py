@@ -180,25 +180,21 @@ class Planner:
         match fact:
             case orders.MaxDuration():
                 self._max_duration(fact.seconds, fact)
-            case orders.BackWithin():
-                self._max_duration(fact.seconds, fact)
-                self._back(fact)
+                if fact.where is not None:
+                    self._back(fact, fact.where)
             case orders.RoundsDriven():
                 manner = Manner(times=fact.count)
                 order = orders.Repeat(span=fact.span, steps=fact.steps, manner=manner)
                 self.order(order, self.context.program)
-            case orders.ReadBefore():
+            case orders.DoneBefore():
                 with suppress(RefusedError):
-                    self.ordering.precedence(fact)
-            case orders.StepsOrdered():
-                self.ordering.steps.append(fact)
+                    self.ordering.precede(fact)
             case orders.LeaveOut():
                 self.ordering.left_out.append(fact.span)
             case orders.OrderFree():
                 self.ordering.say(Order.ANY, (), fact.span)
 
-    def _back(self, fact: orders.BackWithin) -> None:
-        dock = fact.where
+    def _back(self, fact: Fact, dock: Location) -> None:
         if isinstance(dock, AreaLocation):
             dock = DockLocation(span=fact.span, area=dock)
         if not isinstance(dock, DockLocation):

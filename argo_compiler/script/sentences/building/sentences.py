@@ -12,29 +12,27 @@ from argo_compiler.script.sentences.building import (
     part,
     places,
 )
-from argo_compiler.script.sentences.building.part import Make, RulePart, T, seconds, whole
+from argo_compiler.script.sentences.building.part import Make, RulePart, seconds, whole
 from argo_compiler.script.sentences.grammar.parser import Branch
 from argo_compiler.script.sentences.tree.conditions import SaidCondition
 from argo_compiler.script.sentences.tree.manner import Manner
 from argo_compiler.script.sentences.tree.nouns import Labelled, Nouns, Pronoun
 from argo_compiler.script.sentences.tree.orders import (
     Amend,
-    BackWithin,
     Case,
+    DoneBefore,
     Fact,
     Follow,
     LeaveOut,
     MaxDuration,
     Measure,
     OrderFree,
-    ReadBefore,
     Repeat,
     Rest,
     RoundsDriven,
     ScriptOrder,
     Sentence,
     Side,
-    StepsOrdered,
 )
 from argo_compiler.script.sentences.tree.places import Steps
 from argo_compiler.script.sentences.words.word import Word
@@ -163,21 +161,17 @@ def _both(first: Measure, second: Measure) -> Measure:
 # ---- facts: what is said of the mission as a whole
 
 
-def _duration(part: RulePart) -> float:
-    return seconds(part, part.the_word("DURATION", "MOST_TIME"))
+def _max_duration(part: RulePart) -> Fact:
+    time = seconds(part, part.the_word("DURATION", "MOST_TIME"))
+    where = next((c for c in part.children if not isinstance(c, Word)), None)
+    return MaxDuration(span=part.span, seconds=time, where=where)
 
 
-def _back_within(part: RulePart) -> Fact:
-    where = next(c for c in part.children if not isinstance(c, Word))
-    return BackWithin(span=part.span, where=where, seconds=_duration(part))
-
-
-def _in_order(part: RulePart, type_: type[T]) -> dict[str, T]:
-    """What comes first, and what second."""
-    first, second = part.every(type_)
+def _precedence(part: RulePart) -> Fact:
+    first, second = (c for c in part.children if isinstance(c, Nouns | Steps))
     if part.the(Side) is Side.AFTER:
         first, second = second, first
-    return {"first": first, "second": second}
+    return DoneBefore(span=part.span, first=first, second=second)
 
 
 _RULES: dict[str, Make] = {
@@ -190,10 +184,10 @@ _RULES: dict[str, Make] = {
     "case": _case,
     "otherwise": _case,
     "sentence": _sentence,
-    "max_duration": lambda part: MaxDuration(span=part.span, seconds=_duration(part)),
-    "back_within": _back_within,
-    "precedence": lambda part: ReadBefore(span=part.span, **_in_order(part, Nouns)),
-    "steps_ordered": lambda part: StepsOrdered(span=part.span, **_in_order(part, Steps)),
+    "max_duration": _max_duration,
+    "back_within": _max_duration,
+    "precedence": _precedence,
+    "steps_ordered": _precedence,
     "rounds_driven": lambda part: RoundsDriven(
         span=part.span, steps=part.the(Steps), count=whole(part, part.the_word("TIMES").value)
     ),

@@ -7,15 +7,6 @@ from argo_compiler.script.sentences.tree.node import Node, node
 from argo_compiler.script.sentences.tree.nouns import Nouns
 
 
-class Relation(StrEnum):
-    """How a value compares with a bound."""
-
-    GREATER = "greater"
-    LESS = "less"
-    AT_LEAST = "at least"
-    AT_MOST = "at most"
-
-
 class TaskState(StrEnum):
     """What a reading may be."""
 
@@ -39,33 +30,21 @@ class Amount(Node):
 
 
 @node
-class Compared(Node):
-    """`above 5 bar`."""
+class Bounded(Node):
+    """`above 5 bar`, `between 2 and 3`; with one bound or two."""
 
-    relation: Relation
-    bound: Amount
-
-
-@node
-class Between(Node):
-    """`between 2 and 3`, the bounds excluded; `from 2 to 3`, included."""
-
-    low: Amount
-    high: Amount
+    low: Amount | None = None
+    high: Amount | None = None
     inclusive: bool
+    """whether a value may be at a bound: `at least 5`, `from 2 to 3`"""
 
-
-@node
-class InState(Node):
-    """`abnormal`, `unreadable`, `older than 60 s`."""
-
-    state: TaskState
-    age: float | None = None
-    """s, of STALE"""
+    @property
+    def bounds(self) -> tuple[Amount, ...]:
+        return tuple(bound for bound in (self.low, self.high) if bound is not None)
 
 
 class ValvePosition(StrEnum):
-    """ValvePosition of a valve."""
+    """Position of a valve."""
 
     OPEN = "open"
     HALF_OPEN = "half_open"
@@ -73,13 +52,15 @@ class ValvePosition(StrEnum):
 
 
 @node
-class InValvePosition(Node):
-    """`open`, `half open`, `closed`."""
+class InState(Node):
+    """`abnormal`, `unreadable`, `older than 60 s`, `open`."""
 
-    position: ValvePosition
+    state: TaskState | ValvePosition
+    age: float | None = None
+    """s, of STALE"""
 
 
-Predicate = Compared | Between | InState | InValvePosition
+Predicate = Bounded | InState
 
 
 @node
@@ -113,8 +94,7 @@ class Occurs(Node):
 class BatteryLevel(Node):
     """`the battery drops below 30 %`, `the battery is above 60 %`."""
 
-    relation: Relation
-    level: Amount
+    level: Bounded
 
 
 @node

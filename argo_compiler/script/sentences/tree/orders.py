@@ -254,38 +254,24 @@ class Fact(Node):
 
 @node
 class MaxDuration(Fact):
-    """`The mission may take 20 minutes at most`."""
+    """`The mission may take 20 minutes at most`, `it has to be back in area 1 within 35 min`."""
 
     seconds: float
+    where: Location | None = None
+    """where it has to be by then"""
 
 
 @node
-class BackWithin(Fact):
-    """`It has to be back in its dock in starting area 1 within 35 minutes`."""
+class DoneBefore(Fact):
+    """`Checkpoint 7 has to be read before checkpoint 18`, `always do step 2 before step 5`."""
 
-    where: Location
-    seconds: float
-
-
-@node
-class ReadBefore(Fact):
-    """`Checkpoint 7 has to be read before checkpoint 18`."""
-
-    first: Nouns
-    second: Nouns
+    first: Nouns | Steps
+    second: Nouns | Steps
 
 
 @node
 class OrderFree(Fact):
     """`The order does not matter`."""
-
-
-@node
-class StepsOrdered(Fact):
-    """`Always do step 2 before step 5`."""
-
-    first: Steps
-    second: Steps
 
 
 @node

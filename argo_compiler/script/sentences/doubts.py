@@ -8,7 +8,6 @@ asked what is meant.
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
 from itertools import takewhile
 
 from argo_compiler.script.documents.source import Diagnostics, ScriptText
@@ -19,8 +18,7 @@ from argo_compiler.script.sentences.tree.orders import Case, Placed, Placing, Sc
 from argo_compiler.script.sentences.tree.script import ScriptStep
 from argo_compiler.script.sentences.words.lexer import all_words, placed_words
 from argo_compiler.script.sentences.words.lexicon import Lexicon
-from argo_compiler.script.sentences.words.loading import everywhere, pattern
-from argo_compiler.script.sentences.words.prose import either
+from argo_compiler.script.sentences.words.loading import everywhere
 from argo_compiler.script.sentences.words.without_effect import (
     TOLD,
     WITHOUT_EFFECT,
@@ -37,10 +35,6 @@ _ENDS = frozenset(
 _FROM_START = frozenset(["SINCE_START", "BACK_IN", "MAX_DURATION"])
 _NAMED = frozenset(["KIND", "HASH", "NUMBER", "IDENT", "STRING", "IT", "THEM", "BOTH", "THIS"])
 _WORK = (orders.Measure, orders.VisitOrder, orders.Go, orders.Patrol)
-_DOUBTFUL = r"(?<![\w-])(?:<summing>|<yonder>|<windows>)(?![\w-])"
-"""what words that are asked about look like, so that few sentences are looked at once more"""
-_SMALL = (*sorted(TOLD), "ADDITION", "SEQUENCE", "THITHER")
-"""terminals of words without effect that are asked about, or told, where they stand"""
 _SCOPED = frozenset(
     [
         *("TIMES", "MORE", "SPEED", "LEAVING", "EVERY", "RETRY", "MOST_TIMES", "PRIORITY"),
@@ -117,9 +111,6 @@ def ask_of_words(
 ) -> None:
     """Asks about the words of a sentence that may change what is meant. `ordered`: something is
     to be done before it; `days`: the days of which sentences were so far, each with its line."""
-    doubtful = pattern(_DOUBTFUL).search(text.content) or _small(lexicon).search(text.content)
-    if doubtful is None:
-        return
     words = all_words(text.content, lexicon)
     doubts = dict(_doubts(words, text.content.lower(), ordered))
     for i, word in enumerate(words):
@@ -209,8 +200,6 @@ def _is(said: str, name: str) -> bool:
 def placed_in(text: ScriptText, node: Sentence, lexicon: Lexicon) -> tuple[Placed, ...]:
     """The words of a sentence that say where it stands."""
     found: list[Placed] = []
-    if _placing(lexicon).search(text.content) is None:
-        return ()
     for word in placed_words(text.content, lexicon):
         span = text.span(word.start, word.end)
         at = (span.line, span.column)
@@ -302,21 +291,6 @@ def _names_twice(order: ScriptOrder) -> bool:
     nouns = order.what.nouns if isinstance(order, orders.Measure) else ()
     labels = [noun.label for noun in nouns if isinstance(noun, Labelled)]
     return len({*labels}) < len(labels)
-
-
-@cache
-def _small(lexicon: Lexicon) -> re.Pattern[str]:
-    """What words without effect look like that are asked about or told."""
-    phrases = [phrase for type_ in _SMALL for phrase in lexicon.phrases.get((type_, None), ())]
-    return re.compile(rf"(?<![\w-])(?:{either('|'.join(phrases))})(?![\w-])", re.IGNORECASE)
-
-
-@cache
-def _placing(lexicon: Lexicon) -> re.Pattern[str]:
-    """What such words look like, so that few sentences are looked at once more."""
-    types = (*Placing, "FIRST")
-    phrases = [phrase for p in types for phrase in lexicon.phrases.get((p, None), ())]
-    return re.compile(rf"\b(?:{either('|'.join(phrases))}|first\W*$|^first)\b", re.IGNORECASE)
 
 
 def _is_other_way(case: Case | None) -> bool:

@@ -25,12 +25,9 @@ from argo_compiler.script.sentences.words.without_effect import (
     parts_list,
     without_empty,
 )
-from argo_compiler.script.sentences.words.word import VERBS, Word
+from argo_compiler.script.sentences.words.word import COMPARISONS, OPENINGS, VERBS, Word
 
-_OPENS = frozenset(["IF", "IF_ONLY", "UNLESS", "UNTIL"])
-_ENDS = frozenset(
-    [*VERBS, "GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "STATE", "FAILS", "IS"]
-)
+_ENDS = frozenset([*VERBS, *COMPARISONS, "STATE", "FAILS", "IS"])
 """words behind which a condition says no more of which checkpoints it is"""
 _FROM_START = frozenset(["SINCE_START", "BACK_IN", "MAX_DURATION"])
 _NAMED = frozenset(["KIND", "HASH", "NUMBER", "IDENT", "STRING", "IT", "THEM", "BOTH", "THIS"])
@@ -168,7 +165,7 @@ def _doubts(words: Sequence[Word], content: str, ordered: bool) -> Iterator[tupl
 
 def _opens_condition(words: Sequence[Word], i: int) -> bool:
     """Return True for the `only` of `check #4 only if #1 is above 3`, which a condition has."""
-    return i + 1 < len(words) and words[i + 1].type in _OPENS
+    return i + 1 < len(words) and words[i + 1].type in OPENINGS
 
 
 def _is_within_list(words: Sequence[Word], i: int) -> bool:
@@ -186,8 +183,8 @@ def _next(words: Sequence[Word], i: int, content: str) -> str:
 
 def _names_subject(words: Sequence[Word], i: int) -> bool:
     """Whether a word stands where a condition says of which checkpoints it is."""
-    last = next((w.type for w in reversed(words[:i]) if w.type in _OPENS | _ENDS), "")
-    return last in _OPENS
+    last = next((w.type for w in reversed(words[:i]) if w.type in OPENINGS | _ENDS), "")
+    return last in OPENINGS
 
 
 def _is(said: str, name: str) -> bool:

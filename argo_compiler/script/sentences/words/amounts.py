@@ -137,8 +137,6 @@ def hours_and(hours: Word, minutes: Word, after: Word | None) -> Word | None:
 
 def limited(words: list[Word]) -> list[Word]:
     """The words with limits in one: `at most 10 times`, `50 minutes at most`."""
-    if not any(word.type == "AT_MOST" for word in words):
-        return words
     found: list[Word] = []
     for word in words:
         last = found[-1] if found else None

@@ -5,16 +5,15 @@ from dataclasses import replace
 
 from argo_compiler.script.sentences.words.amounts import Length, counted, hours_and, limited, total
 from argo_compiler.script.sentences.words.numbers import Figure, compose
-from argo_compiler.script.sentences.words.word import VERBS, Word
+from argo_compiler.script.sentences.words.word import COMPARISONS, OPENINGS, VERBS, Word
 
 _BEYOND = {"OR_MORE": "GREATER", "OR_LESS": "LESS"}
-_RELATIONS = frozenset(["GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "EXACTLY"])
+_RELATIONS = COMPARISONS | {"EXACTLY"}
 _ASKED_OF = frozenset(
     ["EVENT", "BATTERY", "KIND", "HASH", "OF", "IT", "VALUE", "THIS", "THEM", "TOO_LATE"]
 )
 """what begins the subject of a condition"""
 _VALUES = _RELATIONS | {"QUANTITY"}
-_ASKING = frozenset(["IF", "IF_ONLY", "UNLESS", "UNTIL"])
 _SAID = _RELATIONS | {"IS", "NOT", "STATE", "FAILS"}
 """what begins that which a condition says of its subject"""
 _EARLY = frozenset(["MEASURE", "GO", "PATROL"])
@@ -28,21 +27,14 @@ _UPTO = ("TO", "UNTIL")
 """`1 to 4`, `1 bis 4`"""
 _LABELS = frozenset(["NUMBER", "NUMBER_WORD", "IDENT", "STRING"])
 _LISTING = frozenset(["JOINT", "TO", "UNTIL", "DASH", "UPTO"])
-_PREDICATES = frozenset(
-    ["GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "STATE", "FAILS", "OLDER", "OUTSIDE"]
-)
-_CASES = frozenset(["IF", "IF_ONLY", "UNLESS", "ELSE"])
-_ENDS = frozenset(["IF", "IF_ONLY", "UNLESS", "UNTIL", "ELSE"])
+_PREDICATES = COMPARISONS | {"STATE", "FAILS", "OLDER", "OUTSIDE"}
+_ENDS = OPENINGS | {"ELSE"}
+_CASES = _ENDS - {"UNTIL"}
 
 
 def merged(words: list[Word]) -> list[Word]:
     """The words, those that belong together in one; words of two senses told apart."""
-    if any(word.type in ("SHOULD", "IS") for word in words):
-        words = _inverted(words)
-    if any(word.type == "NUMBER_WORD" for word in words):
-        words = _numbers(words)
-    if any(word.type in _BEYOND for word in words):
-        words = _joined_bounds(words)
+    words = _joined_bounds(_numbers(_inverted(words)))
     found: list[Word] = []
     i = 0
     while i < len(words):
@@ -197,7 +189,7 @@ def _numbers(words: list[Word]) -> list[Word]:
 def _one_of_them(number: Word, found: list[Word], after: list[Word]) -> Word:
     """`If one is abnormal` asks about one of them, and not about checkpoint 1."""
     last = found[-1].type if found else ""
-    asked = last in _ASKING or (last == "IS" and _begins(found))  # `Ist eins auffällig, ...`
+    asked = last in OPENINGS or (last == "IS" and _begins(found))  # `Ist eins auffällig, ...`
     one = asked and after and after[0].type in _SAID and number.value.value == 1
     return replace(number, type="THEM", value="either") if one else number
 

@@ -10,6 +10,10 @@ VERBS = (
     *("PARK", "SPARE", "FROM"),
 )
 """terminals of the words that orders begin with"""
+OPENINGS = frozenset(["IF", "IF_ONLY", "UNLESS", "UNTIL"])
+"""terminals of the words that conditions begin with"""
+COMPARISONS = frozenset(["GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN"])
+"""terminals of the words before a value in a condition"""
 
 
 @dataclass(slots=True)

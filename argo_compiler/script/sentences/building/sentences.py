@@ -37,15 +37,13 @@ from argo_compiler.script.sentences.tree.orders import (
 from argo_compiler.script.sentences.tree.places import Steps
 from argo_compiler.script.sentences.words.word import Word
 
+_RESTS = {"IN_ALL_OTHERS": Rest.ALL_OTHERS, "LAST_ROUND": Rest.LAST_ROUND}
+
 
 def _case(part: RulePart) -> Case:
     """`If ..., A and B`; what comes behind a semicolon may be meant for this case, or for any."""
     orders = _joined(part)
-    rest = Rest.OTHERWISE
-    if part.has("IN_ALL_OTHERS"):
-        rest = Rest.ALL_OTHERS
-    elif part.has("LAST_ROUND"):
-        rest = Rest.LAST_ROUND
+    word = part.word(*_RESTS)
     condition = part.first(SaidCondition)
     if condition is not None and orders and orders[0].manner.delay is not None:
         behind = part.children[part.children.index(condition) + 1]
@@ -64,13 +62,9 @@ def _case(part: RulePart) -> Case:
             message = "this can apply in this case only, or in any case"
             hint = "write `, then ...` for the first, and a separate sentence for the second"
             part.diagnostics.error("ambiguous-case", message, order.span, hint)
-    return Case(
-        span=part.span,
-        condition=condition,
-        orders=orders,
-        rest=rest,
-        chained=part.has("ELSE"),
-    )
+    rest = Rest.OTHERWISE if word is None else _RESTS[word.type]
+    chained = part.has("ELSE")
+    return Case(span=part.span, condition=condition, orders=orders, rest=rest, chained=chained)
 
 
 def _require_joint(part: RulePart, condition: SaidCondition, manner: Amend) -> None:

@@ -121,21 +121,14 @@ def _looked_up(text: str, lexicon: Lexicon, left_out: frozenset[str]) -> list[Wo
             i += 1
             continue
         phrase = lexicon.longest(said, i)
-        if phrase is None and pieces[i].lastgroup == "STRING":
-            inner = [] if _is_name(found) else _unwrapped(pieces[i], text, lexicon)
-            if inner and not (i + 1 < len(pieces) and pieces[i + 1].group() == ":"):
-                found += inner
-                i += 1
-                continue
-        if phrase is None and pieces[i].lastgroup == "IDENT":
-            numbered = _numbered(pieces[i], lexicon)
-            if numbered:
-                found += numbered
-                i += 1
-                continue
         if phrase is None:
             after = pieces[i + 1] if i + 1 < len(pieces) else None
-            found.append(_plain(pieces[i], after, found, text, lexicon))
+            inner: list[Word] = []
+            if pieces[i].lastgroup == "IDENT":
+                inner = _numbered(pieces[i], lexicon)
+            elif pieces[i].lastgroup == "STRING" and (after is None or after.group() != ":"):
+                inner = [] if _is_name(found) else _unwrapped(pieces[i], text, lexicon)
+            found += inner or [_plain(pieces[i], after, found, text, lexicon)]
             i += 1
             continue
         type_, value = phrase.entry

@@ -28,8 +28,12 @@ def awaited_event(asked: Asked, diagnostics: Diagnostics) -> AwaitedEvent | None
     match asked:
         case Occurs(event=EventKind() as event):
             return AwaitedEvent(event)
-        case BatteryLevel():
-            return AwaitedEvent(EventKind.BATTERY_CHARGED, charged_level(asked, diagnostics))
+        case BatteryLevel(level=level):
+            if level.low is None:
+                message = "a wait needs a battery that is charged, not one that becomes low"
+                diagnostics.refuse("battery", message, asked.span, _CHARGED_HINT)
+            share = charge_share(level.low, asked.span, diagnostics)
+            return AwaitedEvent(EventKind.BATTERY_CHARGED, share)
     return None
 
 
@@ -40,14 +44,6 @@ def low_level(battery: BatteryLevel, diagnostics: Diagnostics) -> float:
         hint = f"{_LOW_HINT}, or `wait until the battery is charged`"
         diagnostics.refuse("battery", message, battery.span, hint)
     return _share(battery.level.high, battery.span, _LOW_HINT, diagnostics)
-
-
-def charged_level(battery: BatteryLevel, diagnostics: Diagnostics) -> float:
-    """Return the charge, 0 to 1, to which the battery is charged. Raises RefusedError."""
-    if battery.level.low is None:
-        message = "a wait needs a battery that is charged, not one that becomes low"
-        diagnostics.refuse("battery", message, battery.span, _CHARGED_HINT)
-    return charge_share(battery.level.low, battery.span, diagnostics)
 
 
 def charge_share(amount: Amount, span: Span, diagnostics: Diagnostics) -> float:

@@ -194,32 +194,6 @@ def all_nodes(block: Iterable[ProgramNode]) -> Iterator[ProgramNode]:
         stack.extend(iter(inner) for inner in reversed(inner_blocks(node)))
 
 
-def nodes_from(node: ProgramNode) -> Iterator[ProgramNode]:
-    """A node and all that stand behind it, in the order of the tasks that they become."""
-    at: ProgramNode | None = node
-    while at is not None:
-        yield at
-        inner = next((b.first for b in inner_blocks(at) if b.first is not None), None)
-        at = _behind(at) if inner is None else inner
-
-
-def _behind(node: ProgramNode) -> ProgramNode | None:
-    """What follows a node and all that lies in it."""
-    at: ProgramNode | None = node
-    while at is not None and at.after is None:
-        owner = at.owner
-        if owner is None:
-            return None
-        blocks = inner_blocks(owner)
-        place = next(i for i, block in enumerate(blocks) if block is at.block)
-        others = (block.first for block in blocks[place + 1 :] if block.first is not None)
-        other = next(others, None)
-        if other is not None:
-            return other
-        at = owner
-    return None if at is None else at.after
-
-
 def depth(block: ProgramBlock) -> int:
     """Return the number of nested blocks, at the deepest point."""
     deepest, waiting = 0, [(block, 1)]

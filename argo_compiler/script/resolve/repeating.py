@@ -7,7 +7,7 @@ one that is looked at after its last round.
 from collections.abc import Container, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from itertools import islice, takewhile
+from itertools import dropwhile, islice, takewhile
 
 from argo_compiler.il import Action, WaitRule
 from argo_compiler.script.documents.source import RefusedError
@@ -22,7 +22,6 @@ from argo_compiler.script.resolve.program import (
     ProgramNode,
     ProgramRound,
     all_nodes,
-    nodes_from,
 )
 from argo_compiler.script.sentences.tree import orders
 from argo_compiler.script.sentences.tree.manner import Manner
@@ -253,7 +252,7 @@ class Repeating:
             self.diagnostics.refuse("empty-step", message, order.steps.span, hint)
         known = {id(node) for node in nodes}
         if order.steps.through and not all(isinstance(p, int) for p in order.steps.points):
-            known |= _between(nodes[0], nodes[-1])
+            known |= _between(nodes[0], nodes[-1], self.context.program)
         block = _around(nodes, known, self.context.program, order.name or "")
         tops = _topmost(nodes, block)
         if any(not _covered(top, known) for top in tops):
@@ -383,14 +382,22 @@ def _leads_to(last: ProgramNode, round_: ProgramRound) -> bool:
     return False
 
 
-def _between(first: ProgramNode, last: ProgramNode) -> set[int]:
+def _between(first: ProgramNode, last: ProgramNode, program: ProgramBlock) -> set[int]:
     """What lies between two nodes, both included; nothing if the last does not follow."""
+    (top, *_) = _topmost([first], _around([first, last], set(), program, ""))
     found: set[int] = set()
-    for node in nodes_from(first):
+    for node in dropwhile(lambda node: node is not first, all_nodes(_from(top))):
         found.add(id(node))
         if node is last:
             return found
     return set()
+
+
+def _from(node: ProgramNode | None) -> Iterator[ProgramNode]:
+    """A node and those behind it in its block."""
+    while node is not None:
+        yield node
+        node = node.after
 
 
 def _around(

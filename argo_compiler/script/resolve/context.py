@@ -2,8 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass, field, fields, replace
-from functools import cache
+from dataclasses import dataclass, field, replace
 from typing import Any, NoReturn
 
 from argo_compiler.base.catalog import CheckpointInfo
@@ -192,8 +191,7 @@ class Context:
 
     def counted(self, order: ScriptOrder) -> ScriptOrder:
         """The order with the numbers of the steps that it means."""
-        kind: Any = type(order)
-        for name in _fields(kind):
+        for name in order.field_names:
             steps = getattr(order, name)
             if type(steps) is Steps and steps.ahead:
                 given: dict[str, Any] = {name: self._numbered(steps)}
@@ -227,8 +225,3 @@ def _bound_to(do: Do) -> Iterator[ProgramNode]:
     while isinstance(node, Choice) and node.bound:
         yield node
         node = node.after
-
-
-@cache
-def _fields(type_: type[Any]) -> tuple[str, ...]:
-    return tuple(field.name for field in fields(type_))

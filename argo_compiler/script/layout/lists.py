@@ -13,7 +13,6 @@ from itertools import takewhile
 from argo_compiler.script.documents.source import ScriptText, join
 from argo_compiler.script.layout.items import LineItem
 from argo_compiler.script.layout.lines import LineMark, sentences
-from argo_compiler.script.sentences.tree.manner import Manner
 from argo_compiler.script.sentences.tree.nouns import Pronoun
 from argo_compiler.script.sentences.tree.orders import Measure, ScriptOrder, Sentence
 from argo_compiler.script.sentences.tree.places import FloorName
@@ -256,8 +255,9 @@ def on_floors(said: list[Said], floors: Sequence[FloorName]) -> list[Said]:
 def _on(order: ScriptOrder, floors: Sequence[FloorName]) -> ScriptOrder:
     if not isinstance(order, Measure) or any(isinstance(n, Pronoun) for n in order.what.nouns):
         return order
-    manner = order.manner or Manner()
-    return order if manner.floors else replace(order, manner=replace(manner, floors=tuple(floors)))
+    if order.manner.floors:
+        return order
+    return replace(order, manner=replace(order.manner, floors=tuple(floors)))
 
 
 @cache

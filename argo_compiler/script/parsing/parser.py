@@ -413,7 +413,7 @@ def _ask_of_title(steps: Sequence[ScriptStep], diagnostics: Diagnostics) -> None
 def _is_bare_number(order: Measure) -> bool:
     noun = order.what.nouns[0]
     plain = isinstance(noun, Labelled) and noun.kind is None and not noun.hash
-    return plain and len(order.what.nouns) == 1 and order.manner is None
+    return plain and len(order.what.nouns) == 1 and not order.manner
 
 
 def _ask_of_quotes(steps: Sequence[ScriptStep], diagnostics: Diagnostics) -> None:

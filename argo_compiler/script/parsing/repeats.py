@@ -12,15 +12,13 @@ from typing import Any
 
 from argo_compiler.diagnostics import Span, span_at
 from argo_compiler.script.documents.source import ScriptText
-from argo_compiler.script.sentences.tree.manner import Joints, Manner
+from argo_compiler.script.sentences.tree.manner import NOTHING_SAID, Manner
 from argo_compiler.script.sentences.tree.node import Node
 from argo_compiler.script.sentences.tree.script import Said
 from argo_compiler.script.sentences.words.lexicon import Lexicon
 from argo_compiler.script.sentences.words.unknown import (
-    Fill,
     Unknown,
     UnknownFigure,
-    UnknownText,
     unknown_figure,
 )
 
@@ -65,9 +63,11 @@ def _changed(figure: str, digits: dict[int, str] | dict[int, int]) -> str:
 def _mover(part: object) -> _Move | None:
     """What makes the same part for another place; None if it says nothing of its place, nor of
     a figure that is not known."""
-    if type(part) in (Unknown, UnknownText):
-        fill: Fill = part.fill  # type: ignore[attr-defined]
+    if type(part) is Unknown:
+        fill = part.fill
         return lambda _lines, _columns, figures: fill(figures)
+    if part is NOTHING_SAID:
+        return None
     match part:
         case Span(line=line, column=column, length=length):
             return lambda lines, columns, _: span_at(line + lines, column + columns, length)
@@ -79,12 +79,12 @@ def _mover(part: object) -> _Move | None:
             return lambda lines, columns, figures: tuple(
                 [one if move is None else move(lines, columns, figures) for one, move in pairs]
             )
-        case Node() | Manner() | Joints():
+        case Node() | Manner():
             return _mover_of_node(part)
     return None
 
 
-def _mover_of_node(part: Node | Manner | Joints) -> _Move:
+def _mover_of_node(part: Node | Manner) -> _Move:
     type_: Any = type(part)
     same: list[tuple[_Fill, object]] = []
     moving: list[tuple[_Fill, _Move]] = []

@@ -1,5 +1,6 @@
 """Reads the sentences of a script one after the other: which say what, and which have no effect."""
 
+import re
 from dataclasses import dataclass, field, replace
 
 from argo_compiler.script.documents.source import Diagnostics, ScriptText, shortened
@@ -15,6 +16,7 @@ from argo_compiler.script.sentences.tree.script import Said, Text, Unread
 from argo_compiler.script.sentences.understanding import Reading, Understanding
 from argo_compiler.script.sentences.words.word import VERBS
 
+_BETWEEN_COMMAS = re.compile(r"(?:^|(?<=,))[^,]*")
 MAX_SENTENCE = 10_000
 """characters in a sentence of many lines; a longer one is refused unread"""
 
@@ -84,15 +86,13 @@ class SentenceReader:
         if len(text.content) > MAX_SENTENCE:
             length = len(text.content)
             message = f"the sentence has {length} characters; at most {MAX_SENTENCE} are read"
-            self.diagnostics.error("too-long", message, text.span(), "write several sentences")
-            return [Unread(span=text.span())]
+            return self._unread("too-long", message, text, "write several sentences")
         text = self.understanding.figures(self.understanding.rewritten(text))
         if not self.understanding.types(text):
             self.note(text, "a remark")
             return []
         if self._is_stray(text, item):
-            _ask_of_stray(text, self.listed, self.diagnostics)
-            return [Unread(span=text.span())]
+            return self._ask_of_stray(text)
         if item.line.number is None and self.asides.ranks(text):
             return self._ask_of_rank(text)
         self.listed = _kind_listed(text, tuple(self.understanding.types(text)))
@@ -136,9 +136,7 @@ class SentenceReader:
             return self._not_understood(text, item, reading)
         if is_question(text, self.understanding.language.lexicon):
             message = "this is a question: it is not clear whether the robot has to do it"
-            hint = "write it as an order, or remove it"
-            self.diagnostics.error("question", message, text.span(), hint)
-            return [Unread(span=text.span())]
+            return self._unread("question", message, text, "write it as an order, or remove it")
         joint = self.understanding.unfinished(text)
         if joint is not None:
             message = f"nothing follows `{joint.content}`"
@@ -146,8 +144,7 @@ class SentenceReader:
             self.diagnostics.error("unfinished", message, joint.span(), hint)
         if text.is_question and {*self.understanding.types(text)}.isdisjoint(_BIDDING):
             hint = "write it as a command if it is meant, or remove it"
-            self.diagnostics.error("not-understood", "this is a question", text.span(), hint)
-            return [Unread(span=text.span())]
+            return self._unread("not-understood", "this is a question", text, hint)
         node = self._node(text, reading)
         introduces = text.content.endswith(":") and not item.items
         if introduces and item.over and not _is_amend(node):
@@ -155,8 +152,7 @@ class SentenceReader:
         if stands_over and not item.items and _is_amend(node):
             message = "this is above other lines, and only says how they are done"
             hint = "write it in each of them, or write them as sub-steps of this line"
-            self.diagnostics.error("stray-clause", message, text.span(), hint)
-            return [Unread(span=text.span())]
+            return self._unread("stray-clause", message, text, hint)
         return [node]
 
     def _behind_limit(self, text: ScriptText) -> ScriptText:
@@ -187,7 +183,7 @@ class SentenceReader:
         if not isinstance(node, Sentence) or node.cases or not node.orders:
             return [node]
         *orders, last = node.orders
-        if not isinstance(last, Follow) or last.manner is not None or last.name is not None:
+        if not isinstance(last, Follow) or last.manner or last.name is not None:
             return [node]
         self.diagnostics.warning(
             "no-effect", f"`{text.content}` has no effect by itself", text.span()
@@ -197,7 +193,23 @@ class SentenceReader:
     def _ask_of_rank(self, text: ScriptText) -> list[Said]:
         message = f"`{text.content}` can mean all of them, or the order of the other lines"
         hint = "write `check all ...` as a step, or the steps in the intended order"
-        self.diagnostics.error("ambiguous-order", message, text.span(), hint)
+        return self._unread("ambiguous-order", message, text, hint)
+
+    def _ask_of_stray(self, text: ScriptText) -> list[Said]:
+        number, listed = text.content, self.listed
+        message, hint = (
+            f"`{number}` can be checkpoint {number}",
+            f"write `check checkpoint {number}`",
+        )
+        if listed:
+            message += f", one more of the `{listed}` above it"
+            hint += f", or `{listed}:` above the list"
+        message, hint = f"{message}, or have no meaning", f"{hint}, or remove it"
+        return self._unread("not-understood", message, text, hint)
+
+    def _unread(self, code: str, message: str, text: ScriptText, hint: str) -> list[Said]:
+        """Says what is wrong with a sentence, of which is not known then what it asks for."""
+        self.diagnostics.error(code, message, text.span(), hint)
         return [Unread(span=text.span())]
 
     def _is_stray(self, text: ScriptText, item: LineItem) -> bool:
@@ -264,15 +276,14 @@ class SentenceReader:
 
     def _behind(self, text: ScriptText) -> tuple[ScriptText, ...]:
         """The parts of what stands behind a title, if all of them make sense."""
-        commas = [i for i, sign in enumerate(text.content) if sign == ","]
-        ends = [*commas, len(text.content)]
-        starts = [0, *(comma + 1 for comma in commas)]
-        parts = tuple(text[a:b].strip() for a, b in zip(starts, ends, strict=True))
-        sensible = (p for p in (parts, (text,)) if all(self._makes_sense(part) for part in p))
+        parts = tuple(
+            text[m.start() : m.end()].strip() for m in _BETWEEN_COMMAS.finditer(text.content)
+        )
+        says_whole, fits = self.fields.says_whole, self.understanding.fits
+        sensible = (
+            p for p in (parts, (text,)) if all(says_whole(part) or fits(part) for part in p)
+        )
         return next(sensible, ())
-
-    def _makes_sense(self, text: ScriptText) -> bool:
-        return self.fields.says_whole(text) or self.understanding.fits(text)
 
     def _is_heading(self, text: ScriptText, item: LineItem) -> bool:
         """Whether a line stands over others: marked as a heading, or with items of its own."""
@@ -329,19 +340,6 @@ def _is_amend(node: Said) -> bool:
     if not isinstance(node, Sentence) or node.cases or not node.orders:
         return False
     return all(isinstance(order, Amend) for order in node.orders)
-
-
-def _ask_of_stray(text: ScriptText, listed: str, diagnostics: Diagnostics) -> None:
-    number = text.content
-    message, hint = (
-        f"`{number}` can be checkpoint {number}",
-        f"write `check checkpoint {number}`",
-    )
-    if listed:
-        message += f", one more of the `{listed}` above it"
-        hint += f", or `{listed}:` above the list"
-    message, hint = f"{message}, or have no meaning", f"{hint}, or remove it"
-    diagnostics.error("not-understood", message, text.span(), hint)
 
 
 def _kind_listed(text: ScriptText, types: tuple[str, ...]) -> str:

@@ -113,7 +113,7 @@ def require_used(order: ScriptOrder, diagnostics: Diagnostics) -> None:
         message = f"the name `{order.name}` is in front of something that is not a task"
         hint = "write it in front of the command of a task, or remove it"
         diagnostics.refuse("stray-clause", message, order.span, hint)
-    if order.manner is None:
+    if not order.manner:
         return
     used = _OF_MEETING if meets else _USED.get(type(order), _NOTHING)
     given = said(order.manner)

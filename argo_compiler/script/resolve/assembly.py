@@ -144,8 +144,7 @@ def _speeds(lowered: Lowered, names: Sequence[str], diagnostics: Diagnostics) ->
             said, speeds[i] = speeds[i], value
             if said is not None and said != value:
                 message = f"this path has two speeds: {value:g} and {said:g} m/s"
-                hint = "remove one of them"
-                diagnostics.error("two-speeds", message, items[j].do.source, hint)
+                diagnostics.error("two-speeds", message, items[j].do.source, "remove one of them")
             if others and item.do.velocity is None:
                 elsewhere = ", ".join(f"'{names[o]}'" for o in others[:3])
                 message = f"{value:g} m/s will be the speed on all paths to '{names[i]}', "

@@ -103,9 +103,8 @@ class Cases:
                 self._rest(case, block)
             return
         condition = self._turned(self._as_failure_of_drive(condition))
-        asked = [test for tests in condition.alternatives for test in tests]
-        values = any(isinstance(test, Test) for test in asked)
-        late = any(isinstance(test, TooLate) for test in asked)
+        values = any(isinstance(test, Test) for test in condition.tests)
+        late = any(isinstance(test, TooLate) for test in condition.tests)
         if values and not late and not case.orders:
             hint = "for example, add `go to step 5` or `return to the docking station`"
             self.diagnostics.refuse("unfinished", "this does not say what to do", case.span, hint)
@@ -246,7 +245,7 @@ class Cases:
         if ending is not None and ending.target is Ahead.GO_ON:
             return said, ending
         if said and isinstance(home := said[-1], orders.Home):
-            if home.manner is not None or home.name is not None:
+            if home.manner or home.name is not None:
                 return said, Leave(Ahead.END, home.span)
             said.pop()
             ending = Leave(self._home_ahead(home), home.span)
@@ -254,7 +253,7 @@ class Cases:
 
     def _target(self, said: Sequence[ScriptOrder]) -> Target | None:
         """Return the target of a case whose only order is to go elsewhere; None for other cases."""
-        if len(said) != 1 or said[0].manner is not None or said[0].name is not None:
+        if len(said) != 1 or said[0].manner or said[0].name is not None:
             return None
         match said[0]:
             case orders.Jump(step=step):
@@ -311,17 +310,15 @@ class Cases:
         if not others or len(others) == len(last):
             return
         names = listed((f"{c.name} (#{c.id})" for c in last[:6]), "or")
-        message = f"this can apply to {names}"
         hint = "write it after the task that it applies to: `check checkpoint 4; if it fails, ...`"
-        self.diagnostics.refuse("ambiguous-pronoun", message, case.span, hint)
+        self.diagnostics.refuse("ambiguous-pronoun", f"this can apply to {names}", case.span, hint)
 
     def _require_each(self, recent: Sequence[Do], case: Case) -> None:
         """Asks about `if both fail`, as each task has a failure path of its own."""
         assert case.condition is not None
         nouns = [
             noun
-            for tests in case.condition.alternatives
-            for test in tests
+            for test in case.condition.tests
             if isinstance(test, Test) and test.subject is not None
             for noun in test.subject.nouns
         ]
@@ -388,9 +385,11 @@ class Cases:
 def _policy(said: Sequence[ScriptOrder]) -> OnFailure | None:
     """Return the way that a mission has for failures, if that is all that is ordered, or None."""
     match said:
-        case [orders.Plain(word=word, manner=None, name=None)]:
+        case [order] if order.manner or order.name is not None:
+            return None
+        case [orders.Plain(word=word)]:
             return _POLICIES.get(word)
-        case [orders.Home(dock=DockLocation(area=None), manner=None, name=None)]:
+        case [orders.Home(dock=DockLocation(area=None))]:
             return OnFailure.RETURN
     return None
 
@@ -425,7 +424,6 @@ def _put_together(last: Choice) -> bool:
     if not clear or any(c.negated or c.otherwise.first is not None for c in chain):
         return False
     for outer, inner in pairwise(chain):
-        assert inner.block is not None
-        inner.block.remove(inner)
+        inner.home.remove(inner)
         outer.otherwise.append(inner)
     return True

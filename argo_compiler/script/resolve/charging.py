@@ -5,13 +5,7 @@ from typing import NamedTuple
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import EventKind
 from argo_compiler.script.documents.source import Diagnostics
-from argo_compiler.script.sentences.tree.conditions import (
-    Amount,
-    Asked,
-    BatteryLevel,
-    Occurs,
-    Relation,
-)
+from argo_compiler.script.sentences.tree.conditions import Amount, Asked, BatteryLevel, Occurs
 
 FULL = 1.0
 _LOW_HINT = "write, for example, `if the battery drops below 30 %`"
@@ -34,26 +28,22 @@ def awaited_event(asked: Asked, diagnostics: Diagnostics) -> AwaitedEvent | None
     match asked:
         case Occurs(event=EventKind() as event):
             return AwaitedEvent(event)
-        case BatteryLevel():
-            return AwaitedEvent(EventKind.BATTERY_CHARGED, charged_level(asked, diagnostics))
+        case BatteryLevel(level=level):
+            if level.low is None:
+                message = "a wait needs a battery that is charged, not one that becomes low"
+                diagnostics.refuse("battery", message, asked.span, _CHARGED_HINT)
+            share = charge_share(level.low, asked.span, diagnostics)
+            return AwaitedEvent(EventKind.BATTERY_CHARGED, share)
     return None
 
 
 def low_level(battery: BatteryLevel, diagnostics: Diagnostics) -> float:
     """Return the charge, 0 to 1, below which the battery is called low. Raises RefusedError."""
-    if battery.relation not in (Relation.LESS, Relation.AT_MOST):
+    if battery.level.high is None:
         message = "a reaction needs a battery that becomes low, not one that is charged"
         hint = f"{_LOW_HINT}, or `wait until the battery is charged`"
         diagnostics.refuse("battery", message, battery.span, hint)
-    return _share(battery.level, battery.span, _LOW_HINT, diagnostics)
-
-
-def charged_level(battery: BatteryLevel, diagnostics: Diagnostics) -> float:
-    """Return the charge, 0 to 1, to which the battery is charged. Raises RefusedError."""
-    if battery.relation not in (Relation.GREATER, Relation.AT_LEAST):
-        message = "a wait needs a battery that is charged, not one that becomes low"
-        diagnostics.refuse("battery", message, battery.span, _CHARGED_HINT)
-    return charge_share(battery.level, battery.span, diagnostics)
+    return _share(battery.level.high, battery.span, _LOW_HINT, diagnostics)
 
 
 def charge_share(amount: Amount, span: Span, diagnostics: Diagnostics) -> float:
@@ -72,6 +62,5 @@ def _share(amount: Amount, span: Span, hint: str, diagnostics: Diagnostics) -> f
         message = f"the battery's charge is given in %, not as a number {unit}"
         diagnostics.refuse("battery", message, span, hint)
     if not 0.0 < amount.value < 100.0:
-        message = "this must be more than 0 % and less than 100 %"
-        diagnostics.refuse("battery", message, span, hint)
+        diagnostics.refuse("battery", "this must be more than 0 % and less than 100 %", span, hint)
     return amount.value / 100.0

@@ -14,11 +14,8 @@ from argo_compiler.script.resolve.units import ABSOLUTE, converted
 from argo_compiler.script.sentences.tree.conditions import (
     Amount,
     Asked,
-    Between,
-    Compared,
+    Bounded,
     InState,
-    InValvePosition,
-    Relation,
     SaidCondition,
     TaskState,
     Test,
@@ -28,18 +25,8 @@ from argo_compiler.script.sentences.tree.nouns import AllOf, Labelled, Nouns, Pr
 
 _MOST = 64
 """alternatives of one condition"""
-_OPPOSITE = {
-    Relation.GREATER: Relation.AT_MOST,
-    Relation.LESS: Relation.AT_LEAST,
-    Relation.AT_LEAST: Relation.LESS,
-    Relation.AT_MOST: Relation.GREATER,
-}
-_TYPES = {
-    Relation.GREATER: (ConditionType.GREATER, False),
-    Relation.LESS: (ConditionType.LESS, False),
-    Relation.AT_LEAST: (ConditionType.GREATER, True),
-    Relation.AT_MOST: (ConditionType.LESS, True),
-}
+_Bound = tuple[ConditionType, float | None, float | None, bool]
+"""the type of a condition, its bounds, and whether a value may be at them"""
 POSITIONS_DEG: dict[ValvePosition, tuple[float | None, float | None]] = {
     ValvePosition.OPEN: (80.0, None),
     ValvePosition.HALF_OPEN: (35.0, 55.0),
@@ -103,9 +90,10 @@ class ConditionResolver:
         """Asks about `if 1 is above 8`, where 8 may be a value or what checkpoint 8 shows."""
         nouns = test.subject.nouns if test.subject is not None else ()
         bare = all(isinstance(n, Labelled) and n.kind is None and not n.hash for n in nouns)
-        if not nouns or not bare or not isinstance(test.predicate, Compared):
+        bounds = test.predicate.bounds if isinstance(test.predicate, Bounded) else ()
+        if not nouns or not bare or len(bounds) != 1:
             return
-        bound = test.predicate.bound
+        (bound,) = bounds
         measured = self.nouns.memory.so_far.values()
         other = next((c for c in measured if c.id == bound.value), None)
         if other is None or bound.unit or other in checkpoints:
@@ -125,13 +113,10 @@ class ConditionResolver:
     def _subjects(self, test: Test) -> Sequence[CheckpointInfo]:
         """Which checkpoints are asked for; `it` is the only one whose unit is that of the value."""
         if test.subject is not None and test.subject.but:
-            message = (
-                "the excepted checkpoint can have any value, or must not satisfy the condition"
-            )
-            hint = (
-                "if any value is allowed, remove the exception; otherwise write "
-                "`if #1 is above 5 and #4 is at most 5`"
-            )
+            message = "the excepted checkpoint can have any value, or must not satisfy the "
+            message += "condition"
+            hint = "if any value is allowed, remove the exception; otherwise write "
+            hint += "`if #1 is above 5 and #4 is at most 5`"
             if not any(isinstance(noun, AllOf) for noun in test.subject.nouns):
                 self.diagnostics.refuse("condition", message, test.subject.span, hint)
         match test.subject:
@@ -144,36 +129,29 @@ class ConditionResolver:
 
     def _of(self, test: Test, checkpoint: CheckpointInfo) -> list[tuple[Condition, ...]]:
         """Alternatives for one checkpoint."""
-        return [
-            (
-                Condition(
-                    type=kind,
-                    id=test.id,
-                    object_id=str(checkpoint.id),
-                    param1=low,
-                    param2=test.second_bound if high is None else high,
-                    inclusive=inclusive,
-                    max_age=test.max_age,
-                ),
+        found: list[tuple[Condition, ...]] = []
+        for kind, low, high, inclusive in self._bounds(test, checkpoint):
+            condition = Condition(
+                type=kind,
+                id=test.id,
+                object_id=str(checkpoint.id),
+                param1=low,
+                param2=test.second_bound if high is None else high,
+                inclusive=inclusive,
+                max_age=test.max_age,
             )
-            for kind, low, high, inclusive in self._bounds(test, checkpoint)
-        ]
+            found.append((condition,))
+        return found
 
-    def _bounds(self, test: Test, checkpoint: CheckpointInfo) -> "list[_Bound]":
-        match test.predicate:
-            case InState(state=state):
-                return [self._state(state, test, checkpoint)]
-            case InValvePosition(position=position):
-                return self._position(position, test, checkpoint)
-            case Between() as between:
-                return self._between(between, test, checkpoint)
-            case Compared() as compared:
-                relation = _OPPOSITE[compared.relation] if test.negated else compared.relation
-                bound = self._bound(compared.bound, checkpoint)
-                kind, inclusive = _TYPES[relation]
-                return [(kind, bound, None, inclusive)]
+    def _bounds(self, test: Test, checkpoint: CheckpointInfo) -> list[_Bound]:
+        predicate = test.predicate
+        if isinstance(predicate, Bounded):
+            return self._between(predicate, test, checkpoint)
+        if isinstance(predicate.state, ValvePosition):
+            return self._position(predicate.state, test, checkpoint)
+        return [self._state(predicate.state, test, checkpoint)]
 
-    def _state(self, state: TaskState, test: Test, checkpoint: CheckpointInfo) -> "_Bound":
+    def _state(self, state: TaskState, test: Test, checkpoint: CheckpointInfo) -> _Bound:
         if test.negated and state in (TaskState.NORMAL, TaskState.ABNORMAL):
             state = TaskState.ABNORMAL if state is TaskState.NORMAL else TaskState.NORMAL
         elif test.negated:
@@ -186,34 +164,24 @@ class ConditionResolver:
 
     def _position(
         self, position: ValvePosition, test: Test, checkpoint: CheckpointInfo
-    ) -> "list[_Bound]":
+    ) -> list[_Bound]:
         """Return the bounds of a position, in degrees, or those of all other positions."""
         if checkpoint.kind is not CheckpointKind.VALVE:
             message = f"{told(checkpoint)} is no valve, and can't be open or closed"
             hint = f"write a value in {checkpoint.unit}, or name a valve"
             self.diagnostics.refuse("condition", message, test.span, hint)
-        low, high = POSITIONS_DEG[position]
-        if low is not None and high is not None:
-            if not test.negated:
-                return [(ConditionType.WITHIN, low, high, True)]
-            outside = ((ConditionType.LESS, low), (ConditionType.GREATER, high))
-            return [(kind, bound, None, False) for kind, bound in outside]
-        greater = (low is not None) is not test.negated
-        kind = ConditionType.GREATER if greater else ConditionType.LESS
-        return [(kind, low if low is not None else high, None, not test.negated)]
+        return _bounds(*POSITIONS_DEG[position], True, test.negated)
 
-    def _between(
-        self, predicate: Between, test: Test, checkpoint: CheckpointInfo
-    ) -> "list[_Bound]":
-        amounts = (predicate.low, predicate.high)
-        low, high = self.diagnostics.each(lambda one: self._bound(one, checkpoint), amounts)
-        if low > high or (low == high and not predicate.inclusive):
-            message = "no value is between these bounds"
-            self.diagnostics.refuse("condition", message, test.span, "write the lower bound first")
-        if not test.negated:
-            return [(ConditionType.WITHIN, low, high, predicate.inclusive)]
-        outside = ((ConditionType.LESS, low), (ConditionType.GREATER, high))
-        return [(kind, bound, None, not predicate.inclusive) for kind, bound in outside]
+    def _between(self, predicate: Bounded, test: Test, checkpoint: CheckpointInfo) -> list[_Bound]:
+        each = self.diagnostics.each
+        values = each(lambda one: self._bound(one, checkpoint), predicate.bounds)
+        empty = not predicate.inclusive and len(values) > len({*values})
+        if empty or values != sorted(values):
+            message, hint = "no value is between these bounds", "write the lower bound first"
+            self.diagnostics.refuse("condition", message, test.span, hint)
+        low = None if predicate.low is None else values[0]
+        high = None if predicate.high is None else values[-1]
+        return _bounds(low, high, predicate.inclusive, test.negated)
 
     def _bound(self, amount: Amount, checkpoint: CheckpointInfo) -> float:
         """The amount in the checkpoint's unit."""
@@ -230,6 +198,16 @@ class ConditionResolver:
         return value
 
 
+def _bounds(low: float | None, high: float | None, inclusive: bool, negated: bool) -> list[_Bound]:
+    """Return what holds of a value within bounds, or of one outside of them."""
+    if low is not None and high is not None and not negated:
+        return [(ConditionType.WITHIN, low, high, inclusive)]
+    below, above = (low, high) if negated else (high, low)
+    found = ((ConditionType.LESS, below), (ConditionType.GREATER, above))
+    held = inclusive is not negated
+    return [(kind, bound, None, held) for kind, bound in found if bound is not None]
+
+
 def _in_unit_of(checkpoint: CheckpointInfo, amount: Amount) -> float | None:
     """The amount in the checkpoint's unit; None if it has a unit that does not fit."""
     return converted(amount.value, amount.unit or checkpoint.unit, checkpoint.unit)
@@ -238,15 +216,8 @@ def _in_unit_of(checkpoint: CheckpointInfo, amount: Amount) -> float | None:
 def _fits(test: Test, checkpoint: CheckpointInfo) -> bool:
     """Whether the units that are said are those of values that a checkpoint has."""
     match test.predicate:
-        case Compared(bound=bound):
-            amounts = [bound]
-        case Between(low=low, high=high):
-            amounts = [low, high]
-        case InState():
-            return True
-        case InValvePosition():
+        case Bounded(bounds=bounds):
+            return all(_in_unit_of(checkpoint, amount) is not None for amount in bounds)
+        case InState(state=ValvePosition()):
             return checkpoint.kind is CheckpointKind.VALVE
-    return all(_in_unit_of(checkpoint, amount) is not None for amount in amounts)
-
-
-_Bound = tuple[ConditionType, float | None, float | None, bool]
+    return True

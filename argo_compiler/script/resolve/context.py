@@ -1,8 +1,8 @@
 """What all parts of the planning share: the program, and what the script has said so far."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field, fields, replace
-from functools import cache
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
 from typing import Any, NoReturn
 
 from argo_compiler.base.catalog import CheckpointInfo
@@ -131,6 +131,25 @@ class Context:
             points = list(range(first, min(last, first + len(self.steps) + 1) + 1))
         return [node for point in points for node in self._of_point(point, steps.span)]
 
+    def target_of(self, steps: Steps) -> ProgramNode | None:
+        """The node with which the mission goes on at steps; None if it ends, or with an error."""
+        with suppress(RefusedError):
+            nodes = self.nodes_of(steps)
+            if nodes and steps.behind:
+                last = nodes[-1]
+                if last.after is None and last.block is not self.program:
+                    message = "this can't skip the last step of a repetition or of a case"
+                    hint = "write the opposite condition before that step: `if ..., check "
+                    hint += "checkpoint 4`"
+                    self.diagnostics.refuse("step-range", message, steps.span, hint)
+                return last.after
+            if nodes:
+                return nodes[0]
+            message = f"step {steps.points[0]} has no task with which the mission could go on"
+            hint = "name a step that measures or drives"
+            self.diagnostics.error("empty-step", message, steps.span, hint)
+        return None
+
     def _by_own_name(self, name: str) -> Do | None:
         """A task by the name that it has where the script gives none: `MEASURE 4 (2)`."""
         if self.own_names is None:
@@ -172,8 +191,7 @@ class Context:
 
     def counted(self, order: ScriptOrder) -> ScriptOrder:
         """The order with the numbers of the steps that it means."""
-        kind: Any = type(order)
-        for name in _fields(kind):
+        for name in order.field_names:
             steps = getattr(order, name)
             if type(steps) is Steps and steps.ahead:
                 given: dict[str, Any] = {name: self._numbered(steps)}
@@ -207,8 +225,3 @@ def _bound_to(do: Do) -> Iterator[ProgramNode]:
     while isinstance(node, Choice) and node.bound:
         yield node
         node = node.after
-
-
-@cache
-def _fields(type_: type[Any]) -> tuple[str, ...]:
-    return tuple(field.name for field in fields(type_))

@@ -61,16 +61,13 @@ class Edits:
         self, nodes: Sequence[ProgramNode], anchors: Sequence[ProgramNode], side: Side
     ) -> None:
         anchor = _outside(anchors[0] if side is Side.BEFORE else anchors[-1], side)
-        assert anchor.block is not None
         before = anchor.before if side is Side.BEFORE else anchor
-        self.context.put(nodes, anchor.block, before)
+        self.context.put(nodes, anchor.home, before)
 
     def _take_out(self, do: ProgramNode, edit: Edit) -> list[ProgramNode]:
         """Takes a task out of the program, with where it leads."""
         whole = _emptied(do)
-        assert whole.block is not None
-        bound = isinstance(do.after, Choice) or isinstance(whole.after, Choice)
-        bound = bound or isinstance(whole.block.owner, Choice)
+        bound = any(isinstance(n, Choice) for n in (do.after, whole.after, whole.owner))
         if bound or not isinstance(do, Do) or do.failure is not None:
             message = "this task belongs to a condition, so it can't be moved or deleted"
             hint = "change the line of the condition"
@@ -79,8 +76,7 @@ class Edits:
         if isinstance(do.after, Leave):
             taken.append(do.after)
         for node in [*taken, whole] if whole is not do else taken:
-            assert node.block is not None
-            node.block.remove(node)
+            node.home.remove(node)
         self.context.forget(do)
         return taken
 
@@ -148,12 +144,10 @@ def _outside(node: ProgramNode, side: Side) -> ProgramNode:
     while True:
         while side is Side.AFTER and isinstance(node.after, Choice | Leave):
             node = node.after
-        block = node.block
-        owner = None if block is None else block.owner
         inner = node.before if side is Side.BEFORE else node.after
-        if inner is not None or not isinstance(owner, ProgramRound):
+        if inner is not None or not isinstance(node.owner, ProgramRound):
             return node
-        node = owner
+        node = node.owner
 
 
 def _emptied(node: ProgramNode) -> ProgramNode:

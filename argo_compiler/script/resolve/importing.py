@@ -15,7 +15,7 @@ from argo_compiler.script.resolve.context import Context
 from argo_compiler.script.resolve.lookup import Lookup
 from argo_compiler.script.resolve.lowering import lower_program
 from argo_compiler.script.resolve.planning import Planner
-from argo_compiler.script.resolve.program import Do, ProgramNode, all_nodes, depth
+from argo_compiler.script.resolve.program import Do, all_nodes, depth
 from argo_compiler.script.resolve.starting import Starting, area_choices
 from argo_compiler.script.sentences.tree.places import Steps
 from argo_compiler.script.sentences.tree.script import ScriptHeader
@@ -66,32 +66,11 @@ def _mission(
     _warn_of_long_waits(context, script.header)
     order = ordering.finish(context.program)
     _require_no_error(diagnostics)
-
-    @cache
-    def find(steps: Steps) -> ProgramNode | None:
-        with suppress(RefusedError):
-            nodes = context.nodes_of(steps)
-            if nodes and steps.behind:
-                last = nodes[-1]
-                if last.after is None and last.block is not context.program:
-                    message = "this can't skip the last step of a repetition or of a case"
-                    hint = "write the opposite condition before that step: `if ..., check "
-                    hint += "checkpoint 4`"
-                    diagnostics.refuse("step-range", message, steps.span, hint)
-                return last.after
-            if nodes:
-                return nodes[0]
-            said = f"step {steps.points[0]}"
-            message = f"{said} has no task with which the mission could go on"
-            hint = "name a step that measures or drives"
-            diagnostics.error("empty-step", message, steps.span, hint)
-        return None
-
     if depth(context.program) > _DEEPEST:
         message = f"more than {_DEEPEST} repetitions or conditions are nested"
         hint = "nest fewer of them, and repeat the steps more often"
         diagnostics.refuse("deep-rounds", message, None, hint)
-    lowered = lower_program(context.program, find, starting.home)
+    lowered = lower_program(context.program, cache(context.target_of), starting.home)
     for leave in lowered.circling:
         hint = "name a step that measures, drives or waits"
         diagnostics.error("empty-step", "this leads only back to itself", leave.span, hint)

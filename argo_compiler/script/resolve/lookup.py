@@ -2,7 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Collection, Iterable
-from typing import Literal
+from typing import Literal, NoReturn
 
 from rapidfuzz.distance import OSA
 
@@ -88,13 +88,19 @@ class Lookup:
             return found[0]
         name = f"{kind or 'checkpoint'} {identifier.upper()}"
         if found:
-            message = f"`{name}` can be read as {listed(map(told, found), 'or')}"
             hint = "write the checkpoint's number, or by its full name"
-            self.diagnostics.refuse("ambiguous-checkpoint", message, span, hint)
+            self.refuse_readings(name, map(told, found), span, hint)
         close = nearest(name, (c.name for c in self.catalog.checkpoints))
         message = f"there is no {name} on {self.catalog.site}"
         hint = f"the nearest names are {listed(close)}"
         self.diagnostics.refuse("unknown-checkpoint", message, span, hint if close else None)
+
+    def refuse_readings(
+        self, name: str, readings: Iterable[str], span: Span, hint: str
+    ) -> NoReturn:
+        """Asks which checkpoint is meant by a name. Raises RefusedError."""
+        message = f"`{name}` can be read as {listed(readings, 'or')}"
+        self.diagnostics.refuse("ambiguous-checkpoint", message, span, hint)
 
     def numbered(self, number: int, span: Span) -> CheckpointInfo:
         if number in self.by_number:
@@ -149,8 +155,9 @@ class Lookup:
         said = self._place_key(location.name)
         places: dict[str, Place] = {}
         for place in self.catalog.places:
-            other = places.setdefault(self._place_key(place.name), place)
-            if other is not place and self._place_key(place.name) == said:
+            key = self._place_key(place.name)
+            other = places.setdefault(key, place)
+            if other is not place and key == said:
                 message = f"`{location.name}` may be the place `{other.name}` or `{place.name}`"
                 hint = "write its coordinates, or rename one of them in the site"
                 self.diagnostics.refuse("ambiguous-place", message, location.span, hint)

@@ -1,10 +1,10 @@
 """Applies what is said of an order's manner: to its tasks, or as a round or choice around them."""
 
 from collections.abc import Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 
 from argo_compiler.diagnostics import Span
-from argo_compiler.il import Action, Condition, JointState, OnFailure, TimeWindow, WaitRule
+from argo_compiler.il import Action, Condition, OnFailure, TimeWindow, WaitRule
 from argo_compiler.script.documents.source import Diagnostics
 from argo_compiler.script.resolve.accepting import ROUND, said
 from argo_compiler.script.resolve.context import Context
@@ -18,10 +18,9 @@ from argo_compiler.script.resolve.program import (
 )
 from argo_compiler.script.sentences.tree import orders
 from argo_compiler.script.sentences.tree.conditions import SaidCondition
-from argo_compiler.script.sentences.tree.manner import Joints, Manner
+from argo_compiler.script.sentences.tree.manner import Manner
 from argo_compiler.script.sentences.tree.orders import ScriptOrder
 
-_NOTHING = Manner()
 _FRESH = Do("", Action.MEASURE)
 """what a task has of which nothing is said"""
 _MOST_PRIORITY = 1_000_000
@@ -51,28 +50,18 @@ class Manners:
         """An order with the manner that stands before it: `three times: check checkpoint 17`."""
         if order.name is None:
             order = replace(order, name=prefix.name)
-        if order.manner is None:
-            return replace(order, manner=prefix.manner)
-        return replace(order, manner=self._merged(prefix.manner, order.manner, order.span))
-
-    def _merged(self, first: Manner | None, second: Manner, span: Span) -> Manner:
-        values = {f.name: getattr(second, f.name) for f in fields(Manner)}
-        for field in fields(Manner):
-            value = getattr(first, field.name, field.default)
-            if value == field.default:
-                continue
-            if values[field.name] not in (field.default, value):
-                what = field.name.replace("_", " ")
-                message = f"the {what} is given twice"
-                self.diagnostics.error("repeated-limit", message, span, "remove one of them")
-            values[field.name] = value
-        return Manner(**values)
+        given = {name: getattr(prefix.manner, name) for name in said(prefix.manner)}
+        for name in said(order.manner) & given.keys():
+            if getattr(order.manner, name) != given[name]:
+                message = f"the {name.replace('_', ' ')} is given twice"
+                self.diagnostics.error("repeated-limit", message, order.span, "remove one of them")
+        return replace(order, manner=replace(order.manner, **given))
 
     # ---- tasks
 
     def apply(self, order: ScriptOrder, tasks: Sequence[Do]) -> list[ProgramNode]:
         """The tasks as nodes, with a wait before them, a round or a choice around them."""
-        if isinstance(order, orders.WaitOrder) and order.manner is not None:
+        if isinstance(order, orders.WaitOrder):
             # What limits a wait ends it, and is no limit of the task.
             order = replace(order, manner=replace(order.manner, time_limit=None))
         if not _is_round(order):
@@ -81,7 +70,7 @@ class Manners:
         round_order = timed(order, self.diagnostics)
         self.furnish(round_order, tasks)
         manner = round_order.manner
-        if manner is not None and manner.times == 1 and (manner.more or manner.every is not None):
+        if manner.times == 1 and (manner.more or manner.every is not None):
             # `once every ten minutes`, `again every ten minutes`
             round_order = replace(round_order, manner=replace(manner, times=None, more=None))
         base = f"Repeat {' and '.join(do.base for do in tasks)}"
@@ -91,7 +80,7 @@ class Manners:
 
     def around(self, order: ScriptOrder, nodes: Sequence[ProgramNode]) -> list[ProgramNode]:
         """The nodes with a wait before them, in the case that is said of them only."""
-        manner = order.manner or _NOTHING
+        manner = order.manner
         if manner.delay is not None and isinstance(order, orders.Go | orders.Home):
             message = "this can be a wait before the task, or a time since the start"
             hint = "write `wait 20 minutes, then return home`, or `return home not before 20 "
@@ -127,7 +116,7 @@ class Manners:
 
     def furnish(self, order: ScriptOrder, tasks: Sequence[Do]) -> None:
         """Applies to each of the tasks what is said of each."""
-        if order.manner is not None:
+        if order.manner:
             self.furnish_each(order.manner, order.span, tasks)
 
     def furnish_each(self, manner: Manner, span: Span, tasks: Sequence[Do]) -> None:
@@ -151,7 +140,7 @@ class Manners:
             "reading_limit": manner.reading_limit,
             "optional": manner.optional or None,
             "priority": manner.rank if manner.priority is None else manner.priority,
-            "joints": _joint_state(manner.joints),
+            "joints": manner.joints,
             "shown_in": manner.shown_in,
             "pose": None if manner.pose is None else self.context.lookup.point(manner.pose),
         }
@@ -162,8 +151,7 @@ class Manners:
             if manner.object_id is not None:
                 if do.action is Action.MEASURE:
                     message = "a measurement always concerns its checkpoint"
-                    hint = "remove `about object`"
-                    self.diagnostics.error("stray-clause", message, span, hint)
+                    self.diagnostics.error("stray-clause", message, span, "remove `about object`")
                 do.object_id = manner.object_id
         if tasks:
             self._set(tasks[-1], "leaving", manner.leaving, span)
@@ -233,7 +221,7 @@ class Manners:
             message = "this can mean once more in any case, or only after a failure"
             hint = "write `check it again`, or `if it fails, retry once`"
             self.diagnostics.refuse("ambiguous-repeat", message, order.span, hint)
-        manner = order.manner or Manner()
+        manner = order.manner
         counts = [n for n in (manner.times, manner.at_most) if n is not None]
         retries = counts[0] if counts else 1
         if len(counts) > 1 or any(do.retries not in (0, retries) for do in recent):
@@ -254,21 +242,8 @@ def _is_round(order: ScriptOrder) -> bool:
         return False  # how long it lasts, and until when, is said of the wait
     if isinstance(order, orders.Measure) and order.keep:
         return True
-    if order.manner is None:
-        return False
     found = said(order.manner) & ROUND
     return bool(found) and not (found <= {"times", "more"} and order.manner.times == 1)
-
-
-def _joint_state(joints: Joints | None) -> JointState | None:
-    if joints is None:
-        return None
-    return JointState(
-        names=joints.names,
-        positions=joints.positions,
-        velocities=joints.velocities,
-        efforts=joints.efforts,
-    )
 
 
 # ---- what ends a round's repetitions
@@ -288,7 +263,7 @@ def timed(order: ScriptOrder, diagnostics: Diagnostics) -> ScriptOrder:
     """The order of a round with the limit of time that is said of all its rounds as how long they
     last. Raises RefusedError if it is not clear whether each or all are meant."""
     manner = order.manner
-    if manner is None or manner.time_limit is None:
+    if manner.time_limit is None:
         return order
     single = isinstance(order, orders.Measure | orders.Add | orders.Go | orders.Home)
     keeps = isinstance(order, orders.Measure) and order.keep
@@ -307,7 +282,7 @@ def timed(order: ScriptOrder, diagnostics: Diagnostics) -> ScriptOrder:
 
 
 def _limits(order: ScriptOrder, context: Context) -> Limits:
-    manner = order.manner or Manner()
+    manner = order.manner
     refuse, span = context.diagnostics.refuse, order.span
     what = "patrol" if isinstance(order, orders.Patrol) else "repetition"
     if manner.times == 0 or manner.at_most == 0:

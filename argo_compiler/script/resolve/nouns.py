@@ -47,6 +47,11 @@ class Memory:
             self.before, self.last = self.last, found
             self.so_far.update((c.id, c) for c in found)
 
+    def latest(self, kind: Kind) -> list[CheckpointInfo]:
+        """What was measured last of a kind, or else all of it that was measured before."""
+        measured = (self.last, self.so_far.values())
+        return next(filter(None, ([c for c in m if agrees(c, kind)] for m in measured)), [])
+
 
 class NounResolver:
     """Looks noun phrases up. All raise RefusedError where it is not clear what is meant."""
@@ -264,11 +269,9 @@ class NounResolver:
         if len(readings) == 1:
             return next(iter(readings.values()))
         if readings:
-            message = (
-                f"`{kind} #{number}` can be read as {listed(map(told, readings.values()), 'or')}"
-            )
             hint = f"write `checkpoint {number}` or `{kind} {number}`"
-            self.diagnostics.refuse("ambiguous-checkpoint", message, span, hint)
+            named = map(told, readings.values())
+            self.lookup.refuse_readings(f"{kind} #{number}", named, span, hint)
         found = self.lookup.numbered(number, span)
         message = f"checkpoint #{number} is {found.name}, and there is no {kind} {number}"
         self.diagnostics.refuse("checkpoint-mismatch", message, span, "name one of them")
@@ -280,10 +283,9 @@ class NounResolver:
         if len(named) != 1 or numbered is None or numbered in named:
             return
         if agrees(numbered, Kind.GAUGE):
-            readings = listed(map(told, (*named, numbered)), "or")
-            message = f"`{Kind.GAUGE} {number}` can be read as {readings}"
             hint = f"write `checkpoint {number}` or `{named[0].name}`"
-            self.diagnostics.refuse("ambiguous-checkpoint", message, span, hint)
+            readings = map(told, (*named, numbered))
+            self.lookup.refuse_readings(f"{Kind.GAUGE} {number}", readings, span, hint)
 
     def _inherited(self, noun: Labelled, label: int, kind: Kind | None) -> CheckpointInfo:
         """`valve R25 and 5`: a number behind one of a kind may be a name or a number."""
@@ -294,9 +296,8 @@ class NounResolver:
             readings.append(f"checkpoint #{label} ({numbered.name})")
         if not readings:
             return self.lookup.numbered(label, noun.span)
-        message = f"`{label}` can be read as {listed(readings, 'or')}"
         hint = f"write `checkpoint {label}` or `{kind} {label}`"
-        self.diagnostics.refuse("ambiguous-checkpoint", message, noun.span, hint)
+        self.lookup.refuse_readings(str(label), readings, noun.span, hint)
 
     # ---- by kind, floor and what came before
 
@@ -315,15 +316,12 @@ class NounResolver:
         return found
 
     def _the_one(self, noun: TheOne) -> list[CheckpointInfo]:
-        everything = AllOf(span=noun.span, kind=noun.kind, floors=noun.floors)
-        measured = self.memory.last, self.memory.so_far.values()
-        alike = ([c for c in found if agrees(c, noun.kind)] for found in measured)
-        last = next(filter(None, alike), [])
+        last = self.memory.latest(noun.kind)
         if not noun.floors and (len(last) > 1 if noun.plural else len(last) == 1):
             return last
         if not noun.plural and not noun.floors and not last:
             self._nothing_before(noun.span)
-        found = self._of_kind(everything)
+        found = self._of_kind(AllOf(span=noun.span, kind=noun.kind, floors=noun.floors))
         if noun.plural or len(found) == 1:
             return found
         self._ambiguous("ambiguous-checkpoint", noun, last or found)
@@ -332,8 +330,15 @@ class NounResolver:
         last = self.memory.last
         if not last:
             self._nothing_before(noun.span)
-        if noun.quantity in _SHOWN_BY:
-            return self._showing(noun, _SHOWN_BY[noun.quantity])
+        if kind := _SHOWN_BY.get(noun.quantity):
+            found = self.memory.latest(kind)
+            if len(found) > 1:
+                self._ambiguous("ambiguous-pronoun", noun, found)
+            if not found:
+                said = self.diagnostics.source.said(noun.span)
+                message = f"no {kind} is measured before this, so that `{said}` means none"
+                self._refuse_missing(message, noun.span, "name the checkpoint")
+            return found
         if noun.count is not None:
             return self._counted(noun, noun.count)
         if noun.every and len(last) == len(self.memory.before) == 1:
@@ -347,20 +352,6 @@ class NounResolver:
         if len(last) == 1 or noun.every:
             return list(last)
         self._ambiguous("ambiguous-pronoun", noun, last)
-
-    def _showing(self, noun: Pronoun, kind: Kind) -> list[CheckpointInfo]:
-        """Return the last checkpoint that shows a quantity, such as `the level`."""
-        measured = (self.memory.last, tuple(self.memory.so_far.values()))
-        found = next(filter(None, ([c for c in m if agrees(c, kind)] for m in measured)), [])
-        if len(found) > 1:
-            self._ambiguous("ambiguous-pronoun", noun, found)
-        if not found and self.memory.known:
-            said = self.diagnostics.source.said(noun.span)
-            message = f"no {kind} is measured before this, so that `{said}` means none"
-            self.diagnostics.refuse("which-checkpoint", message, noun.span, "name the checkpoint")
-        if not found:
-            raise RefusedError
-        return found
 
     def _counted(self, noun: Pronoun, count: int) -> list[CheckpointInfo]:
         """`The same four`: as many were measured last, one or two of them at a time or in all."""
@@ -377,10 +368,14 @@ class NounResolver:
         self.diagnostics.refuse(code, message, noun.span, "name one of them")
 
     def _nothing_before(self, span: Span) -> NoReturn:
+        message = "nothing is measured before this, so it does not refer to a checkpoint"
+        self._refuse_missing(message, span, "name it: `checkpoint #1`")
+
+    def _refuse_missing(self, message: str, span: Span, hint: str) -> NoReturn:
+        """Refuse what means no checkpoint; without a word if one may not be understood."""
         if not self.memory.known:
             raise RefusedError
-        message = "nothing is measured before this, so it does not refer to a checkpoint"
-        self.diagnostics.refuse("which-checkpoint", message, span, "name it: `checkpoint #1`")
+        self.diagnostics.refuse("which-checkpoint", message, span, hint)
 
 
 def _is_the_one(noun: Noun) -> TypeGuard[TheOne]:

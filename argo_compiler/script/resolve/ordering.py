@@ -1,6 +1,6 @@
 """Whether the order of the tasks is free, and what has to come before what."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
@@ -19,11 +19,12 @@ from argo_compiler.script.resolve.program import (
     all_nodes,
     inner_blocks,
 )
-from argo_compiler.script.sentences.tree.orders import ReadBefore, StepsOrdered
+from argo_compiler.script.sentences.tree.nouns import Nouns
+from argo_compiler.script.sentences.tree.orders import DoneBefore
 from argo_compiler.script.sentences.tree.places import Steps
 from argo_compiler.script.sentences.tree.script import ScriptHeader
 
-_Checkpoints = tuple[CheckpointInfo, ...]
+_Things = Sequence[CheckpointInfo | Steps]
 
 
 @dataclass
@@ -36,8 +37,8 @@ class Ordering:
     """what is said to be done in any order; nothing: all"""
     precise: list[tuple[Span, list[ProgramNode]]] = field(default_factory=list)
     """what is said to be done in the order in which it is written"""
-    asked: list[tuple[Span, _Checkpoints, _Checkpoints]] = field(default_factory=list)
-    steps: list[StepsOrdered] = field(default_factory=list)
+    asked: list[tuple[Span, _Things, _Things]] = field(default_factory=list)
+    """what comes before what"""
     left_out: list[Span] = field(default_factory=list)
     """where it is said that what does not fit is left out: then each task may be"""
     pairs: list[tuple[Span, Do | str, Do | str]] = field(default_factory=list)
@@ -48,11 +49,14 @@ class Ordering:
         said = self.free if order is Order.ANY else self.precise
         said.append((span, list(nodes)))
 
-    def precedence(self, fact: ReadBefore) -> None:
-        """Takes down that checkpoints come before others."""
-        context = self.context
-        first, second = context.diagnostics.each(context.nouns.all, (fact.first, fact.second))
-        self.asked.append((fact.span, tuple(first), tuple(second)))
+    def precede(self, fact: DoneBefore) -> None:
+        """Takes down that checkpoints, or steps, come before others."""
+
+        def things(said: Nouns | Steps) -> _Things:
+            return [said] if isinstance(said, Steps) else self.context.nouns.all(said)
+
+        first, second = self.context.diagnostics.each(things, (fact.first, fact.second))
+        self.asked.append((fact.span, first, second))
 
     def finish(self, program: ProgramBlock) -> Order:
         """The order of the mission, when all is planned."""
@@ -62,16 +66,15 @@ class Ordering:
         if order is Order.ANY:
             for span, nodes in self.precise:
                 self.pairs += [(span, a, b) for a, b in pairwise(_tasks(nodes))]
-        for span, first, second in self.asked:
-            for one, other in product(first, second):
-                with suppress(RefusedError):
-                    a, b = diagnostics.each(partial(self._planned, span), (one, other))
-                    self.pairs.append((span, a, b))
-        for fact in self.steps:
+        asked = [(span, *pair) for span, one, two in self.asked for pair in product(one, two)]
+        for span, *pair in sorted(asked, key=lambda one: isinstance(one[1], Steps)):
             with suppress(RefusedError):
-                before, after = diagnostics.each(self._of_steps, (fact.first, fact.second))
-                self.pairs += [(fact.span, a, b) for a, b in product(before, after)]
+                before, after = diagnostics.each(partial(self._tasks_of, span), pair)
+                self.pairs += [(span, a, b) for a, b in product(before, after)]
         return order
+
+    def _tasks_of(self, span: Span, thing: CheckpointInfo | Steps) -> Sequence[Do | str]:
+        return self._of_steps(thing) if isinstance(thing, Steps) else [self._planned(span, thing)]
 
     def _of_steps(self, steps: Steps) -> list[Do | str]:
         """The tasks of steps; those that were left out, by their names."""

@@ -26,7 +26,7 @@ from argo_compiler.script.resolve.repeating import Repeating
 from argo_compiler.script.resolve.starting import Starting
 from argo_compiler.script.resolve.tasks import TaskMaker
 from argo_compiler.script.sentences.tree import orders
-from argo_compiler.script.sentences.tree.manner import Manner
+from argo_compiler.script.sentences.tree.manner import NOTHING_SAID, Manner
 from argo_compiler.script.sentences.tree.node import Node
 from argo_compiler.script.sentences.tree.orders import Fact, PlainWord, ScriptOrder, Sentence
 from argo_compiler.script.sentences.tree.places import (
@@ -108,21 +108,16 @@ class Planner:
                 self._fact(sentence)
             if isinstance(sentence, Unread) or self.diagnostics.errors > errors:
                 self.context.fail()
-        if following is None or following.manner is None:
+        if following is None or not following.manner:
             for one in step.steps:
                 self._step(one, block)
             return
         with suppress(RefusedError):
-            self._follow(following, following.manner, step.steps, block)
+            self._follow(following, step.steps, block)
 
-    def _follow(
-        self,
-        order: ScriptOrder,
-        manner: Manner,
-        steps: Sequence[ScriptStep],
-        block: ProgramBlock,
-    ) -> None:
+    def _follow(self, order: ScriptOrder, steps: Sequence[ScriptStep], block: ProgramBlock) -> None:
         """Plans the steps within one that says how they are done."""
+        manner = order.manner
         require_used(order, self.diagnostics)
         known: set[int] = set()
         if said(manner) <= {"order", "by_importance"}:
@@ -143,29 +138,27 @@ class Planner:
 
     def _without_limit(self, sentence: Sentence) -> Sentence:
         """The sentence without the duration of the mission: `at most 25 minutes in total`."""
-        if all(order.manner is None for order in sentence.orders):
+        if not any(order.manner for order in sentence.orders):
             return sentence
-        kept: list[ScriptOrder] = []
+        left: list[ScriptOrder] = []
         for order in sentence.orders:
             manner = order.manner
-            limit = None if manner is None else manner.mission_time or self._limit(order, manner)
-            if manner is None or limit is None:
-                kept.append(order)
+            limit = manner.mission_time or self._limit(order)
+            if limit is None:
+                left.append(order)
                 continue
             self._max_duration(limit, order)
             own = None if manner.mission_time is None else manner.time_limit
             rest = replace(manner, mission_time=None, time_limit=own)
-            if said(rest):
-                kept.append(replace(order, manner=rest))
-            elif not isinstance(order, orders.Amend):
-                kept.append(replace(order, manner=None))
-        return replace(sentence, orders=tuple(kept))
+            if rest or not isinstance(order, orders.Amend):
+                left.append(replace(order, manner=rest))
+        return replace(sentence, orders=tuple(left))
 
-    def _limit(self, order: ScriptOrder, manner: Manner) -> float | None:
+    def _limit(self, order: ScriptOrder) -> float | None:
         """A limit of time that can only be the mission's: of its start, or before all else."""
         first = isinstance(order, orders.Amend) and self.context.program.first is None
-        alone = first and said(manner) == {"time_limit"}
-        return manner.time_limit if alone or isinstance(order, orders.Start) else None
+        alone = first and said(order.manner) == {"time_limit"}
+        return order.manner.time_limit if alone or isinstance(order, orders.Start) else None
 
     def _taken(self, sentences: list[Sentence | Fact | Unread]) -> ScriptOrder | None:
         """`Do the following twice:`, taken out of the sentences over inner steps."""
@@ -187,25 +180,21 @@ class Planner:
         match fact:
             case orders.MaxDuration():
                 self._max_duration(fact.seconds, fact)
-            case orders.BackWithin():
-                self._max_duration(fact.seconds, fact)
-                self._back(fact)
+                if fact.where is not None:
+                    self._back(fact, fact.where)
             case orders.RoundsDriven():
                 manner = Manner(times=fact.count)
                 order = orders.Repeat(span=fact.span, steps=fact.steps, manner=manner)
                 self.order(order, self.context.program)
-            case orders.ReadBefore():
+            case orders.DoneBefore():
                 with suppress(RefusedError):
-                    self.ordering.precedence(fact)
-            case orders.StepsOrdered():
-                self.ordering.steps.append(fact)
+                    self.ordering.precede(fact)
             case orders.LeaveOut():
                 self.ordering.left_out.append(fact.span)
             case orders.OrderFree():
                 self.ordering.say(Order.ANY, (), fact.span)
 
-    def _back(self, fact: orders.BackWithin) -> None:
-        dock = fact.where
+    def _back(self, fact: Fact, dock: Location) -> None:
         if isinstance(dock, AreaLocation):
             dock = DockLocation(span=fact.span, area=dock)
         if not isinstance(dock, DockLocation):
@@ -219,8 +208,7 @@ class Planner:
         said = self.header.max_duration
         if said is not None and said[0] != seconds:
             message = f"line {said[1].span.line} has another maximum duration"
-            hint = "remove one of the two"
-            self.diagnostics.error("repeated-field", message, fact.span, hint)
+            self.diagnostics.error("repeated-field", message, fact.span, "remove one of the two")
         self.header.max_duration = (seconds, fact)
 
     # ---- sentences and orders
@@ -234,7 +222,7 @@ class Planner:
     def carry_out(self, orders_: Sequence[ScriptOrder], block: ProgramBlock) -> None:
         """Carries orders out, one after the other, at the end of a block."""
         prefix: ScriptOrder | None = None
-        floors: Manner | None = None
+        floors = NOTHING_SAID
         for i, order in enumerate(orders_):
             if isinstance(order, orders.Amend) and i + 1 < len(orders_):
                 # `three times: check checkpoint 17`
@@ -243,10 +231,10 @@ class Planner:
             if i and isinstance(orders_[i - 1], orders.Retry) and self._given_up(order):
                 continue
             if prefix is not None:
-                floors = prefix.manner and Manner(floors=prefix.manner.floors)
+                floors = Manner(floors=prefix.manner.floors)
                 order = self.manners.with_prefix(order, prefix)
                 prefix = None
-            elif floors is not None and floors.floors and isinstance(order, orders.Measure):
+            elif floors and isinstance(order, orders.Measure):
                 # `on the second floor, check the valve, then read the gauge`
                 order = self.manners.with_prefix(order, replace(order, name=None, manner=floors))
             before = orders_[max(i - 2, 0) : i]
@@ -261,7 +249,7 @@ class Planner:
     def _given_up(self, order: ScriptOrder) -> bool:
         """`retry twice, then abort`: what is done if it fails all the same."""
         match order:
-            case orders.Plain(word=PlainWord.ABORT, manner=None):
+            case orders.Plain(word=PlainWord.ABORT) if not order.manner:
                 self.manners.on_failure(OnFailure.ABORT)
             case orders.Plain(word=PlainWord.END) | orders.Home():
                 message = "this can apply only if it still fails, or in any case"
@@ -338,7 +326,7 @@ class Planner:
             context.fail()
         if not isinstance(order, orders.WaitOrder) or not order.stays or in_branch(block):
             return order
-        if order.manner is not None or order.where is not None:
+        if order.manner or order.where is not None:
             return order
         context.stays = order.span
         return orders.Plain(span=order.span, word=PlainWord.END)
@@ -357,11 +345,10 @@ class Planner:
                 return True
             context.program.remove(docked)  # `go home and dock in area 2`
             return False
-        if isinstance(order, orders.WaitOrder):
-            manner = order.manner or Manner()
-            if order.recharges or manner.duration or manner.until:
-                context.docked = None  # `stay there for 5 minutes`: it goes on behind that
-                return False
+        lasting = order.manner.duration or order.manner.until
+        if isinstance(order, orders.WaitOrder) and (order.recharges or lasting):
+            context.docked = None  # `stay there for 5 minutes`: it goes on behind that
+            return False
         line = docked.source.line if docked.source else 0
         message = f"line {line} has already returned the robot to its docking station"
         hint = "move the return to the end, or write how to go on: `then go to step 3`"
@@ -372,7 +359,7 @@ class Planner:
     ) -> None:
         """`The robot waits at the front of the site`: it starts there, if nothing is said of how
         long; else it goes there and waits."""
-        begins = order.manner is None and self.context.program.first is None
+        begins = not order.manner and self.context.program.first is None
         if begins and self.starting.start_at is None and not isinstance(where, FloorName):
             self.order(orders.Start(span=order.span, where=where), block)
             return
@@ -382,7 +369,7 @@ class Planner:
     def _amend(self, order: ScriptOrder) -> None:
         recent = self.context.recent
         self._say_order(order, recent)
-        if order.manner is None or recent or said(order.manner) != {"order"}:
+        if recent or said(order.manner) != {"order"}:
             self.manners.amend(order)  # else said of all tasks
 
     def _planned(self, order: ScriptOrder, block: ProgramBlock) -> None:
@@ -416,7 +403,7 @@ class Planner:
         context.choice = None
 
     def _say_order(self, order: ScriptOrder, nodes: Sequence[ProgramNode]) -> None:
-        if order.manner is not None and order.manner.order is not None:
+        if order.manner.order is not None:
             self.ordering.say(order.manner.order, nodes, order.span)
 
     # ---- orders of one word

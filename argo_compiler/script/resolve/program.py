@@ -58,6 +58,17 @@ class ProgramNode(ListItem):
 
     block: "ProgramBlock | None" = field(default=None, init=False, repr=False)
 
+    @property
+    def home(self) -> "ProgramBlock":
+        """The block that it stands in."""
+        assert self.block is not None
+        return self.block
+
+    @property
+    def owner(self) -> "ProgramNode | None":
+        """The node in whose block it stands; None: in the program itself, or not at all."""
+        return None if self.block is None else self.block.owner
+
 
 class ProgramBlock(LinkedList[ProgramNode]):
     """Nodes that are carried out one after the other."""
@@ -104,6 +115,11 @@ class Do(ProgramNode):
     priority: int = 1
     window: TimeWindow | None = None
     ways: list[Way] = field(default_factory=list)
+
+    @property
+    def branches(self) -> bool:
+        """Whether it may lead elsewhere than to what follows."""
+        return bool(self.ways or self.failure or self.missed)
 
 
 @dataclass(eq=False, slots=True)
@@ -178,32 +194,6 @@ def all_nodes(block: Iterable[ProgramNode]) -> Iterator[ProgramNode]:
         stack.extend(iter(inner) for inner in reversed(inner_blocks(node)))
 
 
-def nodes_from(node: ProgramNode) -> Iterator[ProgramNode]:
-    """A node and all that stand behind it, in the order of the tasks that they become."""
-    at: ProgramNode | None = node
-    while at is not None:
-        yield at
-        inner = next((b.first for b in inner_blocks(at) if b.first is not None), None)
-        at = _behind(at) if inner is None else inner
-
-
-def _behind(node: ProgramNode) -> ProgramNode | None:
-    """What follows a node and all that lies in it."""
-    at: ProgramNode | None = node
-    while at is not None and at.after is None:
-        owner = at.block.owner if at.block is not None else None
-        if owner is None:
-            return None
-        blocks = inner_blocks(owner)
-        place = next(i for i, block in enumerate(blocks) if block is at.block)
-        others = (block.first for block in blocks[place + 1 :] if block.first is not None)
-        other = next(others, None)
-        if other is not None:
-            return other
-        at = owner
-    return None if at is None else at.after
-
-
 def depth(block: ProgramBlock) -> int:
     """Return the number of nested blocks, at the deepest point."""
     deepest, waiting = 0, [(block, 1)]
@@ -230,11 +220,10 @@ def inner_blocks(node: ProgramNode) -> tuple[ProgramBlock, ...]:
 
 def in_branch(block: ProgramBlock) -> bool:
     """Whether a block is carried out in one case only."""
-    while block.owner is not None:
-        if not isinstance(block.owner, ProgramRound) or block.owner.block is None:
-            return not isinstance(block.owner, ProgramRound)
-        block = block.owner.block
-    return False
+    owner = block.owner
+    while isinstance(owner, ProgramRound):
+        owner = owner.owner
+    return owner is not None
 
 
 def leads_away(node: ProgramNode | None) -> bool:

@@ -1,7 +1,7 @@
 """From `if a gas leak is detected, ...` to a reaction of the mission: what it does is put together
 from the orders for it."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple, NoReturn
 
 from argo_compiler.base.model import Pose
@@ -24,9 +24,8 @@ from argo_compiler.script.sentences.tree.conditions import (
     Occurs,
     SaidCondition,
 )
-from argo_compiler.script.sentences.tree.manner import Manner
 from argo_compiler.script.sentences.tree.orders import Case, PlainWord, ScriptOrder
-from argo_compiler.script.sentences.tree.places import FloorName
+from argo_compiler.script.sentences.tree.places import FloorName, Location
 
 _USED = frozenset(
     {"priority", "until", "duration", "time_limit", "on_limit", "charge", "charge_time"}
@@ -35,7 +34,7 @@ _USED = frozenset(
 _CHARGED = EventKind.BATTERY_CHARGED
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class _Answer:
     """What is done in an event, as far as its orders have been gone through. None: not said."""
 
@@ -61,16 +60,6 @@ class _Answer:
     def drives(self) -> bool:
         return self.response in (Response.RETURN, Response.SAFE_AREA)
 
-    @property
-    def pausing(self) -> "_Answer":
-        """The answer with a pause if nothing else is done."""
-        return replace(self, response=self.response or Response.PAUSE)
-
-    @property
-    def recharging(self) -> "_Answer":
-        """The answer with a return to the dock, unless the robot drives somewhere already."""
-        return self if self.drives else replace(self, response=Response.RETURN)
-
 
 class _Trigger(NamedTuple):
     event: EventKind
@@ -95,11 +84,8 @@ class Reactions:
             self.diagnostics.refuse("reaction", message, case.condition.span, "join them with `or`")
         triggers = [self._trigger(test) for (test,) in case.condition.alternatives]
         answer = self._answer(case)
-        response = answer.response
-        if response is None and answer.until is not None:
-            response = Response.PAUSE
-        elif response is None and answer.reported:
-            response = Response.REPORT
+        said = Response.PAUSE if answer.until is not None else None
+        response = answer.response or said or (Response.REPORT if answer.reported else None)
         if response is None:
             hint = "add, for example, `report it` or `pause`"
             self.diagnostics.refuse("unfinished", "this does not say what to do", case.span, hint)
@@ -148,41 +134,46 @@ class Reactions:
         """What is done in a case with events as its condition."""
         answer = _Answer()
         for order in case.orders:
-            answer = self._with(order, self._furnished(order, answer))
-        return self._held(answer, case.span)
+            self._furnish(answer, order)
+            self._add(answer, order)
+        self._hold(answer, case.span)
+        return answer
 
-    def _with(self, order: ScriptOrder, answer: _Answer) -> _Answer:
-        """The answer with one order more."""
+    def _add(self, answer: _Answer, order: ScriptOrder) -> None:
+        """Adds one order more."""
         match order:
             case orders.Amend():
-                return answer
+                pass
             case orders.Plain(word=PlainWord.REPORT):
-                return replace(answer, reported=True)
+                answer.reported = True
             case orders.Plain(word=PlainWord.PAUSE):
-                return answer.pausing
+                answer.response = answer.response or Response.PAUSE
             case orders.Plain(word=PlainWord.RECHARGE):
-                return self._until(_CHARGED, answer, order.span).recharging
+                self._await(answer, _CHARGED, order.span)
+                answer.response = answer.response if answer.drives else Response.RETURN
             case orders.Plain(word=PlainWord.GO_ON):
-                return self._afterwards(order, answer, Afterwards.RESUME)
+                self._go_on(answer, Afterwards.RESUME, order.span)
             case orders.Plain(word=PlainWord.ABORT | PlainWord.END) if not answer.drives:
-                aborted = self._responds(answer, Response.ABORT, order)
-                return replace(aborted, ended=True)
+                self._respond(answer, Response.ABORT, order.span)
+                answer.ended = True
             case orders.Plain(word=PlainWord.END):
-                return self._afterwards(order, answer, Afterwards.END)
-            case orders.WaitOrder(where=where):
-                if where is not None:
-                    answer = self._goes(orders.Go(span=order.span, where=where), answer)
-                return self._waits(order, answer)
+                self._go_on(answer, Afterwards.END, order.span)
+            case orders.WaitOrder():
+                if order.where is not None:
+                    self._drive(answer, order.where, order.span)
+                self._wait(answer, order)
             case orders.Home():
-                return self._home(order, answer)
+                self._return(answer, order)
             case orders.Go():
-                return self._goes(order, answer)
-        hint = "it can report, pause, return, drive to a place, recharge, wait, resume or abort"
-        self.diagnostics.refuse("reaction", "a reaction can't do this", order.span, hint)
+                self._drive(answer, order.where, order.span)
+            case _:
+                hint = "it can report, pause, return, drive to a place, recharge, wait, resume or "
+                message = "a reaction can't do this"
+                self.diagnostics.refuse("reaction", message, order.span, f"{hint}abort")
 
-    def _furnished(self, order: ScriptOrder, answer: _Answer) -> _Answer:
-        """What is said of how long it holds, for what, and how urgent it is."""
-        manner = order.manner or Manner()
+    def _furnish(self, answer: _Answer, order: ScriptOrder) -> None:
+        """Adds what is said of how long it holds, for what, and how urgent it is."""
+        manner = order.manner
         own = {orders.Home: {"pose"}, orders.WaitOrder: {"person"}}.get(type(order), set())
         left = sorted(said(manner) - _USED - own)
         if left or order.name is not None:
@@ -192,30 +183,27 @@ class Reactions:
         if manner.time_limit is not None and manner.duration is not None:
             self._twice(order.span)
         limit = manner.time_limit if manner.time_limit is not None else manner.duration
-        answer = replace(
-            answer,
-            hold_limit=answer.hold_limit if limit is None else limit,
-            on_limit=manner.on_limit or answer.on_limit,
-            priority=answer.priority if manner.priority is None else manner.priority,
-        )
+        answer.hold_limit = answer.hold_limit if limit is None else limit
+        answer.on_limit = manner.on_limit or answer.on_limit
+        answer.priority = answer.priority if manner.priority is None else manner.priority
         if manner.charge is not None:
-            answer = self._charges(
-                charge_share(manner.charge, manner.charge.span, self.diagnostics), answer, order
-            )
+            share = charge_share(manner.charge, manner.charge.span, self.diagnostics)
+            self._charge(answer, share, order.span)
         if manner.charge_time is not None:
             if answer.charge_time is not None:
                 self._twice(order.span)
-            answer = replace(answer, charge_time=manner.charge_time)
-        if manner.until is None:
-            return answer
-        event, charge = self._awaited(manner.until)
-        answer = self._until(event, replace(answer, fully=event is _CHARGED), order.span)
-        return answer if charge is None else self._charges(charge, answer, order)
+            answer.charge_time = manner.charge_time
+        if manner.until is not None:
+            event, charge = self._awaited(manner.until)
+            answer.fully = event is _CHARGED
+            self._await(answer, event, order.span)
+            if charge is not None:
+                self._charge(answer, charge, order.span)
 
-    def _charges(self, charge: float, answer: _Answer, order: ScriptOrder) -> _Answer:
+    def _charge(self, answer: _Answer, charge: float, span: Span) -> None:
         if answer.charge is not None:
-            self._twice(order.span)
-        return replace(answer, charge=charge)
+            self._twice(span)
+        answer.charge = charge
 
     def _awaited(self, condition: SaidCondition) -> AwaitedEvent:
         match condition.alternatives:
@@ -225,74 +213,73 @@ class Reactions:
         hint = "write, for example, `until the all clear`"
         self.diagnostics.refuse("reaction", "a reaction waits for one event", condition.span, hint)
 
-    def _until(self, event: EventKind, answer: _Answer, span: Span) -> _Answer:
+    def _await(self, answer: _Answer, event: EventKind, span: Span) -> None:
         if answer.until not in (None, event):
             self._twice(span)
-        return replace(answer, until=event)
+        answer.until = event
 
-    def _responds(self, answer: _Answer, response: Response, order: ScriptOrder) -> _Answer:
+    def _respond(self, answer: _Answer, response: Response, span: Span) -> None:
         goes_on = answer.afterwards is not None and response is Response.ABORT
         stops = answer.ended and response is Response.RETURN  # `stop the mission and go home`
         if goes_on or not (stops or answer.response in (None, Response.PAUSE, response)):
             message = "the reaction has two actions at once"
-            self.diagnostics.refuse("reaction", message, order.span, "remove one of them")
-        return replace(answer, response=response)
+            self.diagnostics.refuse("reaction", message, span, "remove one of them")
+        answer.response = response
 
-    def _afterwards(self, order: ScriptOrder, answer: _Answer, afterwards: Afterwards) -> _Answer:
+    def _go_on(self, answer: _Answer, afterwards: Afterwards, span: Span) -> None:
         if answer.response is Response.ABORT or answer.afterwards not in (None, afterwards):
-            self._twice(order.span)
-        return replace(answer, afterwards=afterwards)
+            self._twice(span)
+        answer.afterwards = afterwards
 
-    def _waits(self, order: orders.WaitOrder, answer: _Answer) -> _Answer:
-        person = order.manner is not None and order.manner.person
+    def _wait(self, answer: _Answer, order: orders.WaitOrder) -> None:
+        person = order.manner.person
         held = answer.until is not None or answer.hold_limit is not None
         if order.stays and answer.response is Response.RETURN and not (person or held):
-            return self._afterwards(order, answer, Afterwards.END)  # it stays in its dock
-        if answer.drives and (person or not held):
-            return self._afterwards(order, answer, Afterwards.WAIT)
-        return answer.pausing
+            self._go_on(answer, Afterwards.END, order.span)  # it stays in its dock
+        elif answer.drives and (person or not held):
+            self._go_on(answer, Afterwards.WAIT, order.span)
+        else:
+            answer.response = answer.response or Response.PAUSE
 
-    def _home(self, order: orders.Home, answer: _Answer) -> _Answer:
-        pose, number = None, None
+    def _return(self, answer: _Answer, order: orders.Home) -> None:
+        answer.pose = answer.area = None
         if order.dock.area is not None:
             area = self.lookup.area(order.dock.area.area, order.dock.span)
-            pose, number = area.dock, area.number
-        answer = self._responds(answer, Response.RETURN, order)
-        if order.manner is not None and order.manner.pose is not None:
-            pose = self.lookup.point(order.manner.pose)
-        return replace(answer, pose=pose, area=number)
+            answer.pose, answer.area = area.dock, area.number
+        self._respond(answer, Response.RETURN, order.span)
+        if order.manner.pose is not None:
+            answer.pose = self.lookup.point(order.manner.pose)
 
-    def _goes(self, order: orders.Go, answer: _Answer) -> _Answer:
-        if isinstance(order.where, FloorName):
+    def _drive(self, answer: _Answer, where: Location | FloorName, span: Span) -> None:
+        if isinstance(where, FloorName):
             message = "a reaction can drive to a place, but not to a floor"
-            self.diagnostics.refuse("reaction", message, order.span, "name a place of the site")
-        pose, _ = self.lookup.locate(order.where, "end")
-        return replace(self._responds(answer, Response.SAFE_AREA, order), pose=pose)
+            self.diagnostics.refuse("reaction", message, span, "name a place of the site")
+        answer.pose, _ = self.lookup.locate(where, "end")
+        self._respond(answer, Response.SAFE_AREA, span)
 
-    def _held(self, answer: _Answer, span: Span) -> _Answer:
-        """The answer with what happens when the time for which it holds is over."""
+    def _hold(self, answer: _Answer, span: Span) -> None:
+        """Adds what happens when the time for which it holds is over."""
         charges = answer.charge is not None or answer.charge_time is not None
         if charges and answer.until is not _CHARGED:
             message = "only a battery that is charged has a level or a least time"
             hint = "write, for example, `return, recharge to 80 % and resume`"
             self.diagnostics.refuse("reaction", message, span, hint)
         if answer.charge_time is not None and answer.charge is None and answer.fully:
-            answer = replace(answer, charge=FULL)
+            answer.charge = FULL
         if answer.hold_limit is None:
-            return answer
+            return
         if answer.drives and answer.until is None:
             message = "after its drive a reaction can wait for an event, but not for a duration"
             hint = "write, for example, `return and wait until all clear for at most 10 minutes`"
             self.diagnostics.refuse("reaction", message, span, hint)
-        on_limit = answer.on_limit or answer.afterwards
-        if on_limit is None and answer.until is not None:
+        if answer.drives and answer.on_limit is Afterwards.RESUME:  # `..., or else resume`
+            answer.afterwards = answer.afterwards or Afterwards.RESUME
+        answer.on_limit = answer.on_limit or answer.afterwards
+        if answer.on_limit is None and answer.until is not None:
             message = "this does not say what to do if the event does not occur in this time"
             hint = "add `or else go on`, `or else end the mission` or `or else wait`"
             self.diagnostics.refuse("reaction", message, span, hint)
-        afterwards = answer.afterwards
-        if answer.drives and answer.on_limit is Afterwards.RESUME:
-            afterwards = afterwards or Afterwards.RESUME  # `..., or else resume`
-        return replace(answer, on_limit=on_limit or Afterwards.RESUME, afterwards=afterwards)
+        answer.on_limit = answer.on_limit or Afterwards.RESUME
 
     def _twice(self, span: Span) -> NoReturn:
         message = "this contradicts an earlier reaction to the same event"

@@ -7,7 +7,7 @@ one that is looked at after its last round.
 from collections.abc import Container, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from itertools import islice, takewhile
+from itertools import dropwhile, islice, takewhile
 
 from argo_compiler.il import Action, WaitRule
 from argo_compiler.script.documents.source import RefusedError
@@ -22,7 +22,6 @@ from argo_compiler.script.resolve.program import (
     ProgramNode,
     ProgramRound,
     all_nodes,
-    nodes_from,
 )
 from argo_compiler.script.sentences.tree import orders
 from argo_compiler.script.sentences.tree.manner import Manner
@@ -73,7 +72,7 @@ class Repeating:
     def _again(self, order: orders.Repeat) -> orders.Repeat:
         """`Repeat step 2 once`: a repetition of one round in all would change nothing."""
         manner = order.manner
-        if manner is None or manner.more is not None or 1 not in (manner.times, manner.at_most):
+        if manner.more is not None or 1 not in (manner.times, manner.at_most):
             return order
         if manner.every is not None and manner.times == 1:  # `once every ten minutes`
             return replace(order, manner=replace(manner, times=None))
@@ -117,7 +116,7 @@ class Repeating:
         """`Stop with it after 5 minutes`, `wait 1 minute in between`: said of the round before.
         False: that is not what it says, or of none."""
         manner, round_ = order.manner, block.last
-        if manner is None or not isinstance(round_, ProgramRound):
+        if not isinstance(round_, ProgramRound):
             return False
         if said(manner) == {"pause"} and manner.pause is not None and not round_.limits.pause:
             round_.limits = replace(round_.limits, pause=manner.pause)
@@ -126,8 +125,7 @@ class Repeating:
             return False
         if round_.limits.duration:
             message = "the duration is given twice"
-            hint = "remove one of them"
-            self.diagnostics.refuse("repeated-limit", message, order.span, hint)
+            self.diagnostics.refuse("repeated-limit", message, order.span, "remove one of them")
         soft = bool(manner.finishing)
         round_.limits = replace(round_.limits, duration=manner.duration, soft=soft)
         return True
@@ -135,7 +133,7 @@ class Repeating:
     def _is_once_more(self, order: orders.Repeat, steps: Steps, block: ProgramBlock) -> bool:
         """Whether steps are done here again, and not in a round where they stand."""
         manner = order.manner
-        if manner is None:
+        if not manner:
             return len(steps.points) == 1
         if not manner.more or manner != Manner(times=manner.times, more=True):
             return False
@@ -160,13 +158,12 @@ class Repeating:
     def _once_more(self, order: orders.Repeat, steps: Steps, block: ProgramBlock) -> None:
         """`4. Repeat step 2`: what it does is done here again."""
         nodes = self.context.nodes_of(steps)
-        tasks = [n for n in nodes if isinstance(n, Do) and not (n.ways or n.failure or n.missed)]
+        tasks = [n for n in nodes if isinstance(n, Do) and not n.branches]
         if not nodes or len(tasks) < len(nodes):
             message = "this does not say how often, and it can't be done once more"
             hint = "write how often: `twice`, `three times in total`, `until ...`"
             self.diagnostics.refuse("endless-repeat", message, order.span, hint)
-        times = order.manner.times if order.manner is not None else 1
-        tasks *= min(times or 1, _MOST_AGAIN)
+        tasks *= min(order.manner.times or 1, _MOST_AGAIN)
         again = [replace(task, ways=[], name=None) for task in tasks]
         self.context.put(again, block, block.last)
         self.context.step += again
@@ -203,7 +200,6 @@ class Repeating:
         order, round_ = repetition.order, repetition.round
         tail = list(_conditions_behind(round_))
         found = self._range(repetition, {id(node) for node in tail})
-        assert round_.block is not None
         if not found:
             return
         follows = _leads_to(found[-1], round_)
@@ -213,11 +209,9 @@ class Repeating:
             hint = "write the repetition after the steps that it repeats"
             self.diagnostics.refuse("not-planned", message, order.span, hint)
         for node in (round_, *tail):
-            assert node.block is not None
-            node.block.remove(node)
+            node.home.remove(node)
         found = [node for node in found if node is not round_]
-        block, anchor = found[0].block, found[0].before
-        assert block is not None
+        block, anchor = found[0].home, found[0].before
         for node in found:
             block.remove(node)
             round_.body.append(node)
@@ -226,14 +220,12 @@ class Repeating:
 
     def _behind(self, round_: ProgramRound, tail: list[Choice]) -> None:
         """Conditions behind a round come before a way that leads on from its last task."""
-        block = round_.block
-        assert block is not None
+        block = round_.home
         leave = round_.after if isinstance(round_.after, Leave) else None
         if tail and leave is not None:
             if tail[-1].otherwise.first is not None:
                 message = "this leads elsewhere after the last round, and so does `otherwise`"
-                hint = "remove one of the two"
-                self.diagnostics.error("second-route", message, leave.span, hint)
+                self.diagnostics.error("second-route", message, leave.span, "remove one of the two")
             block.remove(leave)
             tail[-1].otherwise.append(leave)
         self.context.put(tail, block, round_)
@@ -260,7 +252,7 @@ class Repeating:
             self.diagnostics.refuse("empty-step", message, order.steps.span, hint)
         known = {id(node) for node in nodes}
         if order.steps.through and not all(isinstance(p, int) for p in order.steps.points):
-            known |= _between(nodes[0], nodes[-1])
+            known |= _between(nodes[0], nodes[-1], self.context.program)
         block = _around(nodes, known, self.context.program, order.name or "")
         tops = _topmost(nodes, block)
         if any(not _covered(top, known) for top in tops):
@@ -296,8 +288,7 @@ class Repeating:
         listed = len(order.steps.points) > 1 and not order.steps.through
         if listed and any(_repeats(node) and id(node) not in ends for node in found):
             message = "these steps are not next to each other"
-            hint = "repeat consecutive steps"
-            self.diagnostics.refuse("step-range", message, order.span, hint)
+            self.diagnostics.refuse("step-range", message, order.span, "repeat consecutive steps")
         return found
 
     # ---- pauses between rounds, and not behind the last one
@@ -313,9 +304,7 @@ class Repeating:
     def _put_pause(self, round_: ProgramRound) -> None:
         context = self.context
         limits = round_.limits
-        tasks = [
-            n for n in round_.body if isinstance(n, Do) and not (n.ways or n.failure or n.missed)
-        ]
+        tasks = [n for n in round_.body if isinstance(n, Do) and not n.branches]
         whole = len(tasks) == len(list(round_.body))
         ends = limits.count > 1 or (limits.until and not limits.count)
         if limits.duration or limits.every or not whole or not tasks or not ends:
@@ -324,8 +313,7 @@ class Repeating:
             hint = "write the tasks and `wait 1 minute` as often as needed"
             context.diagnostics.error("pause", message, round_.span, hint)
             return
-        block, anchor = round_.block, round_.before
-        assert block is not None
+        block, anchor = round_.home, round_.before
         for task in tasks:
             round_.body.remove(task)
         wait = Do("WAIT", Action.WAIT, round_.span, wait=WaitRule(duration=limits.pause))
@@ -359,7 +347,7 @@ def _topmost(nodes: Iterable[ProgramNode], block: ProgramBlock) -> list[ProgramN
     for node in nodes:
         at: ProgramNode | None = node
         while at is not None and at.block is not block:
-            at = at.block.owner if at.block is not None else None
+            at = at.owner
         if at is not None:
             found.setdefault(id(at), at)
     return list(found.values())
@@ -384,8 +372,7 @@ def _leads_to(last: ProgramNode, round_: ProgramRound) -> bool:
     node: ProgramNode | None = last
     while node is not None:
         if node.after is None:
-            owner = node.block.owner if node.block is not None else None
-            node = owner if isinstance(owner, ProgramRound) else None
+            node = node.owner if isinstance(node.owner, ProgramRound) else None
             continue
         node = node.after
         if node is round_:
@@ -395,14 +382,22 @@ def _leads_to(last: ProgramNode, round_: ProgramRound) -> bool:
     return False
 
 
-def _between(first: ProgramNode, last: ProgramNode) -> set[int]:
+def _between(first: ProgramNode, last: ProgramNode, program: ProgramBlock) -> set[int]:
     """What lies between two nodes, both included; nothing if the last does not follow."""
+    (top, *_) = _topmost([first], _around([first, last], set(), program, ""))
     found: set[int] = set()
-    for node in nodes_from(first):
+    for node in dropwhile(lambda node: node is not first, all_nodes(_from(top))):
         found.add(id(node))
         if node is last:
             return found
     return set()
+
+
+def _from(node: ProgramNode | None) -> Iterator[ProgramNode]:
+    """A node and those behind it in its block."""
+    while node is not None:
+        yield node
+        node = node.after
 
 
 def _around(
@@ -414,10 +409,8 @@ def _around(
     common = {id(block): i for i, block in enumerate(chain)}
     at = 0
     for node in nodes[1:]:
-        block = node.block
-        while block is not None and id(block) not in common:
-            block = block.owner.block if block.owner is not None else None
-        at = max(at, common[id(block)] if block is not None else len(chain) - 1)
+        around = (common.get(id(block)) for block in _blocks_around(node))
+        at = max(at, next((i for i in around if i is not None), len(chain) - 1))
     while at + 1 < len(chain):
         owner = chain[at].owner
         if not (isinstance(owner, ProgramRound) and _covered(owner, known)):
@@ -431,10 +424,10 @@ def _around(
 
 def _blocks_around(node: ProgramNode) -> list[ProgramBlock]:
     found: list[ProgramBlock] = []
-    block = node.block
-    while block is not None:
-        found.append(block)
-        block = block.owner.block if block.owner is not None else None
+    at: ProgramNode | None = node
+    while at is not None and at.block is not None:
+        found.append(at.block)
+        at = at.owner
     return found
 
 

@@ -53,23 +53,22 @@ class TaskMaker:
             case orders.Plain(word=PlainWord.MEET):
                 return [Do("MEET", Action.WAIT, span, wait=WaitRule(duration=0))]
         if isinstance(order, orders.Follow):
-            message = "this step has no sub-steps"
             hint = "write `repeat this three times`, or write the sub-steps below it"
-            self.context.diagnostics.refuse("route", message, span, hint)
+            self.context.diagnostics.refuse("route", "this step has no sub-steps", span, hint)
         message = "this is not possible here"
         self.context.diagnostics.refuse("route", message, span, "write it as a separate step")
 
     def _measurements(self, order: orders.Measure) -> list[Do]:
         nouns, what = self.context.nouns, order.what
         self._require_known(order)
-        if order.manner is not None and order.manner.floors:
+        if order.manner.floors:
             what = nouns.on(order.manner.floors, what)
         found = nouns.all(what)
-        if order.manner is not None and all(isinstance(noun, Labelled) for noun in what.nouns):
+        if all(isinstance(noun, Labelled) for noun in what.nouns):
             nouns.warn_of_empty(order.manner.floors, found, "one of these", order.span)
         self._require_first(order, found)
         self.context.memory.measured(found)
-        if order.manner is not None and order.manner.backwards:
+        if order.manner.backwards:
             self._require_several(order, found)
             found.reverse()
         tasks = [measurement(c, order.span) for c in found]
@@ -92,7 +91,7 @@ class TaskMaker:
         """Ask about `check #4 again` where checkpoint 4 was not measured before."""
         memory = self.context.memory
         manner = order.manner
-        if manner is None or not manner.more or manner.times != 1 or not memory.known:
+        if not manner.more or manner.times != 1 or not memory.known:
             return
         for checkpoint in checkpoints:
             if checkpoint.id not in memory.so_far:
@@ -129,11 +128,11 @@ class TaskMaker:
     def _wait_rule(self, order: orders.WaitOrder) -> WaitRule:
         """How long it waits, or for what. Raises RefusedError if that is not clear."""
         diagnostics = self.context.diagnostics
-        manner = order.manner or Manner()
+        manner = order.manner
         until, duration, limit = manner.until, manner.duration, manner.time_limit
         if order.recharges:
             return self._recharge_rule(order, manner)
-        if order.person:
+        if manner.person:
             hint = "an operator can pause the run; or write a duration: `wait 5 minutes`"
             diagnostics.refuse("wait", "a mission can't wait for a person", order.span, hint)
         if until is None:
@@ -228,7 +227,7 @@ class TaskMaker:
         """What the rounds are called, and through which places they lead."""
         context, manner = self.context, order.manner
         floors = [p for p in order.places if isinstance(p, FloorName)]
-        if len(floors) > 1 and manner is not None and manner.duration is not None:
+        if len(floors) > 1 and manner.duration is not None:
             message = "this duration can apply to each floor, or to all together"
             hint = "write one patrol for each floor, each with its own duration"
             context.diagnostics.refuse("ambiguous-duration", message, order.span, hint)
@@ -267,7 +266,7 @@ class TaskMaker:
     def demanded_of(self, order: orders.Measure) -> list[Do]:
         """Return the tasks of which a sentence in the passive only says when they are due, or how
         important; none if it plans them. Raises RefusedError if both may be meant."""
-        asked = said(order.manner) if order.passive and order.manner is not None else frozenset()
+        asked = said(order.manner) if order.passive else frozenset()
         if not asked or not asked <= _DEMANDS:
             return []
         context = self.context

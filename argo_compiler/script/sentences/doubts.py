@@ -8,39 +8,30 @@ asked what is meant.
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
 from itertools import takewhile
 
 from argo_compiler.script.documents.source import Diagnostics, ScriptText
 from argo_compiler.script.sentences.tree import orders
-from argo_compiler.script.sentences.tree.conditions import InState, Test, TooLate
+from argo_compiler.script.sentences.tree.conditions import Test, TooLate
 from argo_compiler.script.sentences.tree.nouns import AllOf, Labelled, TheOne
 from argo_compiler.script.sentences.tree.orders import Case, Placed, Placing, ScriptOrder, Sentence
 from argo_compiler.script.sentences.tree.script import ScriptStep
 from argo_compiler.script.sentences.words.lexer import all_words, placed_words
 from argo_compiler.script.sentences.words.lexicon import Lexicon
-from argo_compiler.script.sentences.words.loading import everywhere, pattern
-from argo_compiler.script.sentences.words.prose import either
+from argo_compiler.script.sentences.words.loading import everywhere
 from argo_compiler.script.sentences.words.without_effect import (
     TOLD,
     WITHOUT_EFFECT,
     parts_list,
     without_empty,
 )
-from argo_compiler.script.sentences.words.word import VERBS, Word
+from argo_compiler.script.sentences.words.word import COMPARISONS, OPENINGS, VERBS, Word
 
-_OPENS = frozenset(["IF", "IF_ONLY", "UNLESS", "UNTIL"])
-_ENDS = frozenset(
-    [*VERBS, "GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "STATE", "FAILS", "IS"]
-)
+_ENDS = frozenset([*VERBS, *COMPARISONS, "STATE", "FAILS", "IS"])
 """words behind which a condition says no more of which checkpoints it is"""
 _FROM_START = frozenset(["SINCE_START", "BACK_IN", "MAX_DURATION"])
 _NAMED = frozenset(["KIND", "HASH", "NUMBER", "IDENT", "STRING", "IT", "THEM", "BOTH", "THIS"])
 _WORK = (orders.Measure, orders.VisitOrder, orders.Go, orders.Patrol)
-_DOUBTFUL = r"(?<![\w-])(?:<summing>|<yonder>|<windows>)(?![\w-])"
-"""what words that are asked about look like, so that few sentences are looked at once more"""
-_SMALL = (*sorted(TOLD), "ADDITION", "SEQUENCE", "THITHER")
-"""terminals of words without effect that are asked about, or told, where they stand"""
 _SCOPED = frozenset(
     [
         *("TIMES", "MORE", "SPEED", "LEAVING", "EVERY", "RETRY", "MOST_TIMES", "PRIORITY"),
@@ -117,9 +108,6 @@ def ask_of_words(
 ) -> None:
     """Asks about the words of a sentence that may change what is meant. `ordered`: something is
     to be done before it; `days`: the days of which sentences were so far, each with its line."""
-    doubtful = pattern(_DOUBTFUL).search(text.content) or _small(lexicon).search(text.content)
-    if doubtful is None:
-        return
     words = all_words(text.content, lexicon)
     doubts = dict(_doubts(words, text.content.lower(), ordered))
     for i, word in enumerate(words):
@@ -177,7 +165,7 @@ def _doubts(words: Sequence[Word], content: str, ordered: bool) -> Iterator[tupl
 
 def _opens_condition(words: Sequence[Word], i: int) -> bool:
     """Return True for the `only` of `check #4 only if #1 is above 3`, which a condition has."""
-    return i + 1 < len(words) and words[i + 1].type in _OPENS
+    return i + 1 < len(words) and words[i + 1].type in OPENINGS
 
 
 def _is_within_list(words: Sequence[Word], i: int) -> bool:
@@ -195,8 +183,8 @@ def _next(words: Sequence[Word], i: int, content: str) -> str:
 
 def _names_subject(words: Sequence[Word], i: int) -> bool:
     """Whether a word stands where a condition says of which checkpoints it is."""
-    last = next((w.type for w in reversed(words[:i]) if w.type in _OPENS | _ENDS), "")
-    return last in _OPENS
+    last = next((w.type for w in reversed(words[:i]) if w.type in OPENINGS | _ENDS), "")
+    return last in OPENINGS
 
 
 def _is(said: str, name: str) -> bool:
@@ -209,8 +197,6 @@ def _is(said: str, name: str) -> bool:
 def placed_in(text: ScriptText, node: Sentence, lexicon: Lexicon) -> tuple[Placed, ...]:
     """The words of a sentence that say where it stands."""
     found: list[Placed] = []
-    if _placing(lexicon).search(text.content) is None:
-        return ()
     for word in placed_words(text.content, lexicon):
         span = text.span(word.start, word.end)
         at = (span.line, span.column)
@@ -304,32 +290,11 @@ def _names_twice(order: ScriptOrder) -> bool:
     return len({*labels}) < len(labels)
 
 
-@cache
-def _small(lexicon: Lexicon) -> re.Pattern[str]:
-    """What words without effect look like that are asked about or told."""
-    phrases = [phrase for type_ in _SMALL for phrase in lexicon.phrases.get((type_, None), ())]
-    return re.compile(rf"(?<![\w-])(?:{either('|'.join(phrases))})(?![\w-])", re.IGNORECASE)
-
-
-@cache
-def _placing(lexicon: Lexicon) -> re.Pattern[str]:
-    """What such words look like, so that few sentences are looked at once more."""
-    types = (*Placing, "FIRST")
-    phrases = [phrase for p in types for phrase in lexicon.phrases.get((p, None), ())]
-    return re.compile(rf"\b(?:{either('|'.join(phrases))}|first\W*$|^first)\b", re.IGNORECASE)
-
-
 def _is_other_way(case: Case | None) -> bool:
     """Whether a case is what is done instead of something: if it failed, or otherwise."""
     if case is None or case.condition is None:
         return case is not None
-    tests = [test for tests in case.condition.alternatives for test in tests]
     return all(
-        isinstance(test, TooLate)
-        or (
-            isinstance(test, Test)
-            and isinstance(test.predicate, InState)
-            and test.predicate.is_failure
-        )
-        for test in tests
+        isinstance(test, TooLate) or (isinstance(test, Test) and test.is_of_failure)
+        for test in case.condition.tests
     )

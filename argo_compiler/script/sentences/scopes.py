@@ -37,8 +37,7 @@ def _ask_of_way_home(
     order: ScriptOrder, before: tuple[ScriptOrder, ...], diagnostics: Diagnostics
 ) -> None:
     """Ask about `check #1 and go home twice`."""
-    manner = order.manner
-    if before and isinstance(order, Go | Home) and manner is not None and manner.times is not None:
+    if before and isinstance(order, Go | Home) and order.manner.times is not None:
         message = "this count can be that of the way only, or of all that stands before it"
         hint = "write `do the following twice:` over the tasks for the second"
         diagnostics.error("ambiguous-manner", message, order.span, hint)
@@ -49,7 +48,7 @@ def _ask_of_patrol(
 ) -> None:
     """Ask about `patrol floor 1 three times for 10 minutes`; with `or`, what ends first ends it."""
     manner = order.manner
-    if not isinstance(order, Patrol) or manner is None:
+    if not isinstance(order, Patrol) or not manner:
         return
     if not {*alternatives}.isdisjoint(diagnostics.source.said(order.span).lower().split()):
         return
@@ -63,12 +62,11 @@ def _ask_of_pronoun(
     order: ScriptOrder, before: tuple[ScriptOrder, ...], diagnostics: Diagnostics
 ) -> None:
     """Ask about `check #3 and check #6 if it is above 4`."""
-    condition = order.manner.condition if order.manner is not None else None
+    condition = order.manner.condition
     measured = any(isinstance(other, Measure) for other in before)
     if condition is None or not measured or not isinstance(order, Measure):
         return
-    tests = [test for tests in condition.alternatives for test in tests]
-    for test in tests:
+    for test in condition.tests:
         if isinstance(test, Test) and _is_pronoun(test.subject):
             message = "this can be the value of the checkpoint before it, or of an earlier one"
             hint = "name the checkpoint: `check #6 if #3 is above 4`"

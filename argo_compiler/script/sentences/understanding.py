@@ -191,36 +191,26 @@ class Understanding:
         """The text with letters among digits read as digits, `#l7`, and with words that have
         digits in them read as those that they can only be: `p0int`. Digits by themselves are never
         changed."""
-        text = self._letters(text)
-        if not _MIXED.search(text.content):
-            return text
-        quoted = quotes(text.content)
-        identified = _identified(self.language.lexicon)
-        for found in reversed(list(_MIXED.finditer(text.content))):
-            start, end = found.span()
-            named = found[0].lower() in self.names or identified.search(text.content[:start])
-            if named or any(a < start < b for a, b in quoted):
-                continue
-            meant = found[0].translate(_DIGITS)
-            self._warn(text, start, end, meant)
-            text = text.replace(start, end, meant)
+        for pattern, meant in ((_WORD, self._with_letters), (_MIXED, self._with_digits)):
+            for found in reversed(list(pattern.finditer(text.content))):
+                start, end = found.span()
+                quoted = any(a < start < b for a, b in quotes(text.content))
+                if quoted or found[0].lower() in self.names or (said := meant(found)) is None:
+                    continue
+                self._warn(text, start, end, said)
+                text = text.replace(start, end, said)
         return text
 
-    def _letters(self, text: ScriptText) -> ScriptText:
-        quoted = quotes(text.content)
-        for found in reversed(list(_WORD.finditer(text.content))):
-            start, end = found.span()
-            signs = [_LETTERS.get(s, s) if s.isdigit() else s for s in found[0].lower()]
-            letters = sum(s.isalpha() for s in found[0])
-            named = found[0].lower() in self.names or any(a < start < b for a, b in quoted)
-            if named or 2 * letters <= len(signs):
-                continue
-            meant = {"".join(word) for word in islice(product(*signs), _MOST_TRIED)} & self.known
-            if len(meant) == 1:
-                (word,) = meant
-                self._warn(text, start, end, word)
-                text = text.replace(start, end, word)
-        return text
+    def _with_digits(self, found: re.Match[str]) -> str | None:
+        named = _identified(self.language.lexicon).search(found.string[: found.start()])
+        return None if named else found[0].translate(_DIGITS)
+
+    def _with_letters(self, found: re.Match[str]) -> str | None:
+        signs = [_LETTERS.get(s, s) if s.isdigit() else s for s in found[0].lower()]
+        if 2 * sum(s.isalpha() for s in found[0]) <= len(signs):
+            return None
+        words = {"".join(word) for word in islice(product(*signs), _MOST_TRIED)} & self.known
+        return words.pop() if len(words) == 1 else None
 
     def _warn(self, text: ScriptText, start: int, end: int, meant: str) -> None:
         said = text.content[start:end]

@@ -18,23 +18,14 @@ from argo_compiler.script.write.text import INDENT, number, wrapped
 
 _NO_EFFECT = frozenset(
     [
-        "script.comment",
-        "script.no-effect",
-        "script.set-aside",
-        "script.set-aside-by-hand",
+        *("script.comment", "script.no-effect", "script.set-aside", "script.set-aside-by-hand"),
         "script.order-taken",
     ]
 )
 _ASSUMING = frozenset(
     [
-        "script.decided",
-        "script.dock-assumed",
-        "script.title",
-        "script.healed",
-        "script.once-more",
-        "script.priority-taken",
-        "script.quantity",
-        "script.respelled",
+        *("script.decided", "script.dock-assumed", "script.title", "script.healed"),
+        *("script.once-more", "script.priority-taken", "script.quantity", "script.respelled"),
         "script.unclear-cut",
     ]
 )

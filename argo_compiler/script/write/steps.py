@@ -179,15 +179,8 @@ class _Writer:
         """Where the mission starts; `here` keeps it where it stands, and what is said of it."""
         number = self.mission.start_area
         area = None if number is None else self.catalog.area(number)
-        following = self.following[i]
-        plain = Task(
-            name=task.name,
-            action=Action.START,
-            pose=task.pose,
-            transitions=() if following is None else (Transition(target=following),),
-            source=task.source,
-        )
-        if i == 0 < len(self.tasks) - 1 and task == plain and following is not None:
+        plain = _is_plain(task, Action.START, task.pose, self.following[i])
+        if i == 0 < len(self.tasks) - 1 and plain and self.following[i] is not None:
             if area is not None and task.pose == area.dock:
                 self.result.start_area = number
                 return f"set the starting point in starting area {number}"
@@ -202,15 +195,9 @@ class _Writer:
         area = None if number is None else self.catalog.area(number)
         if area is None or not self.tasks:
             return ()
-        task = self.tasks[-1]
-        plain = Task(
-            name="DOCK",
-            action=Action.WAYPOINT,
-            pose=area.dock,
-            velocity=task.velocity,
-            source=task.source,
-        )
-        return (len(self.tasks) - 1,) if task == plain and not self.layout.ending[-1] else ()
+        task = self.tasks[-1].model_copy(update={"velocity": None})
+        plain = task.name == "DOCK" and _is_plain(task, Action.WAYPOINT, area.dock)
+        return (len(self.tasks) - 1,) if plain and not self.layout.ending[-1] else ()
 
     # ---- groups
 
@@ -229,6 +216,26 @@ class _Writer:
         steps = "step" if len(said) == 1 else "steps"
         opening = "repeat" if name is None else f"{quote(name)}:\nrepeat"
         return f"{opening} {steps} {' to '.join(said)} {_limits(group)}"
+
+
+def _is_plain(
+    task: Task,
+    action: Action,
+    pose: Pose | None,
+    following: str | None = None,
+    group: str = "",
+    wait: WaitRule | None = None,
+) -> bool:
+    """Whether nothing else is said of a task than this, and that another one follows."""
+    return task == Task(
+        name=task.name,
+        action=action,
+        pose=pose,
+        group=group,
+        wait=wait,
+        transitions=() if following is None else (Transition(target=following),),
+        source=task.source,
+    )
 
 
 def _following(tasks: tuple[Task, ...]) -> list[str | None]:
@@ -368,16 +375,8 @@ def _targets(mission: Mission) -> set[str]:
 
 def _is_stop(tasks: tuple[Task, ...], i: int, group: str) -> bool:
     """Whether a task has nothing that those of a patrol don't have."""
-    task = tasks[i]
     following = next((t.name for t in tasks[i + 1 :] if t.action is not Action.START), None)
-    return task == Task(
-        name=task.name,
-        action=Action.WAYPOINT,
-        group=group,
-        pose=task.pose,
-        transitions=() if following is None else (Transition(target=following),),
-        source=task.source,
-    )
+    return _is_plain(tasks[i], Action.WAYPOINT, tasks[i].pose, following, group)
 
 
 # ---- the tasks that end a mission in some cases only: a script says that in words, without a step
@@ -408,12 +407,12 @@ def _unlisted_ends(mission: Mission, catalog: Catalog) -> dict[str, str]:
 
 def _words(task: Task, catalog: Catalog, last: bool) -> str | None:
     """The words for going to a task; None if it is no end that conditions make."""
-    end = Task(name="END", action=Action.WAIT, wait=WaitRule(duration=0), source=task.source)
-    if last and task == end:
+    ends = _is_plain(task, Action.WAIT, None, wait=WaitRule(duration=0))
+    if last and ends and task.name == "END":
         return "end the mission"
     area = next((area for area in catalog.areas if area.dock == task.pose), None)
-    home = Task(name=task.name, action=Action.WAYPOINT, pose=task.pose, source=task.source)
-    if area is None or task != home or not _DOCK.fullmatch(task.name):
+    plain = _is_plain(task, Action.WAYPOINT, task.pose)
+    if area is None or not plain or not _DOCK.fullmatch(task.name):
         return None
     return f"return to the docking station in starting area {area.number}"
 

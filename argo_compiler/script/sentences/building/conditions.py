@@ -14,13 +14,10 @@ from argo_compiler.script.sentences.tree.conditions import (
     Amount,
     Asked,
     BatteryLevel,
-    Between,
-    Compared,
+    Bounded,
     InState,
-    InValvePosition,
     Occurs,
     Predicate,
-    Relation,
     SaidCondition,
     TaskState,
     Test,
@@ -32,13 +29,12 @@ from argo_compiler.script.sentences.words.loading import pattern
 from argo_compiler.script.sentences.words.word import Word
 
 _Alternatives = tuple[tuple[Asked, ...], ...]
-_POSITIONS = frozenset(map(str, ValvePosition))
+_STATES = {str(state): state for state in (*TaskState, *ValvePosition)}
 _MOST = 64
 """alternatives of one condition"""
 _NEGATING = r"\b<negating>\b(?!.*\b<closing>\W*$)"
 _BOUNDING = r"<bounding>(?!\w)"
 """how a bound begins that has no verb of its own"""
-_BEYOND = {"OR_MORE": Relation.AT_LEAST, "OR_LESS": Relation.AT_MOST}
 
 
 def require_moment(part: RulePart) -> None:
@@ -47,52 +43,43 @@ def require_moment(part: RulePart) -> None:
     if opening is None or opening.value != "whenever":
         return
     condition = part.the(SaidCondition)
-    tests = [test for tests in condition.alternatives for test in tests]
-    if any(isinstance(test, Test) and not _is_failure(test) for test in tests):
+    if any(isinstance(test, Test) and not test.is_of_failure for test in condition.tests):
         message = "a condition on a value is evaluated after a task, not at any time"
         hint = "write `if ...` after each measurement"
         part.diagnostics.error("ambiguous-case", message, condition.span, hint)
 
 
-def _is_failure(test: Test) -> bool:
-    return isinstance(test.predicate, InState) and test.predicate.is_failure
-
-
-def _compared(part: RulePart) -> Compared:
+def _compared(part: RulePart) -> Bounded:
     """`above 75 %`, `75 % or more`"""
-    beyond = part.word("OR_MORE", "OR_LESS")
-    relation = _BEYOND[beyond.type] if beyond is not None else Relation[part.children[0].type]
-    return Compared(span=part.span, relation=relation, bound=part.the(Amount))
+    inclusive = not part.has("GREATER", "LESS")
+    if part.has("GREATER", "AT_LEAST", "OR_MORE"):
+        return Bounded(span=part.span, low=part.the(Amount), inclusive=inclusive)
+    return Bounded(span=part.span, high=part.the(Amount), inclusive=inclusive)
 
 
-def _between(part: RulePart) -> Between:
+def _between(part: RulePart) -> Bounded:
     low, high = part.every(Amount)
     if not low.unit:
         low = replace(low, unit=high.unit)
-    return Between(span=part.span, low=low, high=high, inclusive=part.has("FROM"))
+    return Bounded(span=part.span, low=low, high=high, inclusive=part.has("FROM"))
 
 
-def _exactly(part: RulePart) -> Between:
+def _exactly(part: RulePart) -> Bounded:
     amount = part.the(Amount)
-    message = "a measured value is hardly ever exactly equal to this"
     hint = "write `between 4.9 and 5.1 bar`, `at least 5 bar` or `at most 5 bar`"
-    part.error("condition", message, hint)
-    return Between(span=part.span, low=amount, high=amount, inclusive=True)
+    part.error("condition", "a measured value is hardly ever exactly equal to this", hint)
+    return Bounded(span=part.span, low=amount, high=amount, inclusive=True)
 
 
 def _predicate(part: RulePart) -> tuple[Predicate, bool, str]:
     negated = part.has("NOT")
-    state = part.word("STATE")
-    stale = part.first(InState)
-    if stale is not None:
-        found: Predicate = stale
-    elif state is not None and state.value in _POSITIONS:
-        found = InValvePosition(span=part.span, position=ValvePosition(state.value))
-    elif state is not None or part.has("FAILS"):
-        found = InState(span=part.span, state=TaskState(state.value) if state else TaskState.FAILED)
-    else:
-        plain = next((c for c in part.children if isinstance(c, Compared | Between)), None)
-        found = plain or _exactly(part)
+    found: Predicate | None = part.first(InState) or part.first(Bounded)
+    if state := part.word("STATE"):
+        found = InState(span=part.span, state=_STATES[state.value])
+    elif part.has("FAILS"):
+        found = InState(span=part.span, state=TaskState.FAILED)
+    elif found is None:
+        found = _exactly(part)
     verb = part.word("IS")
     return found, negated, str(verb.value) if verb is not None else ""
 
@@ -108,9 +95,8 @@ def _test(part: RulePart) -> Test:
     subject = part.first(Nouns)
     several = subject is not None and len(subject.nouns) > 1
     if subject is not None and several and how_many == ("both" if subject.either else "either"):
-        message = "this can apply to one of them, or to both"
         hint = "write `if either #1 or #5 is abnormal`, or `if both #1 and #5 are abnormal`"
-        part.error("ambiguous-and-or", message, hint)
+        part.error("ambiguous-and-or", "this can apply to one of them, or to both", hint)
     age = part.first(float)
     detail = part.first(dict) or {"id": "", "second": None}
     return Test(
@@ -131,14 +117,14 @@ def _occurs(part: RulePart) -> Occurs | BatteryLevel:
     if event is not EventKind.BATTERY_CHARGED:
         message = "only a battery is charged to a level"
         part.error("battery", message, "write, for example, `the battery is charged to 80 %`")
-    return BatteryLevel(span=part.span, relation=Relation.AT_LEAST, level=amount(part))
+    return _battery(part)
 
 
 def _battery(part: RulePart) -> BatteryLevel:
-    if part.has("QUANTITY"):  # `the battery is at 60 %`
-        return BatteryLevel(span=part.span, relation=Relation.AT_LEAST, level=amount(part))
-    compared = part.the(Compared)
-    return BatteryLevel(span=part.span, relation=compared.relation, level=compared.bound)
+    level = part.first(Bounded)
+    if level is None:  # `the battery is at 60 %`
+        level = Bounded(span=part.span, low=amount(part), inclusive=True)
+    return BatteryLevel(span=part.span, level=level)
 
 
 def _condition(part: RulePart) -> SaidCondition:
@@ -161,7 +147,9 @@ def _require_plain_negation(part: RulePart) -> None:
     """Asks about `not above 4 or below 2`: whether the second is to be so, or not."""
     content, start = part.text.content, part.start
     for test, joint in zip(part.children[::2], part.children[1::2], strict=False):
-        plain = isinstance(test, Test) and not isinstance(test.predicate, Between)
+        plain = isinstance(test, Test) and not (
+            isinstance(test.predicate, Bounded) and len(test.predicate.bounds) == 2
+        )
         parted = joint.type == "OR_TEST" or (joint.type == "AND_TEST" and plain)
         said, behind = content[start : joint.start], content[joint.end :].lstrip()
         start = joint.end
@@ -263,8 +251,7 @@ def _ask(part: RulePart, joints: Sequence[_Joint], hint: str) -> None:
     for joint in (joints[second], joints[second - 1]):
         before, behind = content[part.start : joint.start], content[joint.start : part.end]
         readings.append(f"`{before.rstrip(' ,;')}, {behind.lstrip(' ,;')}`")
-    message = f"this can be read as {readings[0]} or as {readings[1]}"
-    part.error("ambiguous-and-or", message, hint)
+    part.error("ambiguous-and-or", f"this can be read as {readings[0]} or as {readings[1]}", hint)
 
 
 def _is_named(test: Asked) -> bool:

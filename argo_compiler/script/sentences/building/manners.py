@@ -5,7 +5,7 @@ from dataclasses import fields, replace
 from itertools import pairwise
 from typing import Any
 
-from argo_compiler.il import Afterwards, Order
+from argo_compiler.il import Afterwards, JointState, Order
 from argo_compiler.script.sentences.building.conditions import require_moment
 from argo_compiler.script.sentences.building.part import (
     Make,
@@ -18,7 +18,7 @@ from argo_compiler.script.sentences.building.part import (
     whole,
 )
 from argo_compiler.script.sentences.tree.conditions import Occurs, SaidCondition
-from argo_compiler.script.sentences.tree.manner import Joints, Manner
+from argo_compiler.script.sentences.tree.manner import NOTHING_SAID, Manner
 from argo_compiler.script.sentences.tree.places import Coordinates
 from argo_compiler.script.sentences.words.word import Word
 
@@ -111,10 +111,10 @@ def _joints(part: RulePart) -> Manner:
     for word, values in pairwise(part.children):
         if isinstance(word, Word) and isinstance(values, tuple):
             given[_OF_JOINTS[word.type]] = values
-    return Manner(joints=Joints(names=names, **given))
+    return Manner(joints=JointState(names=names, **given))
 
 
-def combined(part: RulePart, manners: Iterable[Manner]) -> Manner | None:
+def combined(part: RulePart, manners: Iterable[Manner]) -> Manner:
     """All of them in one; what is said twice is an error."""
     values: dict[str, Any] = {}
     for manner in manners:
@@ -132,7 +132,7 @@ def combined(part: RulePart, manners: Iterable[Manner]) -> Manner | None:
                 what = field.name.replace("_", " ")
                 part.error("repeated-limit", f"the {what} is given twice", "remove one of them")
             values[field.name] = value
-    return Manner(**values) if values else None
+    return Manner(**values) if values else NOTHING_SAID
 
 
 def _only_if(part: RulePart) -> Manner:
@@ -147,13 +147,15 @@ RULES: dict[str, Make] = {
     "more": _more,
     "every": lambda part: Manner(every=duration(part)),
     "pause": lambda part: Manner(pause=duration(part)),
-    "for_": _for,
-    "until": lambda part: Manner(until=part.the(SaidCondition)),
     "within": lambda part: Manner(latest=duration(part)),
-    "between_times": _between_times,
     "latest": lambda part: Manner(latest=duration(part)),
     "earliest": lambda part: Manner(earliest=duration(part)),
     "delay": lambda part: Manner(delay=duration(part)),
+    "reading": lambda part: Manner(reading_limit=duration(part)),
+    "charge_time": lambda part: Manner(charge_time=duration(part)),
+    "for_": _for,
+    "until": lambda part: Manner(until=part.the(SaidCondition)),
+    "between_times": _between_times,
     "at_most": _at_most,
     "if_time": lambda _: Manner(optional=True),
     "priority": _priority,
@@ -167,9 +169,7 @@ RULES: dict[str, Make] = {
     "shown": lambda part: Manner(shown_in=part.the_word("STRING").value),
     "about": lambda part: Manner(object_id=part.the_word("STRING").value),
     "joints": _joints,
-    "values": lambda part: tuple(signed.value for signed in part.every(Signed)),
-    "reading": lambda part: Manner(reading_limit=duration(part)),
+    "values": lambda part: tuple(float(signed.value) for signed in part.every(Signed)),
     "charge": lambda part: Manner(charge=amount(part)),
-    "charge_time": lambda part: Manner(charge_time=duration(part)),
     "on_limit": lambda part: Manner(on_limit=_ON_LIMIT[part.the_word(*_ON_LIMIT).type]),
 }

@@ -25,7 +25,7 @@ _WHEREABOUTS = r"\b<whereabouts>\b"
 """words that say where something is, and not where to: `on the second floor`"""
 
 
-def _manner(part: RulePart) -> Manner | None:
+def _manner(part: RulePart) -> Manner:
     return combined(part, part.every(Manner))
 
 
@@ -45,7 +45,7 @@ def _measure(part: RulePart) -> ScriptOrder:
     if but:
         what = replace(what, but=(*what.but, *but[0].but))
     manner = _manner(part)
-    if what.parted and manner is not None and manner.condition is not None:
+    if what.parted and manner.condition is not None:
         message = "this condition can apply to the last of these only, or to both"
         hint = "write a sentence for each: `check #1. Check #4 only if #1 is above 4`, or remove "
         hint += "the comma"
@@ -63,7 +63,7 @@ def _measure(part: RulePart) -> ScriptOrder:
 def _go(part: RulePart) -> ScriptOrder:
     where_to = where(part)
     order = _towards(part, where_to)
-    driven = order.manner is not None and order.manner.speed is not None
+    driven = order.manner.speed is not None
     if isinstance(where_to, FloorName) and driven and pattern(_WHEREABOUTS).search(part.said):
         message = "this floor can be the destination, or where the speed applies"
         hint = "write `go to floor 2` for the first, the speed after each command for the second"
@@ -77,8 +77,7 @@ def where(part: RulePart) -> Location | FloorName:
     inside = part.every(AreaLocation)[-1:] if part.has("LPAR") else ()
     if inside:
         if found is None or found.area is not None:
-            hint = "remove one of the two"
-            part.error("several-places", "this names two places", hint)
+            part.error("several-places", "this names two places", "remove one of the two")
             return inside[0]
         return replace(found, area=inside[0])
     for child in part.children:
@@ -150,11 +149,9 @@ def _repeat(part: RulePart) -> ScriptOrder:
 def _wait(part: RulePart) -> ScriptOrder:
     here = all(isinstance(c, Word | Manner) for c in part.children)
     place = None if here else where(part)
-    manner = _manner(part)
-    person = manner is not None and manner.person
     verb = part.word("WAIT")
     stays = verb is not None and verb.value == "stay"
-    return orders.WaitOrder(span=part.span, manner=manner, where=place, person=person, stays=stays)
+    return orders.WaitOrder(span=part.span, manner=_manner(part), where=place, stays=stays)
 
 
 def _things(part: RulePart) -> list[Nouns | Steps]:

@@ -122,9 +122,8 @@ def decimal(part: RulePart, figure: Figure, unit: str = "") -> float:
     behind = f" {unit}" if unit else ""
     if figure.other is not None:
         first, second = f"{figure.value:g}{behind}", f"{figure.other:g}{behind}"
-        message = f"`{part.said}` can be read as {first} or as {second}"
         hint = f"write `{figure.value:g}0{behind}` for the first, `{second}` for the second"
-        part.error("ambiguous-number", message, hint)
+        part.error("ambiguous-number", f"`{part.said}` can be read as {first} or as {second}", hint)
     elif isnan(figure.value):
         part.error("number", f"`{part.said}` is several numbers, not one", "write one number")
         return 0.0

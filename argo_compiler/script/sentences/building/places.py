@@ -63,9 +63,8 @@ def _floors(part: RulePart) -> tuple[FloorName, ...]:
     plural = floor is not None and bool(floor.value)
     if len(found) > 1 and not part.has("ORDINAL") and not plural:
         said = " and ".join(str(one.number) for one in found)
-        message = f"it is not clear whether `{said}` are both floors"
         hint = f"write `floors {said}`, or name the other thing: `checkpoint 4`"
-        part.error("ambiguous-floor", message, hint)
+        part.error("ambiguous-floor", f"it is not clear whether `{said}` are both floors", hint)
     return tuple(found)
 
 

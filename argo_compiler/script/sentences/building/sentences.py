@@ -12,45 +12,40 @@ from argo_compiler.script.sentences.building import (
     part,
     places,
 )
-from argo_compiler.script.sentences.building.part import Make, RulePart, T, seconds, whole
+from argo_compiler.script.sentences.building.part import Make, RulePart, seconds, whole
 from argo_compiler.script.sentences.grammar.parser import Branch
 from argo_compiler.script.sentences.tree.conditions import SaidCondition
 from argo_compiler.script.sentences.tree.manner import Manner
 from argo_compiler.script.sentences.tree.nouns import Labelled, Nouns, Pronoun
 from argo_compiler.script.sentences.tree.orders import (
     Amend,
-    BackWithin,
     Case,
+    DoneBefore,
     Fact,
     Follow,
     LeaveOut,
     MaxDuration,
     Measure,
     OrderFree,
-    ReadBefore,
     Repeat,
     Rest,
     RoundsDriven,
     ScriptOrder,
     Sentence,
     Side,
-    StepsOrdered,
 )
 from argo_compiler.script.sentences.tree.places import Steps
 from argo_compiler.script.sentences.words.word import Word
+
+_RESTS = {"IN_ALL_OTHERS": Rest.ALL_OTHERS, "LAST_ROUND": Rest.LAST_ROUND}
 
 
 def _case(part: RulePart) -> Case:
     """`If ..., A and B`; what comes behind a semicolon may be meant for this case, or for any."""
     orders = _joined(part)
-    rest = Rest.OTHERWISE
-    if part.has("IN_ALL_OTHERS"):
-        rest = Rest.ALL_OTHERS
-    elif part.has("LAST_ROUND"):
-        rest = Rest.LAST_ROUND
+    word = part.word(*_RESTS)
     condition = part.first(SaidCondition)
-    late = orders[0].manner if orders else None
-    if condition is not None and late is not None and late.delay is not None:
+    if condition is not None and orders and orders[0].manner.delay is not None:
         behind = part.children[part.children.index(condition) + 1]
         if not isinstance(behind, Word):
             message = "this time can belong to the condition, or be a wait before the command"
@@ -67,13 +62,9 @@ def _case(part: RulePart) -> Case:
             message = "this can apply in this case only, or in any case"
             hint = "write `, then ...` for the first, and a separate sentence for the second"
             part.diagnostics.error("ambiguous-case", message, order.span, hint)
-    return Case(
-        span=part.span,
-        condition=condition,
-        orders=orders,
-        rest=rest,
-        chained=part.has("ELSE"),
-    )
+    rest = Rest.OTHERWISE if word is None else _RESTS[word.type]
+    chained = part.has("ELSE")
+    return Case(span=part.span, condition=condition, orders=orders, rest=rest, chained=chained)
 
 
 def _require_joint(part: RulePart, condition: SaidCondition, manner: Amend) -> None:
@@ -109,7 +100,8 @@ def _joined(part: RulePart) -> tuple[ScriptOrder, ...]:
             ):
                 found[-1] = _both(last, child)
             elif isinstance(last, Follow | Repeat) and isinstance(child, Amend) and _pauses(child):
-                found[-1] = _with_pause(last, child)
+                # `Do the following twice, and wait 1 minute in between:`
+                found[-1] = replace(last, manner=replace(last.manner, pause=child.manner.pause))
             else:
                 if last is not None and _may_be_step(part, last, joint):
                     message = "this number can be that of a checkpoint or of a step"
@@ -126,22 +118,14 @@ def _joined(part: RulePart) -> tuple[ScriptOrder, ...]:
 
 def _pauses(order: Amend) -> bool:
     """Whether an order says nothing but how long to wait between rounds."""
-    manner = order.manner
-    return manner is not None and manner == Manner(pause=manner.pause)
-
-
-def _with_pause(order: ScriptOrder, pause: Amend) -> ScriptOrder:
-    """`Do the following twice, and wait 1 minute in between:`"""
-    assert pause.manner is not None
-    manner = order.manner or Manner()
-    return replace(order, manner=replace(manner, pause=pause.manner.pause))
+    return order.manner == Manner(pause=order.manner.pause)
 
 
 def _is_same_reading(order: ScriptOrder) -> bool:
     """Whether an order measures what another one has just measured: `and note the value`."""
     return (
         isinstance(order, Measure)
-        and order.manner is None
+        and not order.manner
         and all(isinstance(noun, Pronoun) for noun in order.what.nouns)
     )
 
@@ -171,21 +155,17 @@ def _both(first: Measure, second: Measure) -> Measure:
 # ---- facts: what is said of the mission as a whole
 
 
-def _duration(part: RulePart) -> float:
-    return seconds(part, part.the_word("DURATION", "MOST_TIME"))
+def _max_duration(part: RulePart) -> Fact:
+    time = seconds(part, part.the_word("DURATION", "MOST_TIME"))
+    where = next((c for c in part.children if not isinstance(c, Word)), None)
+    return MaxDuration(span=part.span, seconds=time, where=where)
 
 
-def _back_within(part: RulePart) -> Fact:
-    where = next(c for c in part.children if not isinstance(c, Word))
-    return BackWithin(span=part.span, where=where, seconds=_duration(part))
-
-
-def _in_order(part: RulePart, type_: type[T]) -> dict[str, T]:
-    """What comes first, and what second."""
-    first, second = part.every(type_)
+def _precedence(part: RulePart) -> Fact:
+    first, second = (c for c in part.children if isinstance(c, Nouns | Steps))
     if part.the(Side) is Side.AFTER:
         first, second = second, first
-    return {"first": first, "second": second}
+    return DoneBefore(span=part.span, first=first, second=second)
 
 
 _RULES: dict[str, Make] = {
@@ -198,10 +178,10 @@ _RULES: dict[str, Make] = {
     "case": _case,
     "otherwise": _case,
     "sentence": _sentence,
-    "max_duration": lambda part: MaxDuration(span=part.span, seconds=_duration(part)),
-    "back_within": _back_within,
-    "precedence": lambda part: ReadBefore(span=part.span, **_in_order(part, Nouns)),
-    "steps_ordered": lambda part: StepsOrdered(span=part.span, **_in_order(part, Steps)),
+    "max_duration": _max_duration,
+    "back_within": _max_duration,
+    "precedence": _precedence,
+    "steps_ordered": _precedence,
     "rounds_driven": lambda part: RoundsDriven(
         span=part.span, steps=part.the(Steps), count=whole(part, part.the_word("TIMES").value)
     ),

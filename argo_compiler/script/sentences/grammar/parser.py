@@ -5,8 +5,6 @@ from functools import cache
 
 from lark import Lark, Token, Tree
 from lark.exceptions import UnexpectedToken
-from lark.parsers.lalr_analysis import Shift
-from lark.parsers.lalr_parser_state import ParserState
 
 from argo_compiler.script.sentences.grammar.tables import load_parser
 
@@ -71,25 +69,7 @@ class Grammar:
         parser = self.parser.parse_interactive("", "sentence")
         for at, type_ in enumerate(words):
             parser.feed_token(Token(type_, "", start_pos=at, end_pos=at + 1))
-        state: ParserState[int] = parser.parser_state
-        row = state.parse_conf.states[state.position]
-        return frozenset(type_ for type_ in row if type_.isupper() and _accepts(type_, state))
-
-
-def _accepts(type_: str, state: ParserState[int]) -> bool:
-    """Whether the parser can take a word of this type. As Lark's `accepts`, which copies the parser
-    for each of a hundred types."""
-    stack = list(state.state_stack)
-    rows, end = state.parse_conf.states, state.parse_conf.end_state
-    while (step := rows[stack[-1]].get(type_)) is not None:
-        action, rule = step
-        if action is Shift:
-            return True
-        del stack[len(stack) - len(rule.expansion) :]
-        stack.append(rows[stack[-1]][rule.origin.name][1])
-        if stack[-1] == end:
-            return True
-    return False
+        return frozenset(parser.accepts())  # type: ignore[no-untyped-call]
 
 
 def _branch(tree: Tree[Token]) -> Branch:

@@ -7,15 +7,6 @@ from argo_compiler.script.sentences.tree.node import Node, node
 from argo_compiler.script.sentences.tree.nouns import Nouns
 
 
-class Relation(StrEnum):
-    """How a value compares with a bound."""
-
-    GREATER = "greater"
-    LESS = "less"
-    AT_LEAST = "at least"
-    AT_MOST = "at most"
-
-
 class TaskState(StrEnum):
     """What a reading may be."""
 
@@ -27,6 +18,9 @@ class TaskState(StrEnum):
     STALE = "stale"
 
 
+_FAILURES = (TaskState.FAILED, TaskState.UNREADABLE, TaskState.UNREACHABLE)
+
+
 @node
 class Amount(Node):
     """A value with the unit that is said with it, if one is."""
@@ -36,38 +30,21 @@ class Amount(Node):
 
 
 @node
-class Compared(Node):
-    """`above 5 bar`."""
+class Bounded(Node):
+    """`above 5 bar`, `between 2 and 3`; with one bound or two."""
 
-    relation: Relation
-    bound: Amount
-
-
-@node
-class Between(Node):
-    """`between 2 and 3`, the bounds excluded; `from 2 to 3`, included."""
-
-    low: Amount
-    high: Amount
+    low: Amount | None = None
+    high: Amount | None = None
     inclusive: bool
-
-
-@node
-class InState(Node):
-    """`abnormal`, `unreadable`, `older than 60 s`."""
-
-    state: TaskState
-    age: float | None = None
-    """s, of STALE"""
+    """whether a value may be at a bound: `at least 5`, `from 2 to 3`"""
 
     @property
-    def is_failure(self) -> bool:
-        """Whether it says that a task has failed, which is known as soon as it has ended."""
-        return self.state in (TaskState.FAILED, TaskState.UNREADABLE, TaskState.UNREACHABLE)
+    def bounds(self) -> tuple[Amount, ...]:
+        return tuple(bound for bound in (self.low, self.high) if bound is not None)
 
 
 class ValvePosition(StrEnum):
-    """ValvePosition of a valve."""
+    """Position of a valve."""
 
     OPEN = "open"
     HALF_OPEN = "half_open"
@@ -75,13 +52,15 @@ class ValvePosition(StrEnum):
 
 
 @node
-class InValvePosition(Node):
-    """`open`, `half open`, `closed`."""
+class InState(Node):
+    """`abnormal`, `unreadable`, `older than 60 s`, `open`."""
 
-    position: ValvePosition
+    state: TaskState | ValvePosition
+    age: float | None = None
+    """s, of STALE"""
 
 
-Predicate = Compared | Between | InState | InValvePosition
+Predicate = Bounded | InState
 
 
 @node
@@ -98,6 +77,11 @@ class Test(Node):
     second_bound: float | None = None
     """an upper bound that the comparison does not need, kept for the plan's sake"""
 
+    @property
+    def is_of_failure(self) -> bool:
+        """Whether it asks if a task has failed, which is known as soon as it has ended."""
+        return isinstance(self.predicate, InState) and self.predicate.state in _FAILURES
+
 
 @node
 class Occurs(Node):
@@ -110,8 +94,7 @@ class Occurs(Node):
 class BatteryLevel(Node):
     """`the battery drops below 30 %`, `the battery is above 60 %`."""
 
-    relation: Relation
-    level: Amount
+    level: Bounded
 
 
 @node
@@ -129,3 +112,8 @@ class SaidCondition(Node):
     alternatives: tuple[tuple[Asked, ...], ...]
     negated: bool = False
     """`unless`"""
+
+    @property
+    def tests(self) -> list[Asked]:
+        """All that is asked, of whichever alternative."""
+        return [test for tests in self.alternatives for test in tests]

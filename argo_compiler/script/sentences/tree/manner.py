@@ -2,25 +2,15 @@
 
 from dataclasses import dataclass
 
-from argo_compiler.il import Afterwards, Order
+from argo_compiler.il import Afterwards, JointState, Order
 from argo_compiler.script.sentences.tree.conditions import Amount, SaidCondition
 from argo_compiler.script.sentences.tree.places import Coordinates, FloorName
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Joints:
-    """Where named joints are to be, how fast, and with which effort."""
-
-    names: tuple[str, ...]
-    positions: tuple[float, ...] = ()
-    velocities: tuple[float, ...] = ()
-    efforts: tuple[float, ...] = ()
-
-
-@dataclass(slots=True, kw_only=True)
+@dataclass(slots=True, kw_only=True, unsafe_hash=True)
 class Manner:
-    """What is said of an order besides what it does. None: nothing is. Not frozen, for very many
-    are made, and they are made faster so; nothing changes one."""
+    """What is said of an order besides what it does; false if nothing is. Not frozen, for very
+    many are made, and they are made faster so; nothing changes one."""
 
     speed: float | None = None
     """m/s on the way to each task"""
@@ -71,7 +61,7 @@ class Manner:
     """whether the tasks may change places"""
     condition: SaidCondition | None = None
     """`check #8 if it is above 5`"""
-    joints: Joints | None = None
+    joints: JointState | None = None
     shown_in: str | None = None
     object_id: str | None = None
     pose: Coordinates | None = None
@@ -83,3 +73,9 @@ class Manner:
     """charge of the battery: `to 80 %`"""
     charge_time: float | None = None
     """s for which the battery is charged at least"""
+
+    def __bool__(self) -> bool:
+        return self is not NOTHING_SAID and self != NOTHING_SAID
+
+
+NOTHING_SAID = Manner()

@@ -5,7 +5,7 @@ from enum import StrEnum
 from typing import Self
 
 from argo_compiler.script.sentences.tree.conditions import SaidCondition
-from argo_compiler.script.sentences.tree.manner import Manner
+from argo_compiler.script.sentences.tree.manner import NOTHING_SAID, Manner
 from argo_compiler.script.sentences.tree.node import Node, node
 from argo_compiler.script.sentences.tree.nouns import Nouns
 from argo_compiler.script.sentences.tree.places import DockLocation, FloorName, Location, Steps
@@ -17,7 +17,7 @@ class ScriptOrder(Node):
 
     name: str | None = None
     """of the task or the round, if the script gives one"""
-    manner: Manner | None = None
+    manner: Manner = NOTHING_SAID
     joint: str = ""
     """what stood before it: `, and`"""
 
@@ -81,8 +81,6 @@ class Patrol(ScriptOrder):
 class WaitOrder(ScriptOrder):
     """`Wait 90 s`, `wait until #1 is below 3`, `wait for the all-clear`."""
 
-    person: bool = False
-    """for the operator"""
     where: Location | FloorName | None = None
     """None: where it is"""
     stays: bool = False
@@ -256,38 +254,24 @@ class Fact(Node):
 
 @node
 class MaxDuration(Fact):
-    """`The mission may take 20 minutes at most`."""
+    """`The mission may take 20 minutes at most`, `it has to be back in area 1 within 35 min`."""
 
     seconds: float
+    where: Location | None = None
+    """where it has to be by then"""
 
 
 @node
-class BackWithin(Fact):
-    """`It has to be back in its dock in starting area 1 within 35 minutes`."""
+class DoneBefore(Fact):
+    """`Checkpoint 7 has to be read before checkpoint 18`, `always do step 2 before step 5`."""
 
-    where: Location
-    seconds: float
-
-
-@node
-class ReadBefore(Fact):
-    """`Checkpoint 7 has to be read before checkpoint 18`."""
-
-    first: Nouns
-    second: Nouns
+    first: Nouns | Steps
+    second: Nouns | Steps
 
 
 @node
 class OrderFree(Fact):
     """`The order does not matter`."""
-
-
-@node
-class StepsOrdered(Fact):
-    """`Always do step 2 before step 5`."""
-
-    first: Steps
-    second: Steps
 
 
 @node

@@ -50,14 +50,9 @@ def read_clock(said: str) -> Length | None:
         return Length(parts[0] * 3600.0 + parts[1] * 60 + parts[2])
     minutes, rest = parts
     length = minutes * 60.0 + rest
-    if minutes >= 24:
-        return Length(length)
-    return Length(
-        length,
-        other=length * 60,
-        first=f"{minutes} min {rest} s",
-        second=f"{minutes} h {rest} min",
-    )
+    first, second = f"{minutes} min {rest} s", f"{minutes} h {rest} min"
+    other = None if minutes >= 24 else length * 60
+    return Length(length, other=other, first=first, second=second)
 
 
 def read_glued(said: str) -> Length | None:
@@ -103,13 +98,8 @@ def counted(word: Word, after: Word, before: str = "") -> Word | None:
 def _length(figure: Figure, unit: float) -> Length:
     if figure.other is None:
         return Length(figure.value * unit, unit)
-    return Length(
-        figure.value * unit,
-        unit,
-        other=figure.other * unit,
-        first=_told(figure.value, unit),
-        second=_told(figure.other, unit),
-    )
+    first, second = _told(figure.value, unit), _told(figure.other, unit)
+    return Length(figure.value * unit, unit, figure.other * unit, first, second)
 
 
 def _of_clock(length: Length, unit: float) -> Length | None:
@@ -147,28 +137,18 @@ def hours_and(hours: Word, minutes: Word, after: Word | None) -> Word | None:
 
 def limited(words: list[Word]) -> list[Word]:
     """The words with limits in one: `at most 10 times`, `50 minutes at most`."""
-    if not any(word.type == "AT_MOST" for word in words):
-        return words
     found: list[Word] = []
-    i = 0
-    while i < len(words):
-        word = words[i]
-        after = words[i + 1] if i + 1 < len(words) else None
-        if word.type == "AT_MOST" and after is not None and after.type in _LIMITS:
-            found.append(Word(_LIMITS[after.type], after.value, word.start, after.end))
-            i += 1
-        elif word.type == "AT_MOST" and after is not None and _tries(found, after):
-            found.append(Word("MOST_TIMES", after.value, word.start, after.end))
-            i += 1
-        elif word.type == "AT_MOST" and found and found[-1].type in _LIMITS:
-            last = found.pop()
-            found.append(Word(_LIMITS[last.type], last.value, last.start, word.end))
+    for word in words:
+        last = found[-1] if found else None
+        # `Try again up to two more times` is as often as `up to twice`.
+        tries = word.type == "MORE" and any(before.type == "RETRY" for before in found)
+        if last is not None and last.type == "AT_MOST" and (word.type in _LIMITS or tries):
+            type_ = _LIMITS.get(word.type, "MOST_TIMES")
+            found[-1] = Word(type_, word.value, last.start, word.end)
         else:
             found.append(word)
-        i += 1
+    for i in range(len(found) - 1, 0, -1):
+        last, word = found[i - 1 : i + 1]
+        if word.type == "AT_MOST" and last.type in _LIMITS:
+            found[i - 1 : i + 1] = [Word(_LIMITS[last.type], last.value, last.start, word.end)]
     return found
-
-
-def _tries(found: list[Word], after: Word) -> bool:
-    """`Try again up to two more times` is as often as `up to twice`."""
-    return after.type == "MORE" and any(word.type == "RETRY" for word in found)

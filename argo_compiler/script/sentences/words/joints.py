@@ -6,15 +6,13 @@ condition or with another order is known there only because the joint's type say
 
 from dataclasses import replace
 
-from argo_compiler.script.sentences.words.word import VERBS, Word
+from argo_compiler.script.sentences.words.word import COMPARISONS, VERBS, Word
 
 _NOUNS = [
     *("KIND", "HASH", "IDENT", "STRING", "ALL", "IT", "THEM", "BOTH", "THIS", "OF", "VALUE"),
     "EVERYTHING",
 ]
-_TESTS = [
-    *("IS", "GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "EXACTLY", "STATE", "NOT", "FAILS")
-]
+_TESTS = [*COMPARISONS, "IS", "EXACTLY", "STATE", "NOT", "FAILS"]
 _PLACES = ["FLOOR", "FLOOR_NAME", "ORDINAL", "AREA", "PLACE"]
 _IN_BRACKETS = frozenset(
     [*("KIND", "HASH", "NUMBER", "IDENT", "STRING", "MINUS", "AREA", "IN", "AT", "ON", "TO")]

@@ -13,7 +13,7 @@ from argo_compiler.script.sentences.words.joints import joined
 from argo_compiler.script.sentences.words.lexicon import Lexicon, folded
 from argo_compiler.script.sentences.words.merging import merged, negated
 from argo_compiler.script.sentences.words.numbers import Figure, compose, read_figure, split_number
-from argo_compiler.script.sentences.words.unknown import UnknownError, UnknownFigure, unknown_text
+from argo_compiler.script.sentences.words.unknown import UnknownError, UnknownFigure
 from argo_compiler.script.sentences.words.without_effect import with_effect, without_empty
 from argo_compiler.script.sentences.words.word import VERBS, Word
 from argo_compiler.script.sentences.words.word_order import arranged
@@ -51,19 +51,6 @@ def words(text: str, lexicon: Lexicon) -> list[Word]:
     return words_of(text, lexicon)
 
 
-def _with_unknown(word: Word, text: str, left: dict[int, UnknownFigure]) -> Word:
-    """The word with an unknown figure, or a name with some in it, if they are left."""
-    value: object = None
-    if word.type == "NUMBER":
-        value = left.pop(word.start, None)
-    elif word.type == "STRING":
-        within = [at for at in left if word.start < at < word.end]
-        plain = unquoted(text[word.start : word.end]) == text[word.start + 1 : word.end - 1]
-        if within and plain:
-            value = unknown_text(word.value, [(at - word.start - 1, left.pop(at)) for at in within])
-    return word if value is None else Word(word.type, value, word.start, word.end)
-
-
 def _unknown(words: list[Word]) -> int:
     return sum(word.type == "WORD" for word in words)
 
@@ -84,10 +71,9 @@ def words_of(
 def _in(text: str, lexicon: Lexicon, unknown: Mapping[int, UnknownFigure]) -> list[Word]:
     found = with_effect(_looked_up(text, lexicon, _PLACED))
     if unknown:
-        left = dict(unknown)
-        found = [_with_unknown(word, text, left) for word in found]
-        if left:
+        if not unknown.keys() <= {word.start for word in found if word.type == "NUMBER"}:
             raise UnknownError
+        found = [replace(word, value=unknown.get(word.start, word.value)) for word in found]
     found = merged(found)
     return joined(_goals(negated(found if lexicon.verbs_first else arranged(found))))
 
@@ -135,21 +121,14 @@ def _looked_up(text: str, lexicon: Lexicon, left_out: frozenset[str]) -> list[Wo
             i += 1
             continue
         phrase = lexicon.longest(said, i)
-        if phrase is None and pieces[i].lastgroup == "STRING":
-            inner = [] if _is_name(found) else _unwrapped(pieces[i], text, lexicon)
-            if inner and not (i + 1 < len(pieces) and pieces[i + 1].group() == ":"):
-                found += inner
-                i += 1
-                continue
-        if phrase is None and pieces[i].lastgroup == "IDENT":
-            numbered = _numbered(pieces[i], lexicon)
-            if numbered:
-                found += numbered
-                i += 1
-                continue
         if phrase is None:
             after = pieces[i + 1] if i + 1 < len(pieces) else None
-            found.append(_plain(pieces[i], after, found, text, lexicon))
+            inner: list[Word] = []
+            if pieces[i].lastgroup == "IDENT":
+                inner = _numbered(pieces[i], lexicon)
+            elif pieces[i].lastgroup == "STRING" and (after is None or after.group() != ":"):
+                inner = [] if _is_name(found) else _unwrapped(pieces[i], text, lexicon)
+            found += inner or [_plain(pieces[i], after, found, text, lexicon)]
             i += 1
             continue
         type_, value = phrase.entry

@@ -5,16 +5,15 @@ from dataclasses import replace
 
 from argo_compiler.script.sentences.words.amounts import Length, counted, hours_and, limited, total
 from argo_compiler.script.sentences.words.numbers import Figure, compose
-from argo_compiler.script.sentences.words.word import VERBS, Word
+from argo_compiler.script.sentences.words.word import COMPARISONS, OPENINGS, VERBS, Word
 
 _BEYOND = {"OR_MORE": "GREATER", "OR_LESS": "LESS"}
-_RELATIONS = frozenset(["GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "EXACTLY"])
+_RELATIONS = COMPARISONS | {"EXACTLY"}
 _ASKED_OF = frozenset(
     ["EVENT", "BATTERY", "KIND", "HASH", "OF", "IT", "VALUE", "THIS", "THEM", "TOO_LATE"]
 )
 """what begins the subject of a condition"""
 _VALUES = _RELATIONS | {"QUANTITY"}
-_ASKING = frozenset(["IF", "IF_ONLY", "UNLESS", "UNTIL"])
 _SAID = _RELATIONS | {"IS", "NOT", "STATE", "FAILS"}
 """what begins that which a condition says of its subject"""
 _EARLY = frozenset(["MEASURE", "GO", "PATROL"])
@@ -30,21 +29,14 @@ _LABELS = frozenset(["NUMBER", "NUMBER_WORD", "IDENT", "STRING"])
 _LISTING = frozenset(["JOINT", "TO", "UNTIL", "DASH", "UPTO"])
 _ADDING = frozenset(["and", ","])
 """joints between the parts of a length of time: `an hour and a half`"""
-_PREDICATES = frozenset(
-    ["GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "STATE", "FAILS", "OLDER", "OUTSIDE"]
-)
-_CASES = frozenset(["IF", "IF_ONLY", "UNLESS", "ELSE"])
-_ENDS = frozenset(["IF", "IF_ONLY", "UNLESS", "UNTIL", "ELSE"])
+_PREDICATES = COMPARISONS | {"STATE", "FAILS", "OLDER", "OUTSIDE"}
+_ENDS = OPENINGS | {"ELSE"}
+_CASES = _ENDS - {"UNTIL"}
 
 
 def merged(words: list[Word]) -> list[Word]:
     """The words, those that belong together in one; words of two senses told apart."""
-    if any(word.type in ("SHOULD", "IS") for word in words):
-        words = _inverted(words)
-    if any(word.type == "NUMBER_WORD" for word in words):
-        words = _numbers(words)
-    if any(word.type in _BEYOND for word in words):
-        words = _joined_bounds(words)
+    words = _joined_bounds(_numbers(_inverted(words)))
     found: list[Word] = []
     i = 0
     while i < len(words):
@@ -55,28 +47,19 @@ def merged(words: list[Word]) -> list[Word]:
         if pair is not None:
             word = pair
             i += 1
-        elif word.type == "AFTER" and _comes_next(words, i):
+        elif _is_implied(words, i):
             i += 1
-            continue  # `first checkpoint 3 and after checkpoint 4`
-        elif word.type == "ORDINAL" and _tells_order(words, i):
-            i += 1
-            continue  # `checkpoint 13 first, then ...`
-        elif word.type == "BOTH" and _names_two(words[i + 1 : i + 8]):
-            i += 1
-            continue  # `both #1 and #4`
-        elif word.type == "EITHER" and _are_joined_by_or(words[i + 1 : i + 12]):
-            i += 1
-            continue  # `either #1 or #4`
+            continue
         elif word.type == "KIND" and word.value[1] is None:
             kind, _, definite = word.value
             word = replace(word, value=(kind, _is_list(words, i + 1), definite))
-        elif word.type in _UPTO and after is not None and _is_range_of_floors(found, after):
-            word = replace(word, type="UPTO")
+        elif word.type in _UPTO and after is not None and after.type == "NUMBER":
+            if [w.type for w in found[-2:]] == ["FLOOR", "NUMBER"]:  # `floors 1 to 4`
+                word = replace(word, type="UPTO")
         elif word.type == "A_UNIT":
             per = bool(found) and found[-1].type in ("TIMES", "TIME_WORD")  # `twice an hour`
-            word = Word(
-                "STRAY" if per else "DURATION", Length(word.value, word.value), word.start, word.end
-            )
+            length = Length(word.value, word.value)
+            word = replace(word, type="STRAY" if per else "DURATION", value=length)
         i += 1
         _add(word, after, found)
     return _last_if(limited(_of_values(found)))
@@ -89,22 +72,12 @@ def _is_list(words: list[Word], i: int) -> bool:
     return types[1:2] != [] and types[1] in _LISTING and types[2:3] in (["NUMBER"], ["IDENT"])
 
 
-def _is_range_of_floors(found: list[Word], after: Word) -> bool:
-    """`floors 1 to 4`; in `go to floor 1 to valve R12` and `from floor 1 to floor 4` `to` leads
-    on."""
-    return after.type == "NUMBER" and [w.type for w in found[-2:]] == ["FLOOR", "NUMBER"]
-
-
 def _of_values(words: list[Word]) -> list[Word]:
     """`Above 60 psi, check ...` is a condition; `the valve stands at more than 3 degrees` says what
     it shows."""
-    types = [word.type for word in words]
+    types = [word.type for word in words[:3]]
     first = types[:1] == ["AT"]
-    if (
-        types[first : first + 1]
-        and types[first] in _RELATIONS
-        and "QUANTITY" in types[first + 1 : 3]
-    ):
+    if "QUANTITY" in types[first + 1 :] and types[first] in _RELATIONS:
         opening = Word("IF", None, words[first].start, words[first].start)
         words = [opening, *words[first:]]
     for i in range(len(words) - 3, -1, -1):
@@ -145,6 +118,21 @@ def _last_if(words: list[Word]) -> list[Word]:
     return [*words[:at], replace(words[at], type="IF_ONLY"), *words[at + 1 :]]
 
 
+def _is_implied(words: list[Word], i: int) -> bool:
+    """Whether a word says only what its neighbours say as well."""
+    match words[i].type:
+        case "AFTER":  # `first checkpoint 3 and after checkpoint 4`
+            return _comes_next(words, i)
+        case "ORDINAL":  # `checkpoint 13 first, then ...`
+            return _tells_order(words, i)
+        case "BOTH":  # `both #1 and #4`
+            return _names_two(words[i + 1 : i + 8])
+        case "EITHER":  # `either #1 or #4`
+            joints = [str(w.value) for w in words[i + 1 : i + 12] if w.type == "JOINT"]
+            return "or" in next((said for said in joints if "or" in said or "and" in said), "")
+    return False
+
+
 def _tells_order(words: list[Word], i: int) -> bool:
     """Whether an ordinal says only what comes when, and not which floor or gauge is meant:
     `first check ...`, `checkpoint 13 first, then ...`."""
@@ -161,16 +149,14 @@ def _tells_order(words: list[Word], i: int) -> bool:
 
 def _begins_name(words: list[Word]) -> bool:
     """Whether a checkpoint is named that needs no counting: `first valve R7`."""
-    types = [word.type for word in words[:2]]
-    return types[:1] == ["HASH"] or (
-        types[:1] == ["KIND"] and types[1:] in (["NUMBER"], ["NUMBER_WORD"], ["IDENT"], ["HASH"])
-    )
+    first, second = ([word.type for word in words[:2]] + ["", ""])[:2]
+    return first == "HASH" or (first == "KIND" and second in _LABELS - {"STRING"} | {"HASH"})
 
 
 def _comes_next(words: list[Word], i: int) -> bool:
     """Whether `after` says only what comes next: `first valve R7 and after valve R9`."""
     first = any(word.type == "ORDINAL" and word.value == 1 for word in words[:i])
-    joined = i > 0 and (words[i - 1].type, words[i - 1].value) == ("JOINT", "and")
+    joined = i > 0 and words[i - 1].is_and
     verbs = any(word.type in VERBS for word in words[i:])
     return first and joined and not verbs and _begins_name(words[i + 1 :])
 
@@ -178,13 +164,11 @@ def _comes_next(words: list[Word], i: int) -> bool:
 def _names_two(words: list[Word]) -> bool:
     """`checkpoint 1 and checkpoint 4`"""
     named = [word for word in words if word.type not in ("KIND", "HASH")][:3]
-    joined = len(named) == 3 and (named[1].type, named[1].value) == ("JOINT", "and")
-    return joined and {named[0].type, named[2].type} <= {"NUMBER", "IDENT", "STRING"}
-
-
-def _are_joined_by_or(words: list[Word]) -> bool:
-    joints = (str(word.value) for word in words if word.type == "JOINT")
-    return "or" in next((said for said in joints if "or" in said or "and" in said), "")
+    return (
+        len(named) == 3
+        and named[1].is_and
+        and {named[0].type, named[2].type} <= {"NUMBER", "IDENT", "STRING"}
+    )
 
 
 def _numbers(words: list[Word]) -> list[Word]:
@@ -207,7 +191,7 @@ def _numbers(words: list[Word]) -> list[Word]:
 def _one_of_them(number: Word, found: list[Word], after: list[Word]) -> Word:
     """`If one is abnormal` asks about one of them, and not about checkpoint 1."""
     last = found[-1].type if found else ""
-    asked = last in _ASKING or (last == "IS" and _begins(found))  # `Ist eins auffällig, ...`
+    asked = last in OPENINGS or (last == "IS" and _begins(found))  # `Ist eins auffällig, ...`
     one = asked and after and after[0].type in _SAID and number.value.value == 1
     return replace(number, type="THEM", value="either") if one else number
 

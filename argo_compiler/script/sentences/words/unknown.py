@@ -83,8 +83,6 @@ class UnknownFigure(Figure):
 
     said: str = ""
     """one of the figures that it may be"""
-    place: int = 0
-    """among the figures of its text"""
 
     @property
     def whole(self) -> Any:
@@ -95,47 +93,6 @@ class UnknownFigure(Figure):
         return Unknown(value.low, value.high, lambda figures: int(fill(figures)))
 
 
-class UnknownText:
-    """A name with figures in it that are not known, and more than these. It can be handed on."""
-
-    __slots__ = ("fill",)
-    __class__ = Unknown.__class__
-
-    def __init__(self, fill: Fill) -> None:
-        self.fill = fill
-
-    def __bool__(self) -> bool:
-        return True
-
-    def __eq__(self, other: object) -> bool:
-        if other is None or other == "":
-            return False
-        raise UnknownError
-
-    __hash__: Any = _refuse
-    __str__ = __repr__ = __format__ = __getattr__ = __len__ = __contains__ = __iter__ = _refuse
-    __getitem__ = __lt__ = __le__ = __gt__ = __ge__ = __add__ = __radd__ = _refuse
-
-
-def unknown_text(said: str, figures: Sequence[tuple[int, UnknownFigure]]) -> UnknownText:
-    """A text with other figures at these places."""
-    parts: list[str] = []
-    start = 0
-    for at, figure in figures:
-        parts.append(said[start:at])
-        start = at + len(figure.said)
-    parts.append(said[start:])
-    places = [figure.place for _, figure in figures]
-
-    def fill(figures: Sequence[str]) -> str:
-        found = [parts[0]]
-        for place, part in zip(places, parts[1:], strict=True):
-            found += (figures[place], part)
-        return "".join(found)
-
-    return UnknownText(fill)
-
-
 def unknown_figure(said: str, place: int) -> UnknownFigure:
     """Any figure with as many digits before its point, if it has one, as `said` has."""
     digits = len(said.partition(".")[0])
@@ -143,4 +100,4 @@ def unknown_figure(said: str, place: int) -> UnknownFigure:
     if said[0] == "0":
         low, high = 0.001, 1.0
     value: Any = Unknown(low, high, lambda figures: float(figures[place]))
-    return UnknownFigure(value, said=said, place=place)
+    return UnknownFigure(value, said=said)

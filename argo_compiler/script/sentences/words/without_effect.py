@@ -10,7 +10,7 @@ from dataclasses import replace
 from enum import Flag, auto
 from itertools import takewhile
 
-from argo_compiler.script.sentences.words.word import VERBS, Word
+from argo_compiler.script.sentences.words.word import COMPARISONS, OPENINGS, VERBS, Word
 
 
 class WordPlace(Flag):
@@ -76,19 +76,13 @@ them as well"""
 TOLD = frozenset(["FOCUS", "CARE", "DAY"])
 """words that a reader may mean something by, of which a warning tells that they have no effect"""
 
-_OPENING = frozenset(["IF", "IF_ONLY", "UNLESS", "UNTIL"])
-_BEGIN = _OPENING | {
+_BEGIN = OPENINGS | {
     *("", "JOINT", "SIGN", "DASH", "LPAR", "ELSE", "IN_ALL_OTHERS", "IN_ANY_CASE", "LAST_ROUND"),
     *("IT", "HE", "THEY", "BEFORE", "AFTER", "IF_TIME", "NOT", "SHOULD"),
 }
-_END = _OPENING | {"", "JOINT", "SIGN", "RPAR", "DASH", "ELSE"}
-_RELATIONS = frozenset(
-    [
-        *("GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "EXACTLY", "OLDER", "OUTSIDE"),
-        "MORE_WORD",
-    ]
-)
-_NO_NAME = frozenset(["", "JOINT", "SIGN", "STATE", "NOT", "TIMES", "IS"]) | _RELATIONS | _OPENING
+_END = OPENINGS | {"", "JOINT", "SIGN", "RPAR", "DASH", "ELSE"}
+_RELATIONS = COMPARISONS | {"EXACTLY", "OLDER", "OUTSIDE", "MORE_WORD"}
+_NO_NAME = frozenset(["", "JOINT", "SIGN", "STATE", "NOT", "TIMES", "IS"]) | _RELATIONS | OPENINGS
 _VERBAL = frozenset(
     [*VERBS, "BE_MEASURED", "IS", "BACK", "LEAVE_OUT", "KEEP_ORDER", "MAX_DURATION", "BACK_IN"]
 )
@@ -96,14 +90,12 @@ _LABELS = frozenset(["NUMBER", "NUMBER_WORD", "IDENT", "STRING", "HASH"])
 _NOUNS = _LABELS | {"KIND", "EVERYTHING", "FLOOR", "FLOOR_NAME", "AREA", "DOCK", "PLACE", "RPAR"}
 _COUNTS = frozenset(["NUMBER", "NUMBER_WORD", "ALL", "BOTH", "EITHER", "NEITHER", "THEM", "EVERY"])
 _TIMES = frozenset(["DURATION", "A_UNIT", "UNIT_S", "TIMES"])
-_LIMITS = _OPENING | _RELATIONS | {"TIMES", "MOST_TIMES", "MOST_TIME", "FOR", "BY"}
+_LIMITS = OPENINGS | _RELATIONS | {"TIMES", "MOST_TIMES", "MOST_TIME", "FOR", "BY"}
 
 
 def with_effect(words: list[Word]) -> list[Word]:
     """Return the words without those that have no effect where they stand; such a word in another
     place becomes one that no grammar takes."""
-    if all(word.type not in WITHOUT_EFFECT for word in words):
-        return words
     found: list[Word] = []
     for i, word in enumerate(words):
         if word.type not in WITHOUT_EFFECT:
@@ -178,5 +170,5 @@ def parts_list(words: Sequence[Word], i: int, before: Sequence[Word]) -> bool:
 
 def _in_condition(before: Sequence[Word]) -> bool:
     """Return True if a condition begins in these words and no order behind it."""
-    last = next((w.type for w in reversed(before) if w.type in _OPENING or w.type in VERBS), "")
-    return last in _OPENING
+    last = next((w.type for w in reversed(before) if w.type in OPENINGS or w.type in VERBS), "")
+    return last in OPENINGS

@@ -10,6 +10,10 @@ VERBS = (
     *("PARK", "SPARE", "FROM"),
 )
 """terminals of the words that orders begin with"""
+OPENINGS = frozenset(["IF", "IF_ONLY", "UNLESS", "UNTIL"])
+"""terminals of the words that conditions begin with"""
+COMPARISONS = frozenset(["GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN"])
+"""terminals of the words before a value in a condition"""
 
 
 @dataclass(slots=True)
@@ -26,3 +30,7 @@ class Word:
     """indices in the text, of the first character and behind the last"""
     before: str = ""
     """the joining signs and words that stood before it: `, and`"""
+
+    @property
+    def is_and(self) -> bool:
+        return self.type == "JOINT" and self.value == "and"

@@ -8,15 +8,12 @@ are, and the grammar does not take them.
 from dataclasses import replace
 from itertools import takewhile
 
-from argo_compiler.script.sentences.words.word import VERBS, Word
+from argo_compiler.script.sentences.words.word import COMPARISONS, OPENINGS, VERBS, Word
 
 _MOVED = frozenset(VERBS) - {"DOCK", "DONE", "MEET", "FROM"} | {"BACK"}
-_RELATIONS = frozenset(
-    ["GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "FROM", "OLDER", "OUTSIDE"]
-)
+_RELATIONS = COMPARISONS | {"FROM", "OLDER", "OUTSIDE"}
 _AMOUNTS = frozenset(["NUMBER", "QUANTITY", "DURATION"])
 _ASKED = frozenset(["STATE", "OCCURS", "FAILS", "EVENT", "IS"])
-_OPENING = frozenset(["IF", "IF_ONLY", "UNLESS", "UNTIL"])
 _PREDICATES = _RELATIONS | {"NOT", "STATE", "FAILS", "NUMBER", "QUANTITY", "MINUS"}
 _NAMED = frozenset(["KIND", "HASH", "IDENT", "STRING", "ALL", "NUMBER", "THIS", "EVERY"])
 _LABELS = frozenset(["NUMBER", "IDENT", "HASH"])
@@ -34,8 +31,6 @@ def arranged(words: list[Word]) -> list[Word]:
 
 def _counted_from_ground(words: list[Word]) -> list[Word]:
     """The words, `1. Obergeschoss` as the second floor; floors are counted from the bottom."""
-    if all(word.type != "UPPER_FLOOR" for word in words):
-        return words
     found: list[Word] = []
     for word in words:
         if word.type == "UPPER_FLOOR":
@@ -99,7 +94,7 @@ def _told(words: list[Word], i: int) -> list[Word]:
             return [Word("ORDINAL", word.value.whole, word.start, word.end)]
         case "SIGN" if last == "NUMBER" and _is_ordinal(words, i - 1):
             return []
-        case "HE" if last in _OPENING or after in ("NOT", *_RELATIONS, "STATE", "FAILS"):
+        case "HE" if last in OPENINGS or after in ("NOT", *_RELATIONS, "STATE", "FAILS"):
             return [replace(word, type="IT")]
         case "HE":
             return []
@@ -171,7 +166,7 @@ def _is_needed(words: list[Word], i: int) -> bool:
     """Whether `ist` stands before what it says; at the end of a condition it says nothing."""
     if _then(words, i + 1) in _PREDICATES or i == 0:
         return True
-    asks = any(word.type in _OPENING for word in words[:i])
+    asks = any(word.type in OPENINGS for word in words[:i])
     return not asks or words[i - 1].type not in _ASKED | _AMOUNTS
 
 
@@ -235,7 +230,7 @@ def _asked(found: list[Word], start: int) -> int | None:
     last: int | None = None
     for i in range(start, len(found)):
         type_ = found[i].type
-        if type_ in (*_OPENING, "FOR"):
+        if type_ in (*OPENINGS, "FOR"):
             opening = type_
         if not opening or opening == "FOR":
             continue
@@ -253,7 +248,7 @@ def _has_goal(words: list[Word], i: int, before: list[Word]) -> bool:
     if any(word.type in _SPOTS for word in before):
         return True
     for word in words[i + 1 :]:
-        if word.type in _MOVED or word.type in ("JOINT", *_OPENING):
+        if word.type in _MOVED or word.type in ("JOINT", *OPENINGS):
             return False
         if word.type in _SPOTS:
             return True

@@ -20,7 +20,7 @@ from argo_compiler.script.sentences.tree.script import ScriptStep
 from argo_compiler.script.sentences.words.lexer import all_words, placed_words
 from argo_compiler.script.sentences.words.lexicon import Lexicon
 from argo_compiler.script.sentences.words.loading import everywhere, pattern
-from argo_compiler.script.sentences.words.prose import either
+from argo_compiler.script.sentences.words.prose import Beginnings, either
 from argo_compiler.script.sentences.words.without_effect import (
     TOLD,
     WITHOUT_EFFECT,
@@ -117,8 +117,7 @@ def ask_of_words(
 ) -> None:
     """Asks about the words of a sentence that may change what is meant. `ordered`: something is
     to be done before it; `days`: the days of which sentences were so far, each with its line."""
-    doubtful = pattern(_DOUBTFUL).search(text.content) or _small(lexicon).search(text.content)
-    if doubtful is None:
+    if not pattern(_DOUBTFUL).search(text.content) and not _small(lexicon).search(text.content):
         return
     words = all_words(text.content, lexicon)
     doubts = dict(_doubts(words, text.content.lower(), ordered))
@@ -305,10 +304,10 @@ def _names_twice(order: ScriptOrder) -> bool:
 
 
 @cache
-def _small(lexicon: Lexicon) -> re.Pattern[str]:
+def _small(lexicon: Lexicon) -> Beginnings:
     """What words without effect look like that are asked about or told."""
     phrases = [phrase for type_ in _SMALL for phrase in lexicon.phrases.get((type_, None), ())]
-    return re.compile(rf"(?<![\w-])(?:{either('|'.join(phrases))})(?![\w-])", re.IGNORECASE)
+    return Beginnings("|".join(phrases))
 
 
 @cache

@@ -158,7 +158,7 @@ class Prose:
 
 def either(text: str) -> str:
     """A pattern of one of the phrases, the longest that fits."""
-    longest_first = sorted(set(expand(text)), key=len, reverse=True)
+    longest_first = sorted(sorted(set(expand(text))), key=len, reverse=True)
     return "|".join(re.escape(phrase).replace(r"\ ", r"\s+") for phrase in longest_first)
 
 

@@ -143,6 +143,25 @@ def prepare_import() -> Work:
     return lambda: import_script(script, catalog)
 
 
+def prepare_canonical_import() -> Work:
+    """Return a function that imports a script of 10,000 tasks in canonical sentences.
+
+    The script is always made by the code of this checkout, in a process of its own.
+    """
+    from compile import make_catalog, make_script  # beside this file
+
+    from argo_compiler.script import import_script
+
+    command = (sys.executable, ROOT / "benchmarks" / "compile.py", "--canonical", "10000")
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    script = subprocess.run(
+        command, env=environment, stdout=subprocess.PIPE, check=True, encoding="utf-8"
+    ).stdout
+    catalog = make_catalog()
+    import_script(make_script(200, catalog), catalog)
+    return lambda: import_script(script, catalog)
+
+
 def prepare_report() -> Work:
     """Return a function that writes a report of mission #1; one was written on the site before."""
     from argo_env.planning import open_site
@@ -185,6 +204,7 @@ CASES: dict[str, tuple[Callable[[], Work], int]] = {
     "inspect": (partial(prepare_next_episode, range(1_000_000)), 3),
     "inspect-known": (partial(prepare_next_episode, range(3), warmed_up=True), 3),
     "import": (prepare_import, 1),
+    "import-canonical": (prepare_canonical_import, 1),
     "report": (prepare_report, 1),
     "film": (prepare_film, 1),
 }

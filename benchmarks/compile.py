@@ -2,6 +2,7 @@
 
     python benchmarks/compile.py
     python benchmarks/compile.py --sizes 1000 10000 --repeats 5
+    python benchmarks/compile.py --canonical 10000    # only print a script, in canonical sentences
 
 The script for a number of tasks is always the same. Of its steps
 
@@ -151,6 +152,15 @@ def make_script(tasks: int, catalog: Catalog) -> str:
     return "\n".join(lines + groups) + "\n"
 
 
+def make_canonical_script(tasks: int, catalog: Catalog) -> str:
+    """Return the script of `make_script` in canonical sentences, as `format_script` writes it."""
+    from argo_compiler.script import format_script, import_script
+
+    return format_script(
+        import_script(make_script(tasks, catalog), catalog).require_mission(), catalog
+    )
+
+
 def _parse_arguments(catalog: Catalog) -> tuple[list[str], str, list[str]]:
     """Return the names of poses, of the script, and of checkpoints, as `parse` takes them."""
     places = [place.name for place in catalog.places]
@@ -212,7 +222,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
         default=1_000,
         help="states in python-statemachine, which takes minutes for more",
     )
+    parser.add_argument(
+        "--canonical", type=int, metavar="TASKS", help="print a script with so many tasks instead"
+    )
     options = parser.parse_args(arguments)
+    if options.canonical:
+        print(make_canonical_script(options.canonical, make_catalog()), end="")
+        return
     from argo_compiler.script.parsing.repeats import repeats
 
     catalog = make_catalog()

@@ -118,8 +118,9 @@ def compare_command_with_numpy(name: str, repeats: int) -> float:
 
 
 def prepare_import() -> Work:
-    """Return a function that imports a script of a thousand tasks, with an empty cache of lines."""
+    """Return a function that imports a script of a thousand tasks, with empty caches."""
     from argo_compiler.script import import_script
+    from argo_compiler.script.drafts.making import read_cached
     from argo_compiler.script.parsing.repeats import repeats
     from benchmarks.compile import make_catalog, make_script
 
@@ -128,6 +129,7 @@ def prepare_import() -> Work:
 
     def work() -> None:
         repeats.cache_clear()
+        read_cached.cache_clear()
         import_script(text, catalog)
 
     return work

@@ -21,6 +21,31 @@ from typing import NamedTuple
 ROOT = Path(__file__).parents[1]
 SCRIPT = ROOT / "scenarios" / "umad" / "missions" / "mission_1.txt"
 AREAS = ("--start-area", "1", "--end-area", "2")
+CANONICAL = """\
+Mission Protocol #1
+Maximum duration: 30 minutes
+
+1. Set the starting point in starting area 1.
+2. Check checkpoint #4.
+3. Check checkpoint #8. If checkpoint #8 is above 5, go to step 5.
+4. Wait 2 minutes.
+5. Go to starting area 2.
+"""
+"""script in the sentences that `format_script` writes"""
+MAIL = """\
+Hi Sam,
+
+hope you had a good weekend. Could the robot do a quick round tonight?
+Start in starting area 1 please.
+I'd like to have pressure gauge 3, then valve R12 photographed.
+If the pressure is too high, have a look at valve R25.
+Not sure about checkpoint 15, ask Jonas.
+
+Thanks, Bo
+"""
+"""script with lines that are left to decide on"""
+INCOMPLETE = 3
+"""exit status of a command whose script is such a draft"""
 
 
 class StartupRatios(NamedTuple):
@@ -59,8 +84,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
 def commands_and_max_ratios(folder: Path) -> dict[str, tuple[Sequence[str], float | None]]:
     """Return the commands by name, each with its largest allowed ratio, or None if it has none.
 
-    First writes the mission that one of them checks to the folder.
+    First writes the scripts, and the mission that one of them checks, to the folder.
     """
+    canonical, mail = folder / "canonical.txt", folder / "mail.txt"
+    canonical.write_text(CANONICAL, encoding="utf-8")
+    mail.write_text(MAIL, encoding="utf-8")
     argo = (sys.executable, "-m", "argo_planner")
     mission = str(folder / "mission.json")
     importing = (*argo, "import", str(SCRIPT), *AREAS, "-o", mission, "--force")
@@ -69,9 +97,12 @@ def commands_and_max_ratios(folder: Path) -> dict[str, tuple[Sequence[str], floa
         "argo --help": ((*argo, "--help"), 1.5),
         "import argo_compiler": ((sys.executable, "-c", "import argo_compiler"), None),
         "import argo_env": ((sys.executable, "-c", "import argo_env"), None),
-        "argo check, a script": ((*argo, "check", str(SCRIPT), *AREAS), 5.0),
+        "argo check, a script": ((*argo, "check", str(SCRIPT), *AREAS), 4.0),
+        "argo check, canonical": ((*argo, "check", str(canonical)), 4.0),
+        "argo check, a mail": ((*argo, "check", str(mail)), 4.0),
         "argo check, a mission": ((*argo, "check", mission), 3.0),
-        "argo import": (importing, None),
+        "argo import": (importing, 4.0),
+        "argo import, a mail": ((*argo, "import", str(mail), "-o", f"{mail}.json"), 4.0),
         "argo run --help": ((*argo, "run", "--help"), None),
     }
 
@@ -96,9 +127,11 @@ def measure_ratios_to_numpy(
 def time_command(command: Sequence[str]) -> float:
     """Run a command in a process, and return the wall-clock time (s) that it took."""
     started = time.perf_counter()
-    subprocess.run(
-        command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=True
+    done = subprocess.run(
+        command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False
     )
+    if done.returncode not in (0, INCOMPLETE):
+        done.check_returncode()
     return time.perf_counter() - started
 
 

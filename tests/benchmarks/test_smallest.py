@@ -35,6 +35,8 @@ COMMANDS = {
     "routes_sites --missions 2 --large 0 --peer 0 --sites umad": r"2 of 2 proven",
     "startup --repeats 1 --only mission": r"argo check, a mission +[\d.]+ +[\d.]+ +[\d.]+ s",
     "tracked --laps slab --repeats 1": r"slab +[\d.]+ s in ",
+    "noise mail --size 500": r"mail +[\d.]+ s +[\d.]+ x +\d+ MiB +\d+ of \d+ lines left",
+    "compile --canonical 20": r"^Mission Protocol #1\n(.|\n)*\n2\. Check checkpoint ",
     "against . import --repeats 1": r"import +[\d.]+ +[\d.]+ +[\d.]+ ",
     f"drives --missions 1 --seed 12 --site {SMALL} --workers 1": r"tracked +0.00 % ",
     "env resets --count 2": r"Inspect-v0 +2 resets: ",

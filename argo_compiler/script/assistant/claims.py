@@ -51,8 +51,6 @@ def suggested_proposals(
     `texts` are the texts of the pieces. A sentence whose words its piece does not have has no
     effect.
     """
-    if not suggestions:
-        return {}
     places = [place.name for place in catalog.places]
     language = Language.of(script.source_text, places)
     claims = _Claims(language, catalog)

@@ -3,7 +3,8 @@
 from bisect import bisect_right
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol, TypeVar
+from functools import lru_cache
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.garbage_collector import collector_held
@@ -16,7 +17,6 @@ from argo_compiler.diagnostics import (
     with_excerpts,
 )
 from argo_compiler.il import Mission
-from argo_compiler.script.assistant.claims import suggested_proposals
 from argo_compiler.script.assistant.suggestion import LineSuggestion
 from argo_compiler.script.documents.document import Document
 from argo_compiler.script.documents.source import shortened
@@ -30,9 +30,10 @@ from argo_compiler.script.drafts.draft import (
 )
 from argo_compiler.script.parsing.parser import parse
 from argo_compiler.script.parsing.script import Piece, Script
-from argo_compiler.script.proposals.composing import Proposal
-from argo_compiler.script.proposals.proposing import propose
 from argo_compiler.script.resolve.importing import resolve_script
+
+if TYPE_CHECKING:
+    from argo_compiler.script.proposals.composing import Proposal
 
 _OF_OPTIONS = frozenset(["script.area-choice", "script.area-conflict", "script.area-not-offered"])
 """codes of errors that another option resolves, and no change of the line"""
@@ -45,6 +46,9 @@ _UNREAD = frozenset(
 """codes of errors of a piece that the grammar does not take; others are questions"""
 BY_ASSISTANT = "suggested by an assistant"
 """reason of a line that an assistant has suggested sentences for"""
+
+_LONGEST_CACHED = 100_000
+"""characters of a script whose last readings are cached"""
 
 
 @dataclass(frozen=True)
@@ -86,7 +90,10 @@ def import_script(
     given = tuple(decisions)
 
     def read(decided: Mapping[int, Sequence[str]]) -> _Reading:
-        return _read(text, catalog, source_name, areas, decided)
+        if isinstance(text, Document) or len(text) > _LONGEST_CACHED:
+            return _read(text, catalog, source_name, areas, decided)
+        sentences = tuple((at, tuple(said)) for at, said in sorted(decided.items()))
+        return read_cached(text, catalog, source_name, areas, sentences)
 
     reading = read({})
     acts = _match(given, reading.script.pieces)
@@ -96,7 +103,11 @@ def import_script(
     errors = _errors_by_piece(reading)
     unread = {at for at, error in errors.items() if error.code in _UNREAD and at not in said}
     unclear = {at for at in errors if at not in said}
-    proposals = propose(reading.script, unread, unclear - unread, catalog, start_area)
+    proposals: dict[int, Proposal] = {}
+    if unread or unclear:  # not of a script that is understood whole, which is to start fast
+        from argo_compiler.script.proposals.proposing import propose
+
+        proposals = propose(reading.script, unread, unclear - unread, catalog, start_area)
     proposed = {at: p.sentences for at, p in proposals.items() if not p.is_open}
     suggested = _match(tuple(suggestions), reading.script.pieces)
     assisted = _assisted(reading.script, unread - proposed.keys(), suggested, catalog)
@@ -137,8 +148,12 @@ def _assisted(
     open_pieces: Collection[int],
     suggested: Mapping[int, LineSuggestion],
     catalog: Catalog,
-) -> dict[int, Proposal]:
+) -> "dict[int, Proposal]":
     """Return what an assistant's suggestions propose for pieces that nothing is proposed for."""
+    if not suggested:
+        return {}
+    from argo_compiler.script.assistant.claims import suggested_proposals
+
     texts = {piece.text.first: text_of(piece) for piece in script.pieces}
     sentences = {at: one.sentences for at, one in suggested.items() if at in open_pieces}
     found = suggested_proposals(script, sentences, texts, catalog)
@@ -161,6 +176,18 @@ def _read(
     except DiagnosticError as error:
         return _Reading(script, None, error.diagnostics)
     return _Reading(script, resolved.mission, resolved.diagnostics)
+
+
+@lru_cache(maxsize=4)
+def read_cached(
+    text: str,
+    catalog: Catalog,
+    source_name: str,
+    areas: tuple[int | None, int | None],
+    decided: tuple[tuple[int, tuple[str, ...]], ...],
+) -> _Reading:
+    """Return the reading of a script, which is the same once its proposals are confirmed."""
+    return _read(text, catalog, source_name, areas, dict(decided))
 
 
 class _OfLine(Protocol):
@@ -206,9 +233,9 @@ class _Known:
 
     errors: Mapping[int, Diagnostic]
     acts: Mapping[int, LineDecision]
-    proposals: Mapping[int, Proposal]
+    proposals: "Mapping[int, Proposal]"
     suggested: Mapping[int, LineSuggestion]
-    assisted: Mapping[int, Proposal]
+    assisted: "Mapping[int, Proposal]"
     """proposals that follow from suggestions"""
     refused: Mapping[int, Diagnostic]
     """errors in the sentences that are suggested"""
@@ -260,10 +287,11 @@ def _lines(reading: _Reading, known: _Known) -> Iterator[DraftLine]:
             state=LineState.SET_ASIDE if piece.aside else LineState.UNDERSTOOD,
             reason=piece.aside,
         )
-        yield line.model_copy(update=known.of(piece.text.first))
+        found = known.of(piece.text.first)
+        yield line.model_copy(update=found) if found else line
 
 
-def _asides(reading: _Reading, proposals: Mapping[int, Proposal]) -> tuple[Diagnostic, ...]:
+def _asides(reading: _Reading, proposals: "Mapping[int, Proposal]") -> tuple[Diagnostic, ...]:
     """Return the warnings for pieces that are set aside, or that differ from the site."""
     found: list[Diagnostic] = []
     for piece in reading.script.pieces:

@@ -177,7 +177,7 @@ class Asides:
     def _of_checkpoint(self, text: ScriptText) -> bool:
         """Return True for `Leak test at pressure gauge 2` and `Inspection protocol #47`."""
         content = text.content
-        before = either(self.prose.headline_preposition)
+        before = f"(?:{either(self.prose.headline_preposition)})"
         if re.search(rf"^[^,:|]*\b{_PROTOCOL}\s*#?\s*\d+$", content, re.IGNORECASE):
             return True
         of = re.search(rf"^[^,:|]*\w (?=(?:{before}) [^,:|]+$)", content, re.IGNORECASE)

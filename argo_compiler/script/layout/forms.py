@@ -7,7 +7,7 @@ and each cell has a role, by the heading of its column or by what it contains.
 
 import re
 from collections import defaultdict
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
@@ -92,6 +92,10 @@ _MARK = r"\s*(?:[-*•]\s+|[0-9]{1,3}\s*[.):]?\s+)?"
 _BOX = re.compile(rf"{_MARK}(?:\[([ xX*✓v~-]?)\]|([□☐☑☒✓✔✗✘]))\s*")
 _TICKED = {"☑": "x", "☒": "x", "✓": "x", "✔": "x", "✗": "-", "✘": "-", "□": " ", "☐": " "}
 _OPEN_BOX = re.compile(rf"{_MARK}(?:\[\s?\]|[□☐])")
+_OF_FORMS = re.compile(r"[\[□☐☑☒✓✔✗✘_…]|~~|\.{4}")
+"""a line without such signs has no box and no blank, and nothing of it is struck"""
+_CUTTING = re.compile(r"[|\t;,…]|\.{3}|\s\s")
+"""a line without such signs has one cell"""
 _STRUCK = re.compile(r"~~[^~]+~~")
 _LEADER = re.compile(r"\s*(?:\.{3,}|…+)\s*")
 _CUTS = {
@@ -167,7 +171,7 @@ def forms(
                 texts[number] = line[:0]
             elif headings is not None:
                 columns = columns_of[table] = headings
-                below = _below_times(found, [cells for n, cells in lines if n > number], cut)
+                below = _below_times(found, (cells for n, cells in lines if n > number), cut)
                 rows[number] = FormRow(
                     line.strip(), tuple(found), is_heading=True, filled_below=below
                 )
@@ -197,6 +201,8 @@ def forms(
         known = number in rows or number in texts or number in taken
         if known or len(content) > _LONGEST or len(rows) > _MOST_ROWS:
             continue
+        if source.document is None and not _OF_FORMS.search(content):
+            continue
         boxed, struck = _BOX.match(content), _STRUCK.search(content)
         doubt = _doubt_of(source, number) if content.strip() else ""
         ticked = boxed and not _OPEN_BOX.match(content)
@@ -209,13 +215,14 @@ def forms(
 
 
 def _below_times(
-    headings: Sequence[Cell], rows: Sequence[Sequence[Cell]], cut: str
+    headings: Sequence[Cell], rows: Iterable[Sequence[Cell]], cut: str
 ) -> tuple[ScriptText, ...]:
     """Return the numbers in the columns of times of day."""
     times = [i for i, cell in enumerate(headings) if _CLOCK.fullmatch(cell.text.content)]
     if cut == "  " or len(times) < 2:
         return ()
-    cells = [row[i].text for i in times for row in rows if i < len(row)]
+    below = list(rows)
+    cells = [row[i].text for i in times for row in below if i < len(row)]
     return tuple(text for text in cells if _READING.fullmatch(text.content))
 
 
@@ -395,8 +402,10 @@ def _groups(source: Source, taken: Mapping[int, ScriptText]) -> Iterator[tuple[l
 
 
 def _cut_of(line: str) -> str:
+    if not _CUTTING.search(line.strip()) or len(line) > _LONGEST:
+        return ""
     inner = _STEP_MARK.sub("", line.strip())
-    if not inner or len(line) > _LONGEST or _SENTENCE.search(inner):
+    if _SENTENCE.search(inner):
         return ""
     if "|" in inner.strip("|"):
         return "|"

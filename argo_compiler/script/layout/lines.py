@@ -141,14 +141,14 @@ def _unquoted(texts: Sequence[ScriptText]) -> Iterator[ScriptText]:
 
 
 def _marked(text: ScriptText, indent: int) -> ScriptLine:
-    if bullet := _BULLET.match(text.content):
+    if not text.content[:1].isdigit() and (bullet := _BULLET.match(text.content)):
         inner = _marked(text[bullet.end() :].strip(), indent)
         mark = inner.mark if inner.number else LineMark.BULLET
         return ScriptLine(
             inner.text, indent, mark, inner.number, heading=text.content.startswith("#")
         )
-    patterns = (pattern(_NUMBER), pattern(_STEP), _BRACKETED)
-    if number := next(filter(None, (p.match(text.content) for p in patterns)), None):
+    number = pattern(_NUMBER).match(text.content) or pattern(_STEP).match(text.content)
+    if number := number or _BRACKETED.match(text.content):
         rest = text[number.end() :].strip()
         if pattern(_FLOOR_ONLY).fullmatch(rest.content):
             return ScriptLine(text, indent)  # `1. Obergeschoss`

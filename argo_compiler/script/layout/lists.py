@@ -5,10 +5,11 @@ valves`, `Check these pressure gauges:` over `- 1` and `- 3`.
 """
 
 import re
+from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache
-from itertools import takewhile
+from itertools import islice
 
 from argo_compiler.script.documents.source import ScriptText, join
 from argo_compiler.script.layout.items import LineItem
@@ -23,6 +24,7 @@ from argo_compiler.script.sentences.words.prose import either
 _CASES = frozenset(["IF", "UNLESS", "ELSE", "IN_ALL_OTHERS"])
 """what a sentence begins with that says in which case something is done"""
 _FLOORS = frozenset(["FLOOR", "FLOOR_NAME", "ORDINAL"])
+_FIGURE = re.compile(r"[0-9]+")
 _LONGEST = 40
 """characters of a floor's name over a list"""
 _HEADS = ((), ("MEASURE",), ("ALL",), ("MEASURE", "ALL"))
@@ -54,6 +56,8 @@ class Lists:
     understanding: Understanding
     record: Callable[[ScriptText, str], None]
     """records a line over a list: its text, and what it is taken for, if it has no effect"""
+    begun: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    """the types of the words with which lines begin, by their text with all figures alike"""
 
     def told(self, items: Iterable[LineItem]) -> Iterator[LineItem]:
         """Return the items, of which each says by itself what is meant."""
@@ -63,19 +67,17 @@ class Lists:
 
     def _in_cases(self, items: Iterable[LineItem]) -> Iterator[LineItem]:
         """The items; of those under a condition one with all of them, where that makes sense."""
-        waiting = list(items)
-        taken = 0
-        for i, item in enumerate(waiting):
-            if taken:
-                taken -= 1
-                continue
+        rest = iter(items)
+        ahead: deque[LineItem] = deque()
+        while (item := ahead.popleft() if ahead else next(rest, None)) is not None:
             if item.text.content.endswith(":"):
                 inner, item.items = item.items, []
-                below = inner or _list_of(waiting, i + 1)
+                below = inner or _list_ahead(ahead, rest)
                 if not self._put_together(item, below):
                     item.items = inner
                 elif not inner:
-                    taken = len(below)
+                    for _ in below:
+                        ahead.popleft()
             yield item
 
     def _put_together(self, item: LineItem, below: Sequence[LineItem]) -> bool:
@@ -105,10 +107,9 @@ class Lists:
 
     def _on_floors(self, items: Iterable[LineItem]) -> Iterator[LineItem]:
         """The items without headings that name a floor; those below are told where they are."""
-        waiting = list(items)
         floors: Sequence[FloorName] = ()
         chapter = False
-        for item, after in zip(waiting, [*waiting[1:], None], strict=False):
+        for item, after in _with_next(items):
             heading = item.line.heading or bool(item.items)
             marked = item.line.mark is not LineMark.NONE
             listed = after is not None and after.line.mark is not LineMark.NONE
@@ -133,7 +134,11 @@ class Lists:
         text = item.text[: len(item.text.content.rstrip(" :."))]
         if not 0 < len(text.content) <= _LONGEST:
             return ()
-        if {*self.understanding.types(text)[:1]}.isdisjoint(_FLOORS):
+        alike = _FIGURE.sub("9", text.content)  # many lines differ in figures only
+        begun = self.begun.get(alike)
+        if begun is None:
+            begun = self.begun[alike] = self.understanding.types(text.replaced(alike))[:1]
+        if _FLOORS.isdisjoint(begun):
             return ()
         found = self.understanding.location(text)
         return found if isinstance(found, tuple) else ()
@@ -144,8 +149,7 @@ class Lists:
         """The items; those of such a list say themselves what they are."""
         over: LineItem | None = None
         head: _Head | None = None
-        waiting = list(items)
-        for item, after in zip(waiting, [*waiting[1:], None], strict=False):
+        for item, after in _with_next(items):
             listed = after is not None and after.line.mark is not LineMark.NONE
             if item.text.content.endswith(":") and (item.items or listed):
                 self._drop_introduction(item)
@@ -226,12 +230,27 @@ def _put_before(head: _Head, item: LineItem) -> None:
     item.text = join([head.said, item.text])
 
 
-def _list_of(items: Sequence[LineItem], start: int) -> list[LineItem]:
-    """The items of a list that begins here, if its marks are no numbers of steps."""
-    mark = items[start].line.mark if start < len(items) else LineMark.NONE
-    if mark not in (LineMark.BULLET, LineMark.LETTER):
-        return []
-    return list(takewhile(lambda item: item.line.mark is mark, items[start:]))
+def _with_next(items: Iterable[LineItem]) -> Iterator[tuple[LineItem, LineItem | None]]:
+    """Yield each item with the next one, for which no more items are read than needed."""
+    rest = iter(items)
+    item = next(rest, None)
+    while item is not None:
+        after = next(rest, None)
+        yield item, after
+        item = after
+
+
+def _list_ahead(ahead: deque[LineItem], rest: Iterator[LineItem]) -> list[LineItem]:
+    """Return the items of a list that begins with the next item, if its marks are no numbers of
+    steps. Those that are read from `rest` are put into `ahead`, and so is the first behind them."""
+    found: list[LineItem] = []
+    while True:
+        if len(ahead) == len(found):
+            ahead.extend(islice(rest, 1))
+        mark = ahead[len(found)].line.mark if len(ahead) > len(found) else LineMark.NONE
+        if mark not in (LineMark.BULLET, LineMark.LETTER) or mark is not ahead[0].line.mark:
+            return found
+        found.append(ahead[len(found)])
 
 
 def _place(items: Iterable[LineItem], floors: Sequence[FloorName]) -> None:

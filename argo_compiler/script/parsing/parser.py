@@ -155,7 +155,7 @@ class _Parser:
         PlacingCheck(self.diagnostics).steps(steps)
         _ask_of_title(steps, self.diagnostics)
         refers = cue_pattern("referring", language.prose.cues["referring"])
-        if not any(
+        if ">" in source.text and not any(
             refers.search(line) for line in source.lines if not line.lstrip().startswith(">")
         ):
             _ask_of_quotes(steps, self.diagnostics)
@@ -208,12 +208,13 @@ class _Parser:
                 yield step
 
     def _step(self, item: LineItem) -> ScriptStep | None:
-        known = None
-        if not self.decided and self._is_plain(item):
-            known = self.repeats.said(item.text)
-            if known is not None:
-                self.pieces += map(Piece, sentences(item.text))
-        said = on_floors(self._said(item) if known is None else known, item.floors)
+        known = self.repeats.said(item.text) if self._is_plain(item) else None
+        if known is not None and self._is_said_below(item, known[0]):
+            said, parts = known
+            self.pieces += map(Piece, parts)
+        else:
+            said = self._said(item)
+        said = on_floors(said, item.floors)
         inner = tuple(self._steps(item.items))
         if not said and not inner and item.line.number is None:
             return None
@@ -250,7 +251,7 @@ class _Parser:
         whole = whole and len(self.diagnostics.entries) == before
         plain = plain and whole and not self.understanding.unknown and self._is_plain(item)
         plain = plain and self.fields.count == read  # else it says more than its orders
-        plain = plain and not self.decided  # else it may not be what the text itself says
+        plain = plain and self._is_said_below(item, said)
         if plain and not any(isinstance(s, Unread) for s in said):
             self.repeats.keep(text, said, lambda text, unknown: self._again(item, text, unknown))
         return said
@@ -339,8 +340,13 @@ class _Parser:
 
     def _is_plain(self, item: LineItem) -> bool:
         """Whether what an item says follows from its text alone."""
-        over = item.line.heading or item.text.content.endswith(":")
-        return self.reader.ordered and not self.closed and not over
+        plain = self.reader.ordered and not self.closed and not item.text.content.endswith(":")
+        return plain and not (self.decided and any(o in self.decided for o in item.text.offsets))
+
+    def _is_said_below(self, item: LineItem, said: Sequence[Said]) -> bool:
+        """Whether an item that stands over others says the same below them: only a condition."""
+        cases = (isinstance(one, Sentence) and one.cases for one in said)
+        return not item.line.heading or all(cases)
 
     def _without_letter(self, item: LineItem) -> tuple[list[Said], ScriptText]:
         """Read what makes a letter of an item; return what is decided on for it instead, and the

@@ -12,6 +12,7 @@ from typing import Any
 
 from argo_compiler.diagnostics import Span, span_at
 from argo_compiler.script.documents.source import ScriptText
+from argo_compiler.script.layout.lines import sentences
 from argo_compiler.script.sentences.tree.manner import NOTHING_SAID, Manner
 from argo_compiler.script.sentences.tree.node import Node
 from argo_compiler.script.sentences.tree.script import Said
@@ -122,13 +123,20 @@ class _Text:
     """What a text says."""
 
     said: list[Said]
+    text: ScriptText
     span: Span
     moves: list[_Move] = field(default_factory=list)
     """how it is said at another place; made when the text is met again, for most never are"""
+    parts: list[slice] = field(default_factory=list)
+    """where its sentences stand, likewise"""
 
     def at(self, here: Span, figures: tuple[str, ...]) -> list[Said]:
         """What it says at another place and with other figures."""
-        self.moves = self.moves or [move for move in map(_mover, self.said) if move is not None]
+        if not self.moves:
+            self.moves = [move for move in map(_mover, self.said) if move is not None]
+            first = self.text.first
+            found = sentences(self.text)
+            self.parts = [slice(one.first - first, one.last + 1 - first) for one in found]
         lines, columns = here.line - self.span.line, here.column - self.span.column
         return [move(lines, columns, figures) for move in self.moves]
 
@@ -154,7 +162,7 @@ class Repeats:
             self._known.clear()
             self._shapes.clear()
             self._met.clear()
-        self._known[text.content] = _Text(said, text.span())
+        self._known[text.content] = _Text(said, text, text.span())
         shape, figures = _shape(text.content)
         if not figures or shape in self._shapes or self._in_phrases(figures):
             return
@@ -162,18 +170,18 @@ class Repeats:
             self._shapes[shape] = _of_shape(text, figures, said, read)
         self._met.add(shape)
 
-    def said(self, text: ScriptText) -> list[Said] | None:
-        """What a text says; None if it is not known."""
+    def said(self, text: ScriptText) -> tuple[list[Said], list[ScriptText]] | None:
+        """What a text says, and its sentences; None if it is not known."""
         if not isinstance(text.offsets, range):
             return None
         known = self._known.get(text.content)
         if known is not None:
-            return known.at(text.span(), ())
+            return known.at(text.span(), ()), [text[part] for part in known.parts]
         shape, figures = _shape(text.content)
         known = self._shapes.get(shape)
         if known is None or self._in_phrases(figures):
             return None
-        return known.at(text.span(), figures)
+        return known.at(text.span(), figures), [text[part] for part in known.parts]
 
     def _in_phrases(self, figures: tuple[str, ...]) -> bool:
         """Whether one of the figures is in a phrase of the language, such as a place's name."""
@@ -192,7 +200,7 @@ def _of_shape(
     found = read(ScriptText(others, text.offsets, text.source), unknown)
     if found is None:
         return None
-    kept = _Text(found, text.span())
+    kept = _Text(found, text, text.span())
     return kept if kept.at(text.span(), figures) == said else None
 
 

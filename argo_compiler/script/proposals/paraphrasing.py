@@ -36,13 +36,17 @@ def rephrased(text: ScriptText, understanding: Understanding) -> Rephrased:
     if len(text.content) > _LONGEST:
         return Rephrased(text)
     dropped: list[str] = []
-    for meant, pattern in _patterns(understanding.language.prose.paraphrases):
-        for found in reversed(list(pattern.finditer(text.content))):
+    content = text.content.lower()
+    for phrase, meant in _paraphrases(understanding.language.prose.paraphrases):
+        if not all(part in content for part in _parts(phrase)):
+            continue  # hundreds of patterns take long to make, and few are needed
+        for found in reversed(list(_pattern(phrase).finditer(text.content))):
             if meant:
                 text = text.replace(*found.span(), found.expand(meant))
             else:
                 dropped.append(found[0])
                 text = text.without(*found.span())
+            content = text.content.lower()
     for blanks in reversed(list(_BLANKS.finditer(text.content))):
         text = text.without(*blanks.span())
     return Rephrased(text.strip(), tuple(dropped))
@@ -66,14 +70,21 @@ def sentence(text: ScriptText) -> str:
 
 
 @cache
-def _patterns(phrases: str) -> list[tuple[str, re.Pattern[str]]]:
-    """Return the patterns of phrases, with what each is replaced by; long ones first."""
+def _paraphrases(phrases: str) -> list[tuple[str, str]]:
+    """Return the phrases, each with what it is replaced by; long ones first."""
     pairs = [pair.split("=>") for pair in phrases.split("|")]
     said = [(phrase, meant.strip()) for text, meant in pairs for phrase in expand(text)]
     said.sort(key=lambda one: len(one[0]), reverse=True)
-    return [(re.sub(r"<([a-z])>", r"\\g<\1>", meant), _pattern(text)) for text, meant in said]
+    return [(text, re.sub(r"<([a-z])>", r"\\g<\1>", meant)) for text, meant in said]
 
 
+@cache
+def _parts(phrase: str) -> list[str]:
+    """Return the parts of a phrase between its blanks and slots."""
+    return re.sub(r"<[a-z]>", " ", phrase).lower().split()
+
+
+@cache
 def _pattern(phrase: str) -> re.Pattern[str]:
     escaped = re.escape(phrase).replace(r"\ ", r"\s+")
     slotted = re.sub(r"<([a-z])>", lambda found: f"(?P<{found[1]}>{_PART[found[1]]})", escaped)

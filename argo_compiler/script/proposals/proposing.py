@@ -56,8 +56,6 @@ def propose(
 ) -> dict[int, Proposal]:
     """Return what is proposed for the unread pieces, and the choices of those that are unclear; by
     the offset at which a piece begins."""
-    if not unread and not unclear:
-        return {}
     source = script.source
     places = [place.name for place in catalog.places]
     language = Language.of(script.source_text, places)

@@ -80,8 +80,8 @@ class Context:
         self, nodes: Iterable[ProgramNode], block: ProgramBlock, anchor: ProgramNode | None
     ) -> None:
         """Puts nodes into a block, behind the anchor; None: before all."""
-        self.own_names = None
         for node in nodes:
+            self.own_names = None
             block.insert_after(anchor, node)
             anchor = node
             if isinstance(node, Do):

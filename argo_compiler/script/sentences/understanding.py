@@ -61,6 +61,8 @@ class Understanding:
         self.diagnostics = diagnostics
         self.unknown: Mapping[int, UnknownFigure] = {}
         """by their places in the source, figures that are to be taken for unknown"""
+        self._with_unknown: tuple[object, dict[tuple[int, str], list[Word]]] = ({}, {})
+        """words of texts by place and content, and the unknown figures that they have"""
         self.grammar = sentence_grammar()
         self._joint = _joint_at_end(language.lexicon)
 
@@ -70,9 +72,15 @@ class Understanding:
 
     def words(self, text: ScriptText) -> list[Word]:
         if self.unknown:
-            places = {offset: i for i, offset in enumerate(text.offsets)}
-            unknown = {places[o]: f for o, f in self.unknown.items() if o in places}
-            return words_of(text.content, self.language.lexicon, unknown)
+            figures, known = self._with_unknown
+            if figures is not self.unknown:
+                self._with_unknown = self.unknown, (known := {})
+            key = text.first, text.content
+            if key not in known:
+                places = {offset: i for i, offset in enumerate(text.offsets)}
+                unknown = {places[o]: f for o, f in self.unknown.items() if o in places}
+                known[key] = words_of(text.content, self.language.lexicon, unknown)
+            return known[key]
         return words(text.content, self.language.lexicon)
 
     def types(self, text: ScriptText) -> tuple[str, ...]:

@@ -44,7 +44,7 @@ _PLACED = frozenset(["AT_END", "AT_BEGIN", "THERE", "INSTEAD"])
 
 
 # A sentence is looked at several times: what it is, whether it makes sense, what it says.
-@lru_cache(maxsize=2048)
+@lru_cache(maxsize=8192)
 def words(text: str, lexicon: Lexicon) -> list[Word]:
     """The words of `text`, with the joints between them told apart by what they join; in another
     language where far more of them are known in that one."""
@@ -60,16 +60,19 @@ def words_of(
 ) -> list[Word]:
     """As `words`; the figures that begin at these places are not known. Raises UnknownError if one
     of them is no number by itself."""
-    found = _in(text, lexicon, unknown)
+    found = _looked_up(text, lexicon, _PLACED)
     strange = _unknown(found)
-    if lexicon.other is None or not strange:
-        return found
-    other = _in(text, lexicon.other, unknown)
-    return other if 2 * _unknown(other) < strange else found
+    if lexicon.other is not None and strange:
+        other = _looked_up(text, lexicon.other, _PLACED)
+        if 2 * _unknown(other) < strange:
+            found, lexicon = other, lexicon.other
+    return _put_together(found, lexicon, unknown)
 
 
-def _in(text: str, lexicon: Lexicon, unknown: Mapping[int, UnknownFigure]) -> list[Word]:
-    found = with_effect(_looked_up(text, lexicon, _PLACED))
+def _put_together(
+    found: list[Word], lexicon: Lexicon, unknown: Mapping[int, UnknownFigure]
+) -> list[Word]:
+    found = with_effect(found)
     if unknown:
         if not unknown.keys() <= {word.start for word in found if word.type == "NUMBER"}:
             raise UnknownError
@@ -249,6 +252,7 @@ def unquoted(text: str) -> str | None:
 
 def _lower(text: str) -> str:
     """`text` in lower case, character by character: no position moves."""
-    if text.isascii():
-        return text.lower()
+    lower = text.lower()
+    if len(lower) == len(text):
+        return lower
     return "".join(c.lower() if len(c.lower()) == 1 else c for c in text)

@@ -158,7 +158,7 @@ class Prose:
 
 def either(text: str) -> str:
     """A pattern of one of the phrases, the longest that fits."""
-    longest_first = sorted(set(expand(text)), key=len, reverse=True)
+    longest_first = sorted(sorted(set(expand(text))), key=len, reverse=True)
     return "|".join(re.escape(phrase).replace(r"\ ", r"\s+") for phrase in longest_first)
 
 
@@ -170,21 +170,26 @@ class Beginnings:
         self._said: dict[str, list[str]] = {}
         for phrase in expand(phrases):
             self._said.setdefault(_first_letters(phrase), []).append(phrase)
-        self._made: dict[str, re.Pattern[str]] = {}
+        self._made: dict[tuple[str, bool], re.Pattern[str]] = {}
+
+    def search(self, text: str) -> bool:
+        """Return True if one of the phrases is somewhere in a text."""
+        return any(self.match(text, word.start()) for word in _WORD_START.finditer(text))
 
     def match(self, text: str, at: int = 0) -> re.Match[str] | None:
         """Return the longest phrase that begins at a place of the text, and that does not end
         within a word; None if there is none."""
         first = _first_letters(text, at)
         behind = at + len(first)
-        if not text[behind : behind + 1].isascii():  # may be one of a phrase's letters, in capitals
-            said = [phrase for phrases in self._said.values() for phrase in phrases]
-            return _beginning(said).match(text, at)
-        if first not in self._said:
+        # A letter that is not ASCII may be one of a phrase's letters, in capitals.
+        key = first, text[behind : behind + 1].isascii()
+        if key[1] and first not in self._said:
             return None
-        if first not in self._made:
-            self._made[first] = _beginning(self._said[first])
-        return self._made[first].match(text, at)
+        if key not in self._made:
+            begun = self._said if not key[1] else (first,)
+            said = [p for start in begun if start.startswith(first) for p in self._said[start]]
+            self._made[key] = _beginning(said)
+        return self._made[key].match(text, at)
 
 
 @cache
@@ -196,6 +201,7 @@ def begins(phrases: str) -> Beginnings:
 _IN_BRACKETS = re.compile(r"\s*[(\[]\s*[^\W\d_][^()\[\]]*[)\]]$|\s*[(\[][%°][)\]]$")
 """such as a unit, at the end of a heading"""
 _FIRST_LETTERS = re.compile("[A-Za-z]*")
+_WORD_START = re.compile(r"(?<![\w-])\w")
 
 
 def _first_letters(text: str, at: int = 0) -> str:

@@ -23,16 +23,16 @@ def candidates(word: str, known: frozenset[str]) -> tuple[str, ...]:
 
 @lru_cache(maxsize=4096)
 def _closest(word: str, known: frozenset[str]) -> tuple[str, ...]:
-    alike = process.extract(
-        word,
-        [other for other in known if len(other) >= 3],
-        scorer=OSA.normalized_similarity,
-        score_cutoff=_ALIKE,
-        limit=None,
-    )
+    similarity = OSA.normalized_similarity
+    alike = process.extract(word, _long(known), scorer=similarity, score_cutoff=_ALIKE, limit=None)
     distances = {other: OSA.distance(word, other) for other, _, _ in alike}
     least = min(distances.values(), default=0)
     return tuple(sorted(other for other, distance in distances.items() if distance == least))
+
+
+@lru_cache(maxsize=8)
+def _long(known: frozenset[str]) -> list[str]:
+    return [word for word in known if len(word) >= 3]
 
 
 def nearest(text: str, known: Iterable[str], limit: int = 3) -> tuple[str, ...]:

@@ -455,8 +455,6 @@ def _headings(cells: Sequence[Cell], prose: Prose) -> Columns | None:
         heading = cell.text.content
         if cue_pattern("history", prose.form["history"]).search(heading) is not None:
             return CellRole.OTHER
-        if cue_pattern("abnormal", prose.form["abnormal"]).fullmatch(heading) is not None:
-            return CellRole.REACTION
         role = _role(cell, prose) or prose.role_by_last_words(heading)
         return CellRole(role or CellRole.OTHER)
 

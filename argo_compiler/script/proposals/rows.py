@@ -24,6 +24,7 @@ from argo_compiler.script.proposals.mentions import (
     checkpoint_words,
     mentions_in,
 )
+from argo_compiler.script.proposals.paraphrasing import reads, sentence
 from argo_compiler.script.sentences.tree.places import FloorName
 from argo_compiler.script.sentences.words.lexicon import expand
 from argo_compiler.script.sentences.words.prose import cue_pattern
@@ -129,7 +130,10 @@ def propose_row(row: FormRow, composer: Composer, first: bool = False) -> Propos
     if found.reaction is not None:
         case = composer.understanding.language.prose.say["if_abnormal"]
         said = case.format(next(iter(ids)), found.reaction.content)
-        inner = composer.propose(found.reaction.replaced(said)) if len(ids) == 1 else Proposal()
+        text = found.reaction.replaced(said)
+        inner = Proposal((sentence(text),))
+        if len(ids) > 1 or not reads(text, composer.understanding):
+            inner = composer.propose(text) if len(ids) == 1 else Proposal()
         if not inner.sentences:
             doubt = f"`{found.reaction.content}` is not understood here"
             return Proposal(choices=((check,), (spare,)), doubt=doubt)

@@ -8,6 +8,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from itertools import pairwise
 
 from argo_compiler.base.catalog import CheckpointInfo, CheckpointKind
 from argo_compiler.script.documents.source import RefusedError, ScriptText
@@ -138,11 +139,13 @@ def _is_single(mention: Mention) -> bool:
 def _by_parts(of: _OpenText) -> Iterator[Sentences]:
     """Yield what the parts of a text mean that mean something: the longest that make sense."""
     starts = [0, *_cuts(of.text, of.composer), len(of.text.content)]
+    pieces = (of.text[start:end] for start, end in pairwise(starts))
+    known = [bool(_bare(piece, of.composer).content) for piece in pieces]
     made: list[str] = []
     i = 0
     while i < len(starts) - 1:
         for k in range(min(len(starts) - 1, i + _LONGEST_PART), i, -1):
-            part = _part(of.text[starts[i] : starts[k]], of.composer)
+            part = _part(of.text[starts[i] : starts[k]], of.composer) if any(known[i:k]) else None
             if part is not None:
                 made += part
                 break

@@ -13,6 +13,8 @@ INPUT_ENDED = ""
 """key and line that stand for the end of the input"""
 _END = "\x04"
 """key by which a person ends the input"""
+_END_OF_LINES = "\0"
+"""what Linux hands over of the same key, if it was typed before the mode changed"""
 _LONGEST_CHARACTER = 4
 """bytes"""
 _MOST_BYTES = 100_000
@@ -44,7 +46,7 @@ else:
             if key == "\x1b":  # a function key, whose other characters follow at once
                 while select.select([fd], [], [], 0.02)[0] and os.read(fd, 1):
                     pass
-        return INPUT_ENDED if key == _END else key
+        return INPUT_ENDED if key in (_END, _END_OF_LINES) else key
 
     @contextmanager
     def _single_keys(fd: int) -> Iterator[None]:

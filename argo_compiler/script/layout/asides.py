@@ -147,6 +147,8 @@ class Asides:
     def is_title(self, text: ScriptText) -> bool:
         """Whether a line may be the title of a script, or the heading of a part of it."""
         words = text.content.lower().rstrip(":").split()
+        if ".." in text.content:
+            return False  # `for i in 1..3`
         if text.content.endswith(":") and {*words} <= _phrases_of(self.prose.around_reactions):
             return True  # `To be obeyed all the time:`
         short = len(words) <= _LONGEST_TITLE
@@ -281,8 +283,10 @@ class Asides:
             aside = text[: token.start()].strip()
             types = {*self.understanding.types(aside)}
             rest = text[token.start() :].strip()
-            if "WORD" in self.understanding.types(rest):
-                continue
+            if {*self.understanding.types(rest)} & {"WORD", "SIGN"} or rest.content.strip(
+                " .:"
+            ).isdecimal():
+                continue  # `for i in 1..3`
             if ("AT", "NUMBER") in pairwise(self.understanding.types(aside)):
                 continue  # `während du an 1 wartest`
             if "WORD" in types and not types & _SAYING and not self.asks(aside):

@@ -305,7 +305,8 @@ def _wrapped(
         indent = len(line) - len(line.lstrip())
         if last is not None and indent >= _DEEP and len(last[1]) == 2:
             first, value = last[1]
-            if abs(_column(source, value.text.first) - indent - 1) <= 1:
+            listed = value.text.content.endswith(":")
+            if abs(_column(source, value.text.first) - indent - 1) <= 1 and not listed:
                 whole = join([value.text, source.line_text(number).strip()])
                 last = (last[0], [first, replace(value, text=whole)])
                 texts[number] = source.line_text(number)[:0]

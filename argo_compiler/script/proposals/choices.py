@@ -10,10 +10,10 @@ from contextlib import suppress
 from dataclasses import dataclass
 from itertools import pairwise
 
-from argo_compiler.base.catalog import CheckpointInfo, CheckpointKind
+from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.script.documents.source import RefusedError, ScriptText
 from argo_compiler.script.proposals.composing import Composer
-from argo_compiler.script.proposals.frames import Sentences, length_words, sentences_of
+from argo_compiler.script.proposals.frames import KINDS, Sentences, length_words, sentences_of
 from argo_compiler.script.proposals.mentions import (
     Mention,
     Mentions,
@@ -21,7 +21,7 @@ from argo_compiler.script.proposals.mentions import (
     mentions_in,
 )
 from argo_compiler.script.proposals.paraphrasing import reads, rephrased, sentence
-from argo_compiler.script.sentences.tree.nouns import Labelled, Nouns, Pronoun, Quantity
+from argo_compiler.script.sentences.tree.nouns import Labelled, Nouns, Pronoun
 from argo_compiler.script.sentences.tree.places import AreaLocation
 from argo_compiler.script.sentences.words.numbers import Figure
 from argo_compiler.script.sentences.words.prose import cue_pattern
@@ -38,12 +38,6 @@ _LONGEST_PART = 8
 """parts that are read as one"""
 _LONGEST = 500
 """characters of a text that is taken apart"""
-_KINDS: dict[Quantity | None, CheckpointKind] = {
-    Quantity.PRESSURE: CheckpointKind.PRESSURE_GAUGE,
-    Quantity.LEVEL: CheckpointKind.LIQUID_LEVEL_GAUGE,
-    Quantity.POSITION: CheckpointKind.VALVE,
-}
-"""the kind of checkpoint that shows a quantity"""
 _SIGNALS = (
     *("forbidding", "past", "question", "correction", "leave_out", "IF", "IF_ONLY", "UNLESS"),
     *("ELSE", "UNTIL", "NOT", "EXCEPT", "pronoun", "STATE", "MORE", "again", "TIMES", "GREATER"),
@@ -121,7 +115,7 @@ def _candidates(pronouns: Sequence[Mention], composer: Composer) -> Sequence[Che
     """Return what a pronoun may be: `the pressure` is that of any gauge that was read."""
     nouns = pronouns[0].value if pronouns else None
     first = nouns.nouns[0] if isinstance(nouns, Nouns) else None
-    kind = _KINDS.get(first.quantity) if isinstance(first, Pronoun) else None
+    kind = KINDS.get(first.quantity) if isinstance(first, Pronoun) else None
     if kind is None:
         return composer.known.memory.last
     return [c for c in composer.known.memory.so_far.values() if c.kind is kind]

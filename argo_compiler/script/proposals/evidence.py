@@ -19,7 +19,7 @@ _NAME = re.compile(r"(?:[^\W\d_a-zäöü][\w'-]*\.?\s?){1,3}")
 _LEAD_IN = re.compile(r"[^,]{3,60},\s+")
 _MOST_WORDS = 6
 """of a heading in capitals"""
-_BLANK_LABELS = re.compile(r"(?:[^\W\d][\w .-]{0,20}:[\s_.]*)+")
+_BLANK_LABELS = re.compile(r"(?!.*\d\.\.)(?:[^\W\d][\w .-]{0,20}:[\s_.]*)+")
 _COUNTER = re.compile(r"\W*[^\W\d]+(?: [^\W\d]+\.?)? [0-9]+ ?(?:of|von|/) ?[0-9]+\W*")
 _LABEL = re.compile(r"[^\W\d][\w ./'-]{1,40}?\s*:\s+(?=\S)")
 _MOST_OF_VALUE = 6

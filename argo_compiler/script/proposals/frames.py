@@ -6,16 +6,22 @@ Each frame returns its sentences, or None if a text mentions anything that the f
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 
-from argo_compiler.base.catalog import CheckpointInfo
+from argo_compiler.base.catalog import CheckpointInfo, CheckpointKind
 from argo_compiler.script.documents.source import RefusedError
 from argo_compiler.script.proposals.known import Known
 from argo_compiler.script.proposals.mentions import Mention, Mentions, checkpoint_words
-from argo_compiler.script.sentences.tree.nouns import AllOf, Noun, Nouns, TheOne
+from argo_compiler.script.sentences.tree.nouns import AllOf, Noun, Nouns, Pronoun, Quantity, TheOne
 from argo_compiler.script.sentences.tree.places import AreaLocation, DockLocation, FloorName
 from argo_compiler.script.sentences.words.amounts import Length
 from argo_compiler.script.sentences.words.numbers import Figure
 
 Sentences = tuple[str, ...]
+KINDS: dict[Quantity | None, CheckpointKind] = {
+    Quantity.PRESSURE: CheckpointKind.PRESSURE_GAUGE,
+    Quantity.LEVEL: CheckpointKind.LIQUID_LEVEL_GAUGE,
+    Quantity.POSITION: CheckpointKind.VALVE,
+}
+"""the kind of checkpoint that shows a quantity"""
 _LONGEST_S = 1e7
 _MOST_READINGS = 10
 """of one checkpoint, one after the other"""
@@ -39,10 +45,22 @@ def _leave_out(found: Mentions, known: Known) -> Sentences | None:
     with suppress(RefusedError):
         named = known.checkpoints(kept.of("checkpoints"))
         if not kept.has("checkpoints"):
-            named = [known.last_named] if known.last_named is not None else []
+            last = known.last_named
+            verbs = kept.of("leave_out", "SPARE", "DELETE")
+            others = [word for word in kept.unknown if word.start < verbs[0].start]
+            meant = kept.has("pronoun") or not others
+            fits = last is not None and all(_may_be(m, last) for m in kept.of("pronoun"))
+            named = [last] if last is not None and meant and fits else []
         if named:
             return _spare(named, known)
     return None
+
+
+def _may_be(pronoun: Mention, checkpoint: CheckpointInfo) -> bool:
+    """Return True if a pronoun can mean a checkpoint: `the pressure` is that of a gauge."""
+    nouns = pronoun.value.nouns if isinstance(pronoun.value, Nouns) else ()
+    quantities = [noun.quantity for noun in nouns if isinstance(noun, Pronoun)]
+    return all(KINDS.get(quantity, checkpoint.kind) is checkpoint.kind for quantity in quantities)
 
 
 def _spare(named: Sequence[CheckpointInfo], known: Known) -> Sentences:

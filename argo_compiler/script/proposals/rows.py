@@ -34,6 +34,8 @@ _UNIT_BEHIND = re.compile(
     r"^\s*[^\W\d_].*?(?:_{2,}|\.{4,})\s*([^\W\d_]\S{0,5}|[%°]\w?)\s*(?:[<>(\[].*)?$"
 )
 """a blank to fill in with a unit behind it: `Conductivity ______ uS`"""
+_OF_UNITS = frozenset(["UNIT", "QUANTITY", "NUMBER", "DASH", "TO", "SIGN"])
+"""types of words in a cell with no more than a unit or a range"""
 _TICK = re.compile(r"[xX✓✔☑☒]")
 _HASH = re.compile(r"#\d+")
 """a checkpoint by its number, or by its tag, which was replaced by that"""
@@ -187,8 +189,8 @@ def _without_checkpoint(row: FormRow, composer: Composer, first: bool) -> Propos
     have, an order such as to dock, or something to ask about."""
     if row.doubt:
         return Proposal(choices=((row.place.content.strip("~ "),), ()), doubt=row.doubt)
-    plain = row.box is None
-    if plain and first and _is_title(row.place, composer):
+    plain = row.box is None or not row.box.strip()
+    if row.box is None and first and _is_title(row.place, composer):
         return Proposal(aside="the title")
     tags = [cell.text.content for cell in row.cells if tag_of(cell.text.content)]
     if tags:
@@ -198,6 +200,8 @@ def _without_checkpoint(row: FormRow, composer: Composer, first: bool) -> Propos
         form = composer.understanding.language.prose.form
         if _without_fill(unit[1], form) and "UNIT_S" not in composer.understanding.types(row.place):
             return Proposal(doubt="this asks for a reading of what the site does not have")
+    if plain and blank and _has_unit(row, composer):
+        return Proposal(doubt="this asks for a reading, and names nothing that the site has")
     if plain and blank and not _needed(row.place, composer):
         return Proposal(aside="a field that a person fills in")
     found = mentions_in(row.place, composer.understanding)
@@ -225,6 +229,13 @@ def _without_checkpoint(row: FormRow, composer: Composer, first: bool) -> Propos
         inner = composer.propose(said[0])
         return inner if inner.sentences or len(row.cells) == 1 else Proposal(choices=((),))
     return Proposal(choices=((),))
+
+
+def _has_unit(row: FormRow, composer: Composer) -> bool:
+    """Return True if a cell has a unit, or a normal range: `4 pressure ga uge 8   7 - 9 bar`."""
+    cells = (cell.text for cell in row.cells)
+    types = ({*composer.understanding.types(text)} for text in cells)
+    return any({"UNIT", "QUANTITY"} & one and one <= _OF_UNITS for one in types)
 
 
 def _names_people(row: FormRow) -> bool:

@@ -33,7 +33,7 @@ _WORD = re.compile(r"(?<![\w.'-])(?=[^\W\d_]*[0-9])[^\W_]{4,}(?![\w-])")
 _LETTERS = {"0": "o", "1": "li", "5": "s", "8": "b"}
 """what text recognition takes for figures"""
 _DIGITS = str.maketrans("lIi|Oo", "111100")
-_LISTED = re.compile(r"([^():\d]{3,40}?)\s*\(([^():\d]{3,40})\)\s*:\s+(?=\S)")
+_LISTED = re.compile(r"([^(),:\d]{3,40}?)\s*[(,]\s*([^():\d]{3,40}?)\)?\s*:\s+(?=\S)")
 _ARROW = re.compile(r"\s*(?:-+>|=+>|→|➔|»)\s*")
 _COMPARING = frozenset(
     [*("LESS", "GREATER", "AT_LEAST", "AT_MOST", "OR_MORE", "OR_LESS", "STATE", "OUTSIDE", "FAILS")]

@@ -279,12 +279,16 @@ def _with_filled(
         for i, cell in enumerate(cells):
             filled[table, i].append(cell.text.content.lower())
 
+    blanks = {
+        column: 2 * sum(_BLANK_CELL.fullmatch(text) is not None for text in said) >= len(said)
+        for column, said in filled.items()
+    }
+    differing = {column for column, said in filled.items() if len({*said}) > 1}
+
     def told(cell: Cell, number: int, column: tuple[int, int]) -> Cell:
-        said = filled[column]
-        blank = 2 * sum(_BLANK_CELL.fullmatch(text) is not None for text in said) >= len(said)
-        role = CellRole.FILL if blank and cell.role is CellRole.OTHER else cell.role
+        role = CellRole.FILL if blanks[column] and cell.role is CellRole.OTHER else cell.role
         if role is CellRole.FILL or (role is CellRole.OTHER and number in headed):
-            differs = bool(cell.text.content) and len({*said}) > 1
+            differs = bool(cell.text.content) and column in differing
             return replace(cell, role=role, filled=differs)
         return cell
 

@@ -38,6 +38,10 @@ _LONGEST_PART = 8
 """parts that are read as one"""
 _LONGEST = 500
 """characters of a text that is taken apart"""
+_LONGEST_LOOKED_AT = 5_000
+"""characters of a text whose mentions are looked at; a longer one can only be set aside"""
+_MOST_TAKEN_APART = 20_000
+"""characters of all texts of a script that are taken apart: of some hundreds of open lines"""
 _SIGNALS = (
     *("forbidding", "past", "question", "correction", "leave_out", "IF", "IF_ONLY", "UNLESS"),
     *("ELSE", "UNTIL", "NOT", "EXCEPT", "pronoun", "STATE", "MORE", "again", "TIMES", "GREATER"),
@@ -78,6 +82,8 @@ _EVENTS = {
 def choices_of(text: ScriptText, composer: Composer) -> tuple[Sentences, ...]:
     """Return what an open text may become, the likeliest first; at the end that nothing comes of
     it."""
+    if len(text.content) > _LONGEST_LOOKED_AT:
+        return ((),)
     text = _with_areas(composer.understanding.rewritten(text), composer)
     open_text = _OpenText(text, mentions_in(text, composer.understanding), composer)
     made: dict[Sentences, None] = {}
@@ -132,6 +138,9 @@ def _is_single(mention: Mention) -> bool:
 
 def _by_parts(of: _OpenText) -> Iterator[Sentences]:
     """Yield what the parts of a text mean that mean something: the longest that make sense."""
+    of.composer.taken_apart += len(of.text.content)
+    if of.composer.taken_apart > _MOST_TAKEN_APART:
+        return
     starts = [0, *_cuts(of.text, of.composer), len(of.text.content)]
     pieces = (of.text[start:end] for start, end in pairwise(starts))
     known = [bool(_bare(piece, of.composer).content) for piece in pieces]

@@ -89,6 +89,8 @@ class Composer:
         self.known = known
         self.before = ""
         """the text before, in words of the language"""
+        self.taken_apart = 0
+        """characters of texts whose parts were read one by one"""
 
     def propose(self, text: ScriptText) -> Proposal:
         """Return what a sentence or a line proposes."""

@@ -37,8 +37,8 @@ def rephrased(text: ScriptText, understanding: Understanding) -> Rephrased:
         return Rephrased(text)
     dropped: list[str] = []
     content = text.content.lower()
-    for phrase, meant in _paraphrases(understanding.language.prose.paraphrases):
-        if not all(part in content for part in _parts(phrase)):
+    for parts, phrase, meant in _paraphrases(understanding.language.prose.paraphrases):
+        if parts[0] not in content or not all(part in content for part in parts):
             continue  # hundreds of patterns take long to make, and few are needed
         for found in reversed(list(_pattern(phrase).finditer(text.content))):
             if meant:
@@ -70,18 +70,18 @@ def sentence(text: ScriptText) -> str:
 
 
 @cache
-def _paraphrases(phrases: str) -> list[tuple[str, str]]:
-    """Return the phrases, each with what it is replaced by; long ones first."""
+def _paraphrases(phrases: str) -> list[tuple[list[str], str, str]]:
+    """Return the phrases, each with its parts between blanks and slots, and what it is replaced by;
+    long ones first."""
     pairs = [pair.split("=>") for pair in phrases.split("|")]
     said = [(phrase, meant.strip()) for text, meant in pairs for phrase in expand(text)]
     said.sort(key=lambda one: len(one[0]), reverse=True)
-    return [(text, re.sub(r"<([a-z])>", r"\\g<\1>", meant)) for text, meant in said]
+    return [(_parts(text), text, re.sub(r"<([a-z])>", r"\\g<\1>", meant)) for text, meant in said]
 
 
-@cache
 def _parts(phrase: str) -> list[str]:
-    """Return the parts of a phrase between its blanks and slots."""
-    return re.sub(r"<[a-z]>", " ", phrase).lower().split()
+    """Return the parts of a phrase that a text has to have, the longest first."""
+    return sorted(re.sub(r"<[a-z]>", " ", phrase).lower().split(), key=len, reverse=True)
 
 
 @cache

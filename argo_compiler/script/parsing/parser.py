@@ -344,7 +344,7 @@ class _Parser:
         return plain and not (self.decided and any(o in self.decided for o in item.text.offsets))
 
     def _is_said_below(self, item: LineItem, said: Sequence[Said]) -> bool:
-        """Whether an item that stands over others says the same below them: only a condition."""
+        """Return True if an item stands over no others, or consists of conditions for these."""
         cases = (isinstance(one, Sentence) and one.cases for one in said)
         return not item.line.heading or all(cases)
 

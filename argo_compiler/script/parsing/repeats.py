@@ -171,7 +171,7 @@ class Repeats:
         self._met.add(shape)
 
     def said(self, text: ScriptText) -> tuple[list[Said], list[ScriptText]] | None:
-        """What a text says, and its sentences; None if it is not known."""
+        """Return the nodes of a text that was read before, and its sentences; None for another."""
         if not isinstance(text.offsets, range):
             return None
         known = self._known.get(text.content)

@@ -1,4 +1,4 @@
-"""What an open text may become: its nearest readings, of which a person chooses one.
+"""Choices of an open text: its nearest readings, of which a person takes one.
 
 A choice may pass over words that a proposal must not pass over, as it counts only once a person has
 taken it. The likeliest comes first.
@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from argo_compiler.base.catalog import CheckpointInfo
+from argo_compiler.il import EventKind
 from argo_compiler.script.documents.source import RefusedError, ScriptText
 from argo_compiler.script.proposals.composing import Composer
 from argo_compiler.script.proposals.frames import KINDS, Sentences, length_words, sentences_of
@@ -27,6 +28,7 @@ from argo_compiler.script.sentences.words.numbers import Figure
 from argo_compiler.script.sentences.words.prose import cue_pattern
 from argo_compiler.script.sentences.words.spelling import candidates
 from argo_compiler.script.sentences.words.without_effect import MISPLACED
+from argo_compiler.script.write.conditions import EVENTS
 
 _MOST_CHOICES = 9
 _MOST_CHOSEN = 10
@@ -57,26 +59,13 @@ _ORDERS = (
 )
 """types of words of which a text has one that the grammar may read alone"""
 _CUT = re.compile(r"[,;:]\s+|\s+[-–/|]\s+|\s*(?:->|→|>)\s*|\s+(?=\()|[()]\s*|[.!?]\s+")
-_CUT_WORDS = ("AND_", "JOINT", "NEXT", "COLON", "THEN")
+_CUT_WORDS = ("AND_", "JOINT", "NEXT", "COLON")
 """how types of words begin that part a text"""
 _AREA = re.compile(r"(?<![\w#-])([^\W\d_])\s?([1-9])(?![\w-])")
 """an area by its initial: `A2`"""
 _ARTICLE = re.compile(r"\b(?:the|der|die|das)\s+$", re.IGNORECASE)
-_EVENTS = {
-    "gas_leak": "a gas leak is detected",
-    "hot_spot": "a hot spot is detected",
-    "abnormal_sound": "an abnormal sound is heard",
-    "platform_alarm": "the platform alarm sounds",
-    "positive_obstacle": "a positive obstacle is detected",
-    "negative_obstacle": "a negative obstacle is detected",
-    "obstacle": "a positive obstacle is detected",
-    "low_battery": "the battery is low",
-    "connection_lost": "the connection is lost",
-    "emergency_stop": "an emergency stop occurs",
-    "dysfunction": "a dysfunction occurs",
-    "abnormal_reading": "a reading is abnormal",
-    "time_up": "the time is up",
-}
+_ENDS = frozenset([EventKind.ALL_CLEAR, EventKind.BATTERY_CHARGED, EventKind.CONNECTION_RESTORED])
+"""events that only tell that another one is over"""
 
 
 def choices_of(text: ScriptText, composer: Composer) -> tuple[Sentences, ...]:
@@ -237,9 +226,10 @@ def _tidied(text: ScriptText) -> ScriptText:
 def _by_events(of: _OpenText) -> Iterator[Sentences]:
     """Yield what the robot may do where an event is named."""
     events = of.found.of("EVENT")
-    if len(events) != 1 or str(events[0].value) not in _EVENTS:
+    event = events[0].value if len(events) == 1 else None
+    if not isinstance(event, EventKind) or event in _ENDS:
         return
-    when = f"If {_EVENTS[str(events[0].value)]}"
+    when = f"If {EVENTS[event]}"
     where = next((f" in starting area {a}" for a in _areas(of.found)), "")
     answers = {
         ("home", "HOME", "DOCK", "place"): f"return to the docking station{where}",
@@ -260,10 +250,10 @@ def _by_mentions(of: _OpenText) -> Iterator[Sentences]:
             yield made
     named: dict[int, CheckpointInfo] = {}
     for mention in of.found.of("checkpoints"):
-        with suppress(RefusedError):
-            named |= {c.id: c for c in of.composer.known.checkpoints([mention])}
-            continue
-        yield from ((f"Check checkpoint {c.id}.",) for c in of.composer.known.alike(mention))
+        found = _named_by(mention, of.composer)
+        named |= {c.id: c for c in found}
+        alike = () if found else of.composer.known.alike(mention)
+        yield from ((f"Check checkpoint {c.id}.",) for c in alike)
     if 0 < len(named) <= _MOST_CHOSEN:
         words = checkpoint_words(list(named.values()))
         yield (f"Check {words}.",)
@@ -284,6 +274,13 @@ def _by_mentions(of: _OpenText) -> Iterator[Sentences]:
                 yield (f"Wait for {length}.",)
 
 
+def _named_by(mention: Mention, composer: Composer) -> list[CheckpointInfo]:
+    """Return the checkpoints that a part of a text names; none if that is not clear."""
+    with suppress(RefusedError):
+        return composer.known.checkpoints([mention])
+    return []
+
+
 def _areas(found: Mentions) -> list[int]:
     """Return the numbers of the areas that are named; also of `starting area is 2`."""
     places = (mention.value for mention in found.of("place"))
@@ -297,13 +294,12 @@ def _by_corrections(of: _OpenText) -> Iterator[Sentences]:
     named: list[CheckpointInfo] = []
     taken_back: set[int] = set()
     for mention in of.found.of("checkpoints"):
-        with suppress(RefusedError):
-            checkpoints = of.composer.known.checkpoints([mention])
-            before = [m for m in of.found.of("NOT", "forbidding") if m.end <= mention.start]
-            if before and not of.text.content[before[-1].end : mention.start].strip():
-                again = {c.id for c in checkpoints} & {c.id for c in named}
-                taken_back |= again or {c.id for c in checkpoints}
-            named += checkpoints
+        checkpoints = _named_by(mention, of.composer)
+        before = [m for m in of.found.of("NOT", "forbidding") if m.end <= mention.start]
+        if before and not of.text.content[before[-1].end : mention.start].strip():
+            again = {c.id for c in checkpoints} & {c.id for c in named}
+            taken_back |= again or {c.id for c in checkpoints}
+        named += checkpoints
     left = {c.id: c for c in named if c.id not in taken_back}
     if taken_back and left:
         yield (f"Check {checkpoint_words(list(left.values()))}.",)
@@ -312,10 +308,8 @@ def _by_corrections(of: _OpenText) -> Iterator[Sentences]:
 def _by_place_in_order(of: _OpenText) -> Iterator[Sentences]:
     """Yield that a checkpoint is read earlier than what stands above: `before all that, R25`."""
     known = of.composer.known
-    named: list[CheckpointInfo] = []
-    for mention in of.found.of("checkpoints"):
-        with suppress(RefusedError):
-            named += known.checkpoints([mention])
+    mentions = of.found.of("checkpoints")
+    named = [c for mention in mentions for c in _named_by(mention, of.composer)]
     above = [*known.memory.so_far]
     if not named or not above:
         return
@@ -331,7 +325,7 @@ def _by_place_in_order(of: _OpenText) -> Iterator[Sentences]:
 def _by_rounds(of: _OpenText) -> Iterator[Sentences]:
     """Yield what a text asks for that counts rounds: `2 rounds, 30 min start to start`."""
     counts = [m.value.whole for m in of.found.of("TIMES") if isinstance(m.value, Figure)]
-    lengths = [length_words(m.value) for m in of.found.of("DURATION")]
+    lengths = [length for m in of.found.of("DURATION") if (length := length_words(m.value))]
     for count in counts if not of.found.has("checkpoints") else ():
         yield from ((f"Repeat everything every {length}, {count} times.",) for length in lengths)
         yield (f"Repeat everything {count} times.",)

@@ -245,7 +245,7 @@ class _Proposer:
 
     def _is_left_out(self, proposal: Proposal) -> bool:
         """Return True if a proposal only checks what another line leaves out."""
-        checks = [sentence for sentence in proposal.sentences if sentence.startswith("Check ")]
+        checks = [sentence for sentence in proposal.sentences if _checks(sentence)]
         named = {int(n) for sentence in checks for n in _NUMBERED.findall(sentence)}
         return (
             bool(named)

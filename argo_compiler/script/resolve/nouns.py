@@ -48,7 +48,7 @@ class Memory:
             self.so_far.update((c.id, c) for c in found)
 
     def latest(self, kind: Kind) -> list[CheckpointInfo]:
-        """What was measured last of a kind, or else all of it that was measured before."""
+        """Return the checkpoints of a kind that were measured last, or else all measured so far."""
         measured = (self.last, self.so_far.values())
         return next(filter(None, ([c for c in m if agrees(c, kind)] for m in measured)), [])
 

@@ -118,7 +118,7 @@ class Do(ProgramNode):
 
     @property
     def branches(self) -> bool:
-        """Whether it may lead elsewhere than to what follows."""
+        """Return True if the mission may go on elsewhere than with the next task."""
         return bool(self.ways or self.failure or self.missed)
 
 

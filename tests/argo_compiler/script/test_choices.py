@@ -62,3 +62,10 @@ def test_a_line_that_does_not_fit_offers_its_readings_too(catalog: Catalog) -> N
     (line,) = draft_of("Checkpoint #7: read pressure gauge 7", catalog).lines
     assert line.is_question
     assert {("Check checkpoint 7.",), ("Check checkpoint 15.",)} <= {*line.choices}
+
+
+def test_a_time_with_two_readings_is_in_no_choice(catalog: Catalog) -> None:
+    (*_, last) = draft_of(f"{BEFORE}4 rounds: 06:00, 08:00, 10:00 and 12:00, or so", catalog).lines
+    said = [sentence for sentences in last.choices for sentence in sentences]
+    assert "Repeat everything 4 times." in said
+    assert not any("None" in sentence for sentence in said)

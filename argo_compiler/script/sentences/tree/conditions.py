@@ -79,7 +79,7 @@ class Test(Node):
 
     @property
     def is_of_failure(self) -> bool:
-        """Whether it asks if a task has failed, which is known as soon as it has ended."""
+        """Return True for a test of a failed task, whose result is known when the task ends."""
         return isinstance(self.predicate, InState) and self.predicate.state in _FAILURES
 
 

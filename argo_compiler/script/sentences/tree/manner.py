@@ -9,8 +9,8 @@ from argo_compiler.script.sentences.tree.places import Coordinates, FloorName
 
 @dataclass(slots=True, kw_only=True, unsafe_hash=True)
 class Manner:
-    """What is said of an order besides what it does; false if nothing is. Not frozen, for very
-    many are made, and they are made faster so; nothing changes one."""
+    """How, when and how often an order is carried out; false without any of these. Not frozen, as
+    very many are made, and a frozen one takes longer to make; nothing changes one."""
 
     speed: float | None = None
     """m/s on the way to each task"""

@@ -119,7 +119,7 @@ def _last_if(words: list[Word]) -> list[Word]:
 
 
 def _is_implied(words: list[Word], i: int) -> bool:
-    """Whether a word says only what its neighbours say as well."""
+    """Return True for a word that adds nothing to its neighbours: `after` in `and after #4`."""
     match words[i].type:
         case "AFTER":  # `first checkpoint 3 and after checkpoint 4`
             return _comes_next(words, i)

@@ -32,9 +32,6 @@ client.use({
     if (author !== "") request.headers.set("Argo-Author", encodeURIComponent(author));
     return request;
   },
-  onError({ error }) {
-    return new Unreached(error instanceof Error ? error.message : String(error));
-  },
 });
 
 interface Answer<T> {
@@ -45,7 +42,10 @@ interface Answer<T> {
 
 /** Return the data of a response. Throws `Refusal` or `Unreached`. */
 export async function responseData<T>(asked: Promise<Answer<T>>): Promise<T> {
-  const { data, error, response } = await asked;
+  // An error here is the network's, also one while the body arrives.
+  const { data, error, response } = await asked.catch((lost: unknown) => {
+    throw new Unreached(String(lost));
+  });
   if (response.ok) return data as T;
   if (isProblem(error) && error.code !== FULL) throw new Refusal(error);
   throw new Unreached(`${response.status} ${response.statusText}`);

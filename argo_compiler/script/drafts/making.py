@@ -2,7 +2,7 @@
 
 from bisect import bisect_right
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Protocol, TypeVar
 
@@ -104,10 +104,11 @@ def import_script(
     unread = {at for at, error in errors.items() if error.code in _UNREAD and at not in said}
     unclear = {at for at in errors if at not in said}
     proposals: dict[int, Proposal] = {}
+    script = reading.script
     if unread or unclear:  # not of a script that is understood whole, which is to start fast
         from argo_compiler.script.proposals.proposing import propose
 
-        proposals = propose(reading.script, unread, unclear - unread, catalog, start_area)
+        proposals = propose(script, unread, unclear - unread, catalog, start_area)
     proposed = {at: p.sentences for at, p in proposals.items() if not p.is_open}
     suggested = _match(tuple(suggestions), reading.script.pieces)
     assisted = _assisted(reading.script, unread - proposed.keys(), suggested, catalog)
@@ -120,6 +121,12 @@ def import_script(
             sentences = {at: said for at, said in sentences.items() if at not in refused}
             reading = read({**said, **proposed, **sentences})
         errors = _errors_by_piece(reading)
+        lacking = {at for at in errors if at not in said and not _has_choices(proposals.get(at))}
+        if lacking:  # in error only with the proposals for this line or for others
+            others = propose(script, unread - lacking, unclear | lacking, catalog, start_area)
+            for at in lacking & others.keys():
+                before = proposals.get(at, others[at])
+                proposals[at] = replace(before, choices=others[at].choices)
         proposals |= {at: one for at, one in assisted.items() if at not in refused}
     known = _Known(errors, acts, proposals, suggested, assisted, refused)
     lines = tuple(_lines(reading, known))
@@ -133,6 +140,10 @@ def import_script(
         diagnostics=_all_diagnostics(reading, notes),
         text=reading.script.source_text,
     )
+
+
+def _has_choices(proposal: "Proposal | None") -> bool:
+    return proposal is not None and any(proposal.choices)
 
 
 def _all_diagnostics(reading: _Reading, notes: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:

@@ -61,7 +61,8 @@ _MOST_REASONS = 3
 _COUNTED = frozenset(
     ["TIMES", "MORE", "DURATION", "QUANTITY", "MOST_TIME", "MOST_TIMES", "FLOOR_NAME", "BOTH"]
 )
-_FLOORS = frozenset([("FLOOR", "NUMBER"), ("ORDINAL", "FLOOR"), ("AREA", "NUMBER")])
+_AREA = ("AREA", "NUMBER")
+_FLOORS = frozenset([("FLOOR", "NUMBER"), ("ORDINAL", "FLOOR"), _AREA])
 """types of words, side by side, that name a floor or an area"""
 _LONGEST_TITLE = 14
 """words"""
@@ -168,7 +169,8 @@ class Asides:
         back, and the checkpoint stands behind a preposition.
         """
         content = text.content
-        if content.endswith(".") or not _COUNTED.isdisjoint(self.understanding.types(text)):
+        types = self.understanding.types(text)
+        if content.endswith(".") or not _COUNTED.isdisjoint(types) or _AREA in pairwise(types):
             return False
         if self.names_checkpoint(text) and not self._of_checkpoint(text):
             return False

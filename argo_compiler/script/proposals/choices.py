@@ -5,30 +5,29 @@ taken it. The likeliest comes first.
 """
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from itertools import pairwise
 
 from argo_compiler.base.catalog import CheckpointInfo
-from argo_compiler.il import EventKind
+from argo_compiler.script.documents.signs import CLOCK
 from argo_compiler.script.documents.source import RefusedError, ScriptText
+from argo_compiler.script.proposals.cases import by_cases
 from argo_compiler.script.proposals.composing import Composer
 from argo_compiler.script.proposals.frames import KINDS, Sentences, length_words, sentences_of
 from argo_compiler.script.proposals.mentions import (
     Mention,
-    Mentions,
     checkpoint_words,
     mentions_in,
 )
+from argo_compiler.script.proposals.open_text import OpenText
 from argo_compiler.script.proposals.paraphrasing import reads, rephrased, sentence
 from argo_compiler.script.sentences.tree.nouns import Labelled, Nouns, Pronoun
-from argo_compiler.script.sentences.tree.places import AreaLocation
+from argo_compiler.script.sentences.words.amounts import Length
 from argo_compiler.script.sentences.words.numbers import Figure
 from argo_compiler.script.sentences.words.prose import cue_pattern
 from argo_compiler.script.sentences.words.spelling import candidates
 from argo_compiler.script.sentences.words.without_effect import MISPLACED
-from argo_compiler.script.write.conditions import EVENTS
 
 _MOST_CHOICES = 9
 _MOST_CHOSEN = 10
@@ -40,6 +39,7 @@ _LONGEST_PART = 8
 """parts that are read as one"""
 _LONGEST = 500
 """characters of a text that is taken apart"""
+_DAY_MIN = 24 * 60
 _LONGEST_LOOKED_AT = 5_000
 """characters of a text whose mentions are looked at; a longer one can only be set aside"""
 _MOST_TAKEN_APART = 20_000
@@ -58,41 +58,45 @@ _ORDERS = (
     *("ADD", "DELETE", "REPLACE", "MOVE", "IF", "UNLESS", "ELSE", "UNTIL", "EVERY"),
 )
 """types of words of which a text has one that the grammar may read alone"""
+_REPLACING = ("correction", "in_place_of", "NOT", "forbidding", "leave_out", "DELETE", "past")
+"""kinds of mentions with which one checkpoint may take the place of another"""
 _CUT = re.compile(r"[,;:]\s+|\s+[-–/|]\s+|\s*(?:->|→|>)\s*|\s+(?=\()|[()]\s*|[.!?]\s+")
 _CUT_WORDS = ("AND_", "JOINT", "NEXT", "COLON")
 """how types of words begin that part a text"""
+_LISTED = re.compile(r"(?<![\w.,#-])\d{1,3}(?:(?:\s*[,;/>+–-]\s*|\s+)\d{1,3}){2,}(?![\w.,]*\d)")
+"""three or more bare numbers, one after the other"""
+_RETURN = "Return to the docking station"
 _AREA = re.compile(r"(?<![\w#-])([^\W\d_])\s?([1-9])(?![\w-])")
 """an area by its initial: `A2`"""
 _ARTICLE = re.compile(r"\b(?:the|der|die|das)\s+$", re.IGNORECASE)
-_ENDS = frozenset([EventKind.ALL_CLEAR, EventKind.BATTERY_CHARGED, EventKind.CONNECTION_RESTORED])
-"""events that only tell that another one is over"""
 
 
-def choices_of(text: ScriptText, composer: Composer) -> tuple[Sentences, ...]:
+def choices_of(
+    text: ScriptText, composer: Composer, likeliest: Sequence[Sentences] = ()
+) -> tuple[Sentences, ...]:
     """Return what an open text may become, the likeliest first; at the end that nothing comes of
-    it."""
+    it. `likeliest`: the choices of a row, before all others."""
+    made: dict[Sentences, None] = dict.fromkeys(filter(None, likeliest))
     if len(text.content) > _LONGEST_LOOKED_AT:
-        return ((),)
+        return (*made, ())
     text = _with_areas(composer.understanding.rewritten(text), composer)
-    open_text = _OpenText(text, mentions_in(text, composer.understanding), composer)
-    made: dict[Sentences, None] = {}
+    found = mentions_in(text, composer.understanding)
+    open_text = OpenText(text, found, composer, (*composer.known.memory.so_far,))
     for way in _WAYS if len(text.content) <= _LONGEST else (_by_mentions,):
         with composer.known.unchanged():
-            made |= dict.fromkeys(filter(None, way(open_text)))
+            made |= dict.fromkeys(filter(_is_possible, way(open_text)))
     return (*list(made)[:_MOST_CHOICES], ())
 
 
-@dataclass(frozen=True)
-class _OpenText:
-    text: ScriptText
-    found: Mentions
-    composer: Composer
+def _is_possible(sentences: Sentences) -> bool:
+    """Return False for nothing, and for tasks behind the return to the docking station."""
+    return bool(sentences) and not any(s.startswith(_RETURN) for s in sentences[:-1])
 
 
 # ---- with pronouns replaced
 
 
-def _by_pronouns(of: _OpenText) -> Iterator[Sentences]:
+def _by_pronouns(of: OpenText) -> Iterator[Sentences]:
     """Yield the text with each checkpoint that its pronoun may be, if it makes sense then."""
     pronouns = [m for m in of.found.of("pronoun") if _is_single(m)]
     for checkpoint in {c.id: c for c in _candidates(pronouns, of.composer)}.values():
@@ -125,7 +129,7 @@ def _is_single(mention: Mention) -> bool:
 # ---- by its parts
 
 
-def _by_parts(of: _OpenText) -> Iterator[Sentences]:
+def _by_parts(of: OpenText) -> Iterator[Sentences]:
     """Yield what the parts of a text mean that mean something: the longest that make sense."""
     of.composer.taken_apart += len(of.text.content)
     if of.composer.taken_apart > _MOST_TAKEN_APART:
@@ -223,26 +227,16 @@ def _tidied(text: ScriptText) -> ScriptText:
 # ---- by what is mentioned
 
 
-def _by_events(of: _OpenText) -> Iterator[Sentences]:
-    """Yield what the robot may do where an event is named."""
-    events = of.found.of("EVENT")
-    event = events[0].value if len(events) == 1 else None
-    if not isinstance(event, EventKind) or event in _ENDS:
-        return
-    when = f"If {EVENTS[event]}"
-    where = next((f" in starting area {a}" for a in _areas(of.found)), "")
-    answers = {
-        ("home", "HOME", "DOCK", "place"): f"return to the docking station{where}",
-        ("PAUSE", "WAIT"): "pause until all clear is given, and resume",
-        ("END", "ABORT"): "abort the mission",
-        ("REPORT",): "report it",
-    }
-    likely = [answer for kinds, answer in answers.items() if of.found.has(*kinds)]
-    for answer in (*likely, *answers.values()):
-        yield (f"{when}, {answer}.",)
+def _by_acts(of: OpenText) -> Iterator[Sentences]:
+    """Yield what a text asks for, one after the other: `tank 5, a short break of 2 min, home`."""
+    acts = of.acts(of.found, of.composer.known.last_named)
+    if len(acts) > 1 and not of.found.has("IF", "UNLESS", "UNTIL", "ELSE", "EVENT"):
+        yield tuple(f"{act[0].upper()}{act[1:]}." for act in acts)
+    elif not of.found.has("checkpoints", "EVENT") and of.found.has(*_DOCKING[:-1]):
+        yield (f"{of.return_words[0].upper()}{of.return_words[1:]}.",)
 
 
-def _by_mentions(of: _OpenText) -> Iterator[Sentences]:
+def _by_mentions(of: OpenText) -> Iterator[Sentences]:
     """Yield what a text would be without what is not clear, and that its checkpoints are read."""
     for bare in (of.found.without(*_SIGNALS), of.found.without(*_SIGNALS, *_DOCKING)):
         made = sentences_of(bare, of.composer.known) if bare.mentions else None
@@ -250,51 +244,49 @@ def _by_mentions(of: _OpenText) -> Iterator[Sentences]:
             yield made
     named: dict[int, CheckpointInfo] = {}
     for mention in of.found.of("checkpoints"):
-        found = _named_by(mention, of.composer)
+        found = of.named_by(mention)
         named |= {c.id: c for c in found}
         alike = () if found else of.composer.known.alike(mention)
         yield from ((f"Check checkpoint {c.id}.",) for c in alike)
     if 0 < len(named) <= _MOST_CHOSEN:
         words = checkpoint_words(list(named.values()))
         yield (f"Check {words}.",)
-        yield (f"Do not check {words}.",)
+        yield (f"{_sparing(named, of)} {words}.",)
         lengths = [length_words(mention.value) for mention in of.found.of("DURATION")]
         yield from ((f"Wait for {length}.", f"Check {words}.") for length in lengths if length)
         if len(named) <= _FEW:
             yield from ((f"Check checkpoint {id}.",) for id in named)
-    elif not named:
-        for area in _areas(of.found):
-            start, end = f"Start in starting area {area}.", f"starting area {area}."
-            yield (start,)
-            yield (f"Return to the docking station in {end}",)
-            yield (start, f"End of the mission: {end}")
-        for mention in of.found.of("DURATION", "MOST_TIME"):
-            if (length := length_words(mention.value)) is not None:
-                yield (f"Maximum duration: {length}.",)
-                yield (f"Wait for {length}.",)
 
 
-def _named_by(mention: Mention, composer: Composer) -> list[CheckpointInfo]:
-    """Return the checkpoints that a part of a text names; none if that is not clear."""
-    with suppress(RefusedError):
-        return composer.known.checkpoints([mention])
-    return []
+def _by_header(of: OpenText) -> Iterator[Sentences]:
+    """Yield where a mission starts and ends, and how long it takes: `max 30 min, area 2 to 1`."""
+    if any(map(of.named_by, of.found.of("checkpoints"))):
+        return
+    lengths = [length_words(mention.value) for mention in of.found.of("DURATION", "MOST_TIME")]
+    limits = [f"Maximum duration: {length}." for length in lengths if length]
+    places: list[Sentences] = []
+    if len(of.areas) > 1:
+        first, last = of.areas[0], of.areas[-1]
+        end = f"End of the mission: starting area {last}."
+        places.append((f"Start in starting area {first}.", end))
+    for area in dict.fromkeys(of.areas):
+        start, end = f"Start in starting area {area}.", f"starting area {area}."
+        there: list[Sentences] = [(start,), (f"Return to the docking station in {end}",)]
+        both = (start, f"End of the mission: {end}")
+        places += [both, *there] if of.found.has("home", "HOME", "END") else [*there, both]
+    for limit in limits:
+        yield from ((*place, limit) for place in places[:2])
+    yield from places
+    for length in filter(None, lengths):
+        yield from ((f"Maximum duration: {length}.",), (f"Wait for {length}.",))
 
 
-def _areas(found: Mentions) -> list[int]:
-    """Return the numbers of the areas that are named; also of `starting area is 2`."""
-    places = (mention.value for mention in found.of("place"))
-    areas = [place.area for place in places if isinstance(place, AreaLocation)]
-    numbers = [m.value.whole for m in found.of("NUMBER") if isinstance(m.value, Figure)]
-    return areas or [n for n in numbers if n is not None and found.has("AREA")]
-
-
-def _by_corrections(of: _OpenText) -> Iterator[Sentences]:
+def _by_corrections(of: OpenText) -> Iterator[Sentences]:
     """Yield the checkpoints without those that are taken back: `R12 - wait, not R12, R31`."""
     named: list[CheckpointInfo] = []
     taken_back: set[int] = set()
     for mention in of.found.of("checkpoints"):
-        checkpoints = _named_by(mention, of.composer)
+        checkpoints = of.named_by(mention)
         before = [m for m in of.found.of("NOT", "forbidding") if m.end <= mention.start]
         if before and not of.text.content[before[-1].end : mention.start].strip():
             again = {c.id for c in checkpoints} & {c.id for c in named}
@@ -305,42 +297,75 @@ def _by_corrections(of: _OpenText) -> Iterator[Sentences]:
         yield (f"Check {checkpoint_words(list(left.values()))}.",)
 
 
-def _by_place_in_order(of: _OpenText) -> Iterator[Sentences]:
-    """Yield that a checkpoint is read earlier than what stands above: `before all that, R25`."""
-    known = of.composer.known
-    mentions = of.found.of("checkpoints")
-    named = [c for mention in mentions for c in _named_by(mention, of.composer)]
-    above = [*known.memory.so_far]
-    if not named or not above:
-        return
+def _by_edits(of: OpenText) -> Iterator[Sentences]:
+    """Yield how a text changes what stands above: `before all that, R25`, `item 5 comes first`,
+    `R12 is wrong, it is R25`."""
+    known, above = of.composer.known, of.above
+    named = [c.id for mention in of.found.of("checkpoints") for c in of.named_by(mention)]
     items = [known.items.get(of.text.content[m.start : m.end]) for m in of.found.of("NUMBER")]
-    others = [c.id for c in named[1:] if c.id in above] + [id for id in items if id in above]
-    for kind, word in (("BEFORE", "before"), ("AFTER", "after")):
+    ids = [*dict.fromkeys([*named, *(id for id in items if id is not None)])]
+    if not ids or not above:
+        return
+    id, others = ids[0], [one for one in ids[1:] if one in above]
+    verb = "Move" if id in above else "Add"
+    for kind, side in (("BEFORE", "before"), ("AFTER", "after")):
         if of.found.has(kind) and others:
-            yield (f"Add checkpoint {named[0].id} {word} checkpoint {others[0]}.",)
-    if of.found.has("BEFORE", "first", "AT_BEGIN"):
-        yield (f"Add checkpoint {named[0].id} before checkpoint {above[0]}.",)
+            yield (f"{verb} checkpoint {id} {side} checkpoint {others[0]}.",)
+    if of.found.has("BEFORE", "first", "AT_BEGIN") and id != above[0]:
+        yield (f"{verb} checkpoint {id} before checkpoint {above[0]}.",)
+    if of.found.has("last", "AT_END") and id in above[:-1]:
+        yield (f"Move checkpoint {id} after checkpoint {above[-1]}.",)
+    old = [one for one in ids if one in above]
+    new = [one for one in ids if one not in above]
+    if len(old) == len(new) == 1 and of.found.has(*_REPLACING):
+        yield (f"Replace checkpoint {old[0]} by checkpoint {new[0]}.",)
 
 
-def _by_rounds(of: _OpenText) -> Iterator[Sentences]:
+def _by_rounds(of: OpenText) -> Iterator[Sentences]:
     """Yield what a text asks for that counts rounds: `2 rounds, 30 min start to start`."""
+    if of.found.has("checkpoints"):
+        return
     counts = [m.value.whole for m in of.found.of("TIMES") if isinstance(m.value, Figure)]
     lengths = [length for m in of.found.of("DURATION") if (length := length_words(m.value))]
-    for count in counts if not of.found.has("checkpoints") else ():
-        yield from ((f"Repeat everything every {length}, {count} times.",) for length in lengths)
+    clocks = [60 * int(m["hour"]) + int(m["minute"]) for m in CLOCK.finditer(of.text.content)]
+    gaps = [(b - a) % _DAY_MIN for a, b in pairwise(clocks)]
+    every = [
+        m.value.seconds / 60
+        for m in of.found.of("DURATION")
+        if isinstance(m.value, Length) and m.value.other is None
+    ]
+    if len(gaps) == len(every) == 1 and every[0] > 0 and gaps[0] % every[0] == 0:
+        counts = [*counts, int(gaps[0] / every[0]) + 1]  # `every hour, from 8:00 to 11:00`
+    elif gaps and len({*gaps}) == 1 and gaps[0] > 0:
+        yield (f"Repeat everything every {gaps[0]} minutes, {len(clocks)} times.",)
+    for count in (c for c in counts if c is not None and c > 1):
+        for length in lengths:
+            spaced = f"Repeat everything every {length}, {count} times."
+            paused = f"Repeat everything {count} times, with a wait of {length} in between."
+            yield from ((a,) for a in ((paused, spaced) if _pauses(of) else (spaced, paused)))
         yield (f"Repeat everything {count} times.",)
 
 
-def _by_order(of: _OpenText) -> Iterator[Sentences]:
+def _pauses(of: OpenText) -> bool:
+    return of.found.has("IN_BETWEEN", "PAUSE", "PAUSE_OF", "WAIT", "later")
+
+
+def _by_order(of: OpenText) -> Iterator[Sentences]:
     """Yield what a text may be that speaks of the order."""
     labels = of.composer.understanding.language.prose.labels["order"]
-    if cue_pattern("order", labels).search(of.text.content) and not of.found.has("checkpoints"):
+    if cue_pattern("order", labels).search(of.text.content):
         yield ("Order: precise.",)
         yield ("Order: any.",)
 
 
-def _by_figures(of: _OpenText) -> Iterator[Sentences]:
-    """Yield the checkpoints that a bare number may be, those that were named before it first."""
+def _by_figures(of: OpenText) -> Iterator[Sentences]:
+    """Yield the checkpoints that a bare number may be, those that were named before it first; of
+    several numbers, first the list: `7 points: 19 20 18 17`."""
+    listed = _LISTED.search(of.text.content)
+    ids = list(dict.fromkeys(map(int, re.findall(r"\d+", listed[0])))) if listed else []
+    if ids and {*ids} <= {c.id for c in of.composer.known.catalog.checkpoints}:
+        checkpoints = {c.id: c for c in of.composer.known.catalog.checkpoints}
+        yield (f"Check {checkpoint_words([checkpoints[id] for id in ids])}.",)
     if of.found.has("checkpoints", "place", "AREA"):
         return
     figures = {of.text.content[m.start : m.end] for m in of.found.of("NUMBER")}
@@ -355,18 +380,25 @@ def _by_figures(of: _OpenText) -> Iterator[Sentences]:
     for checkpoint in alike:
         verb = "Check"
         if of.found.has("leave_out", "forbidding", "NOT", "correction", "DELETE", "past"):
-            verb = "Delete" if checkpoint.id in known.memory.so_far else "Do not check"
+            verb = _sparing({checkpoint.id}, of)
         yield (f"{verb} checkpoint {checkpoint.id}.",)
 
 
-_WAYS: tuple[Callable[[_OpenText], Iterator[Sentences]], ...] = (
+def _sparing(ids: Collection[int], of: OpenText) -> str:
+    """Return how checkpoints are left out: those that are asked for above are deleted."""
+    return "Delete" if {*ids} <= {*of.above} else "Do not check"
+
+
+_WAYS: tuple[Callable[[OpenText], Iterator[Sentences]], ...] = (
     _by_pronouns,
     _by_corrections,
+    by_cases,
     _by_parts,
-    _by_events,
-    _by_place_in_order,
+    _by_edits,
     _by_rounds,
     _by_order,
+    _by_acts,
     _by_mentions,
+    _by_header,
     _by_figures,
 )

@@ -34,6 +34,8 @@ _PLAIN = frozenset(
     ]
 )
 """words that join others, of which none changes what a whole clause means"""
+_BIDDING = ("MEASURE", "BE_MEASURED", "start", "START", "home", "HOME", "END")
+"""mentions that ask for something, whatever words of politeness stand beside them"""
 _TOWARDS = frozenset(["TO", "IN", "AT", "ON", "FOR"])
 """words that join a place"""
 _UNSURE = (
@@ -191,7 +193,7 @@ class Composer:
         if not sentences:
             return Proposal(aside="a repetition of what is said above")
         unused = tuple(text.content[word.start : word.end] for word in found.unknown)
-        bidden = found.has("MEASURE", "BE_MEASURED") or "courtesy" not in found.joining
+        bidden = found.has(*_BIDDING) or "courtesy" not in found.joining
         towards = _TOWARDS if found.has("place") else frozenset()
         plain = bidden and found.joining <= {*_PLAIN, *towards, "courtesy"}
         whole = plain and not unused and not found.has(*_UNSURE)

@@ -371,7 +371,9 @@ def length_words(value: object) -> str | None:
 
 def _seconds(seconds: float) -> str:
     minutes = seconds / 60
-    return f"{minutes:g} minutes" if minutes == int(minutes) else f"{seconds:g} s"
+    if minutes != int(minutes):
+        return f"{seconds:g} s"
+    return f"{minutes:g} minutes" if minutes != 1 else "1 minute"
 
 
 _FRAMES: tuple[Callable[[Mentions, Known], Sentences | None], ...] = (

@@ -5,6 +5,7 @@ from bisect import bisect_right
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from itertools import chain
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.script.documents.signs import CLOCK
@@ -116,8 +117,9 @@ class _Proposer:
                 proposal = Proposal(aside="left out, as another line says")
             if proposal is not None and self._is_left_out(proposal):
                 proposal = Proposal(aside="left out, as another line says")
-            if proposal is not None and proposal.is_open and proposal.choices in ((), ((),)):
-                choices = choices_of(self._whole(piece), self.composer)
+            in_row = start in self.script.rows
+            if proposal is not None and proposal.is_open and (in_row or not any(proposal.choices)):
+                choices = choices_of(self._whole(piece), self.composer, proposal.choices)
                 proposal = replace(proposal, choices=choices)
             if proposal is not None:
                 self.found[start] = proposal
@@ -132,7 +134,11 @@ class _Proposer:
     def _end_later(self, measured: set[int]) -> None:
         """Let a return that tasks follow say where the mission ends: `Arrival: starting area 1`
         above the checkpoints."""
-        checking = (at for at, one in self.found.items() if any(map(_checks, one.sentences)))
+        checking = (
+            at
+            for at, one in self.found.items()
+            if any(map(_checks, (*one.sentences, *chain(*one.choices[:1]))))
+        )
         last = max((*measured, *checking), default=-1)
         for at, proposal in self.found.items():
             if at < last:

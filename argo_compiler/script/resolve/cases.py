@@ -34,7 +34,7 @@ from argo_compiler.script.sentences.tree.conditions import (
     Test,
     TooLate,
 )
-from argo_compiler.script.sentences.tree.nouns import Pronoun
+from argo_compiler.script.sentences.tree.nouns import Kind, Pronoun, TheOne
 from argo_compiler.script.sentences.tree.orders import Case, PlainWord, Rest, ScriptOrder
 from argo_compiler.script.sentences.tree.places import DockLocation
 
@@ -76,6 +76,8 @@ class Cases:
         """the tasks of which it is said what is done if they fail"""
         self.asked: tuple[CheckpointInfo, ...] = ()
         """what `it` means in a condition, and where that does not hold"""
+        self.general: list[tuple[Case, Test]] = []
+        """what is done if any of several tasks fails"""
 
     def add(self, case: Case, block: ProgramBlock) -> None:
         """Plans one case; one that can't be is given up. After it, `it` may be what the condition
@@ -112,6 +114,10 @@ class Cases:
             message = "`unless` needs a condition on values, not an event or a missed time"
             hint = "write what to do if it happens: `if ..., go home`"
             self.diagnostics.refuse("condition", message, condition.span, hint)
+        general = [t for t in condition.tests if isinstance(t, Test) and t.general]
+        if any(test.is_of_failure for test in general):
+            self._general(case, condition, general[0])
+            return
         if late or not values or _is_failure(condition):
             self.context.choice = None
         if late:
@@ -272,6 +278,39 @@ class Cases:
 
     # ---- failures
 
+    def _general(self, case: Case, condition: SaidCondition, test: Test) -> None:
+        """Note what is done if any task fails: `if a reading fails, try it once more`."""
+        retries = [order for order in case.orders if isinstance(order, orders.Retry)]
+        rest = [order for order in case.orders if not (order in retries or _is_next(order))]
+        policy = _policy(rest) if rest else OnFailure.CONTINUE
+        failed = isinstance(test.predicate, InState) and test.predicate.state is TaskState.FAILED
+        goes_on = policy is OnFailure.CONTINUE and not retries and test.is_of_failure
+        plain = condition.tests == [test] and not (condition.negated or test.negated)
+        if policy is None or not plain or not (goes_on or failed):
+            message = "this can be any of several checkpoints, or the last one"
+            hint = "name the checkpoint: `if checkpoint 4 fails, ...`"
+            self.diagnostics.refuse("ambiguous-pronoun", message, case.span, hint)
+        self.general.append((case, test))
+
+    def finish(self) -> None:
+        """Apply to each reading what is done if any fails, unless something is ordered for it."""
+        for case, test in self.general:
+            nouns = () if test.subject is None else test.subject.nouns
+            kind = next((n.kind for n in nouns if isinstance(n, TheOne)), Kind.CHECKPOINT)
+            readings = self.context.readings(kind)
+            for order in case.orders:
+                if isinstance(order, orders.Retry):
+                    self.context.recent = [do for do in readings if not do.retries]
+                    if self.context.recent:
+                        self.manners.amend(replace(order, again=False, every=False))
+            others = [o for o in case.orders if not (isinstance(o, orders.Retry) or _is_next(o))]
+            policy = _policy(others)
+            open_ = [d for d in readings if not d.failure and not any(d is t for t in self.told)]
+            if policy is not None:
+                self.told += open_
+                self.context.recent = open_
+                self.manners.on_failure(policy)
+
     def _failure(self, case: Case, block: ProgramBlock) -> None:
         """Plan the orders that are carried out if the last task fails."""
         recent = self.context.recent
@@ -392,6 +431,11 @@ def _policy(said: Sequence[ScriptOrder]) -> OnFailure | None:
         case [orders.Home(dock=DockLocation(area=None))]:
             return OnFailure.RETURN
     return None
+
+
+def _is_next(order: ScriptOrder) -> bool:
+    """Return True for `carry on with the next point`."""
+    return isinstance(order, orders.Jump) and order.step.ahead and order.step.points == (1,)
 
 
 def _is_failure(condition: SaidCondition) -> bool:

@@ -24,6 +24,7 @@ from argo_compiler.script.resolve.program import (
 )
 from argo_compiler.script.resolve.reacting import Reactions
 from argo_compiler.script.sentences.tree import orders
+from argo_compiler.script.sentences.tree.nouns import Kind
 from argo_compiler.script.sentences.tree.orders import ScriptOrder
 from argo_compiler.script.sentences.tree.places import Steps
 
@@ -118,6 +119,11 @@ class Context:
     def measurements(self, checkpoint: CheckpointInfo) -> list[Do]:
         """The tasks in the program that measure a checkpoint."""
         return list(self.measured.get(str(checkpoint.id), {}).values())
+
+    def readings(self, kind: Kind = Kind.CHECKPOINT) -> list[Do]:
+        """Return the tasks in the program that measure a checkpoint of a kind."""
+        ids = {str(checkpoint.id) for checkpoint in self.lookup.of_kind(kind, ())}
+        return [do for id, tasks in self.measured.items() if id in ids for do in tasks.values()]
 
     def nodes_of(self, steps: Steps) -> list[ProgramNode]:
         """What steps or named tasks stand for. Raises RefusedError if there are none."""

@@ -62,6 +62,7 @@ def _mission(
     planner.finish()
     with suppress(RefusedError):
         starting.finish()
+    planner.cases.finish()
     planner.repeating.finish()
     _warn_of_long_waits(context, script.header)
     order = ordering.finish(context.program)

@@ -206,7 +206,9 @@ class Manners:
 
     def amend(self, order: ScriptOrder) -> None:
         """Applies a sentence or clause of manner to the tasks before it."""
-        recent = self.context.recent
+        recent: Sequence[Do] = self.context.recent
+        if isinstance(order, orders.Retry) and order.every:
+            recent = self.context.readings()
         if not recent:
             message = "there is no task before this to which it could apply"
             hint = "write it after the task that it applies to"

@@ -262,12 +262,10 @@ class Repeating:
         return self._together(order, tops)
 
     def _all(self, round_: ProgramRound) -> list[ProgramNode]:
+        """Everything before the round; above all tasks, everything up to the way home."""
         before = takewhile(lambda node: node is not round_, self.context.program)
-        return [
-            node
-            for node in before
-            if not (isinstance(node, Do) and (node.docks or node.action is Action.START))
-        ]
+        found = [n for n in before if not (_is_start(n) or _docks(n))]
+        return found or [*takewhile(lambda node: not _docks(node), _from(round_.after))]
 
     def _together(self, order: orders.Repeat, tops: list[ProgramNode]) -> list[ProgramNode]:
         """From the first to the last of the nodes, in the order of their block."""
@@ -339,6 +337,10 @@ class Repeating:
 
 def _is_start(node: ProgramNode) -> bool:
     return isinstance(node, Do) and node.action is Action.START
+
+
+def _docks(node: ProgramNode) -> bool:
+    return isinstance(node, Do) and node.docks
 
 
 def _topmost(nodes: Iterable[ProgramNode], block: ProgramBlock) -> list[ProgramNode]:

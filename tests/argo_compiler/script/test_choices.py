@@ -38,6 +38,60 @@ BEFORE = "Check pressure gauge 3 and valve R12.\n"
             "In the event of gas alarm everybody leaves, robot goes to its dock",
             "If a gas leak is detected, return to the docking station.",
         ),
+        # conditions, whatever their grammar
+        (
+            "Attention: if manometer 3 is more than 6 bar the tour is finished and the robot come "
+            "back to the docking station",
+            "If checkpoint 6 is above 6 bar, return to the docking station.",
+        ),
+        (
+            "PG 7 under 0.5 bar -> stop there, whatever is left gets dropped",
+            "Check checkpoint 15. If checkpoint 15 is below 0.5 bar, abort the mission.",
+        ),
+        (
+            "hm R12 not inside 40 to 50 deg, wait 2 min n look at it again",
+            "If checkpoint 5 is outside 40 to 50 deg, wait for 2 minutes and "
+            "check checkpoint 5 again.",
+        ),
+        (
+            "Bob says: poll pressure gauge 3 every minute until it shows more than 5 bar",
+            "Check checkpoint 6 every 1 minute until it is above 5 bar.",
+        ),
+        # failures
+        ("gauge cannot be read: one more try, Joe", "If a reading fails, try again once."),
+        (
+            "Way to the gauge obstructed: omit it, carry on pls",
+            "If a reading fails, go on with the next checkpoint.",
+        ),
+        (
+            "blocked path -> hang on 2 min, Joe",
+            "If a positive obstacle is detected, pause for at most 2 minutes, and resume.",
+        ),
+        # changes of what stands above
+        ("hm, PG 3 is wrong there, Bob meant PG 4", "Replace checkpoint 6 by checkpoint 9."),
+        ("please put R12 first of all in that list, Bob", "Move checkpoint 5 before checkpoint 6."),
+        ("Bob wants the pressure gauge 3 last", "Move checkpoint 6 after checkpoint 5."),
+        ("R12 falls out tomorrow only if it rains", "Delete checkpoint 5."),
+        # rounds
+        (
+            "Jeweils 3 Runden, zwischen den Runden 10 Minuten Pause",
+            "Repeat everything 3 times, with a wait of 10 minutes in between.",
+        ),
+        ("Do a tour at 06:00 and then at 10:00", "Repeat everything every 240 minutes, 2 times."),
+        (
+            "full sets hourly: every hour, 08:00 first, 11:00 last",
+            "Repeat everything every 60 minutes, 4 times.",
+        ),
+        # one after the other
+        (
+            "Bob: PG 4, 2 min of peace, PG 5, home",
+            "Check checkpoint 9. Wait for 2 minutes. Check checkpoint 8. "
+            "Return to the docking station.",
+        ),
+        (
+            "7 points, Bob: 19 20 18 17",
+            "Check checkpoint 19, checkpoint 20, checkpoint 18 and checkpoint 17.",
+        ),
         # the order, times, and numbers that can be checkpoints
         ("The exact sequence is up to you", "Order: any."),
         ("Hurry up, lunch is in 20 minutes", "Maximum duration: 20 minutes."),

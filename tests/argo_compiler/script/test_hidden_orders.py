@@ -6,6 +6,7 @@ import pytest
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.diagnostics import DiagnosticError, Severity
 from argo_compiler.il import EventKind, Order
+from argo_compiler.script import format_script
 from tests.argo_compiler.script.conftest import measured
 from tests.whole_scripts import import_whole
 
@@ -116,6 +117,16 @@ def test_what_stands_in_brackets_is_said_of_the_task(catalog: Catalog) -> None:
     assert (first.priority, second.velocity) == (3, 0.2)
 
 
-def test_nothing_is_repeated_before_anything_is_planned(catalog: Catalog) -> None:
+def test_everything_is_repeated_that_stands_below_the_number_of_rounds(catalog: Catalog) -> None:
+    above = import_whole(
+        f"Repeat everything twice. {START}. Check #4. Return to the dock.", catalog
+    )
+    below = import_whole(
+        f"{START}. Check #4. Repeat everything twice. Return to the dock.", catalog
+    )
+    assert format_script(above.mission, catalog) == format_script(below.mission, catalog)
+
+
+def test_nothing_is_repeated_where_nothing_is_planned(catalog: Catalog) -> None:
     with pytest.raises(DiagnosticError, match="there is nothing before this to repeat"):
-        import_whole(f"Repeat everything twice. {START}.", catalog)
+        import_whole("Start in starting area 1. Repeat everything twice. Return home.", catalog)

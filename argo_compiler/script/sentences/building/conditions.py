@@ -24,7 +24,7 @@ from argo_compiler.script.sentences.tree.conditions import (
     TooLate,
     ValvePosition,
 )
-from argo_compiler.script.sentences.tree.nouns import Nouns
+from argo_compiler.script.sentences.tree.nouns import Labelled, Nouns
 from argo_compiler.script.sentences.words.loading import pattern
 from argo_compiler.script.sentences.words.word import Word
 
@@ -33,6 +33,7 @@ _STATES = {str(state): state for state in (*TaskState, *ValvePosition)}
 _MOST = 64
 """alternatives of one condition"""
 _NEGATING = r"\b<negating>\b(?!.*\b<closing>\W*$)"
+_INDEFINITE = r"\b<indefinite>\s+$"
 _BOUNDING = r"<bounding>(?!\w)"
 """how a bound begins that has no verb of its own"""
 
@@ -97,6 +98,7 @@ def _test(part: RulePart) -> Test:
     if subject is not None and several and how_many == ("both" if subject.either else "either"):
         hint = "write `if either #1 or #5 is abnormal`, or `if both #1 and #5 are abnormal`"
         part.error("ambiguous-and-or", "this can apply to one of them, or to both", hint)
+    plain = subject is not None and not any(isinstance(n, Labelled) for n in subject.nouns)
     age = part.first(float)
     detail = part.first(dict) or {"id": "", "second": None}
     return Test(
@@ -104,6 +106,7 @@ def _test(part: RulePart) -> Test:
         subject=subject,
         predicate=predicate,
         negated=negated,
+        general=plain and pattern(_INDEFINITE).search(part.text.content[: part.start]) is not None,
         max_age=predicate.age if isinstance(predicate, InState) and predicate.age else age,
         id=str(detail["id"]),
         second_bound=detail["second"],

@@ -133,7 +133,8 @@ def _word(part: RulePart) -> ScriptOrder:
 
 def _retry(part: RulePart) -> ScriptOrder:
     again = part.the_word("RETRY").value == "again"
-    return orders.Retry(span=part.span, manner=_manner(part), again=again)
+    every = part.has("ALL")
+    return orders.Retry(span=part.span, manner=_manner(part), again=again, every=every)
 
 
 def _repeat(part: RulePart) -> ScriptOrder:

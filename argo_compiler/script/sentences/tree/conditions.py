@@ -71,6 +71,8 @@ class Test(Node):
     """None: what was measured last"""
     predicate: Predicate
     negated: bool = False
+    general: bool = False
+    """whether any of several may be meant: `if a reading fails`"""
     max_age: float | None = None
     """s"""
     id: str = ""

@@ -125,6 +125,8 @@ class Retry(ScriptOrder):
 
     again: bool = False
     """whether it may be meant as once more, too: `repeat the reading`"""
+    every: bool = False
+    """`retry all twice`"""
 
 
 @node

@@ -81,7 +81,7 @@ class Prose:
     @cached_property
     def label(self) -> re.Pattern[str]:
         """A field's label with its colon; the group that matched is the field's name."""
-        names = (f"(?P<{name}>{either(text)})" for name, text in self.labels.items())
+        names = (f"(?P<{name}>{_key(text)})" for name, text in self.labels.items())
         return re.compile(rf"(?<![\w-])(?:{'|'.join(names)})\s*:", re.IGNORECASE)
 
     @cached_property
@@ -160,6 +160,11 @@ def either(text: str) -> str:
     """A pattern of one of the phrases, the longest that fits."""
     longest_first = sorted(sorted(set(expand(text))), key=len, reverse=True)
     return "|".join(re.escape(phrase).replace(r"\ ", r"\s+") for phrase in longest_first)
+
+
+def _key(text: str) -> str:
+    """A pattern of one of the phrases, also as the key of a data file: `max_time`."""
+    return either(text).replace(r"\s+", r"[\s_]+")
 
 
 class Beginnings:

@@ -29,6 +29,22 @@ _OF_HEADER = (
     re.compile(r"\b(?:at most|maximum duration:?) (\d+)", re.IGNORECASE),
 )
 """what a line without checkpoints may mean: where the mission starts and ends, waits, limits"""
+_DOCKS = r"(?:\bdock|starting area)"
+_RETRIES = r"\b(?:re)?tr(?:y|ies)\b"
+_GOES_ON = r"\b(?:skip|leave (?:it )?out|(?:go|continue) (?:on )?with the next)"
+_OF_CASE = tuple(
+    re.compile(pattern, re.IGNORECASE)
+    for pattern in (
+        _DOCKS,
+        rf"^(?!.*{_DOCKS}).*\b(?:end|abort)",
+        _RETRIES,
+        rf"^(?!.*{_RETRIES}).*{_GOES_ON}",
+        r"\b(?:wait|pause)\b",
+        r"\bcharge",
+        r"\breport",
+    )
+)
+"""what is done in a case that names no checkpoint; after another try the mission goes on anyway"""
 _IN_BRACKETS = re.compile(r"\([^()]*\)")
 """in what a line means: the other name of a point, or another reading"""
 _TO = re.compile(r"#(\d+) to #(\d+)")
@@ -217,8 +233,12 @@ class _Meanings:
     def whole(self, sentences: Sequence[str]) -> Meaning:
         """Return the meaning; of sentences without checkpoints, what they set or wait for."""
         found = self(sentences)
+        text = " ".join(sentences)
+        if found.keys() == {(False, 0)}:
+            found.update(
+                (False, -k) for k, pattern in enumerate(_OF_CASE, 1) if pattern.search(text)
+            )
         if not found:
-            text = " ".join(sentences)
             for kind, pattern in enumerate(_OF_HEADER, start=1):
                 found.update((False, -1000 * kind - int(n)) for n in pattern.findall(text))
         return found

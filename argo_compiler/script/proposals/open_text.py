@@ -1,0 +1,78 @@
+"""An open text, with what it mentions, for which choices are looked for."""
+
+from contextlib import suppress
+from dataclasses import dataclass
+
+from argo_compiler.base.catalog import CheckpointInfo
+from argo_compiler.script.documents.source import RefusedError, ScriptText
+from argo_compiler.script.proposals.composing import Composer
+from argo_compiler.script.proposals.frames import length_words
+from argo_compiler.script.proposals.mentions import Mention, Mentions, checkpoint_words
+from argo_compiler.script.sentences.tree.places import AreaLocation, DockLocation
+from argo_compiler.script.sentences.words.numbers import Figure
+
+_HOME = ("home", "HOME", "DOCK")
+_ENDS = ("END", "ABORT")
+_SPARING = ("forbidding", "NOT", "leave_out", "EXCEPT", "SPARE", "DELETE")
+
+
+@dataclass(frozen=True)
+class OpenText:
+    """A text that is not understood, and the parts of it that mean something."""
+
+    text: ScriptText
+    found: Mentions
+    composer: Composer
+    above: tuple[int, ...]
+    """the checkpoints that are measured before it"""
+
+    def named_by(self, mention: Mention) -> list[CheckpointInfo]:
+        """Return the checkpoints that a part names; none if that is not clear."""
+        with suppress(RefusedError):
+            return self.composer.known.checkpoints([mention])
+        return []
+
+    @property
+    def types(self) -> tuple[str, ...]:
+        """The types of the words, also of those that are part of a larger mention."""
+        return self.composer.understanding.types(self.text)
+
+    @property
+    def areas(self) -> list[int]:
+        """The numbers of the areas that are named; also of `starting area is 2`."""
+        places = (mention.value for mention in self.found.of("place"))
+        docks = (one.area if isinstance(one, DockLocation) else one for one in places)
+        areas = [place.area for place in docks if isinstance(place, AreaLocation)]
+        numbers = [m.value.whole for m in self.found.of("NUMBER") if isinstance(m.value, Figure)]
+        return areas or [n for n in numbers if n is not None and self.found.has("AREA")]
+
+    @property
+    def return_words(self) -> str:
+        """How the robot is sent back: `return to the docking station in starting area 1`."""
+        area = next((a for a in self.areas if self.composer.known.catalog.area(a)), None)
+        where = "" if area is None else f" in starting area {area}"
+        return f"return to the docking station{where}"
+
+    def acts(self, mentions: Mentions, subject: CheckpointInfo | None = None) -> list[str]:
+        """Return what a text asks for, in its order: to wait, to check, to end or to return.
+        `subject`: the checkpoint that `again` means."""
+        acts: list[str] = []
+        spared = False
+        for mention in mentions.mentions:
+            spared = mention.kind in _SPARING or (spared and mention.kind == "MEASURE")
+            if mention.kind == "checkpoints" and not spared:
+                named = self.named_by(mention)
+                acts += [f"check {checkpoint_words(named)}"] if named else []
+            elif mention.kind == "DURATION" and (length := length_words(mention.value)):
+                acts.append(f"wait for {length}")
+        checks = any(act.startswith("check") for act in acts)
+        if mentions.has("again", "MORE", "RETRY") and subject is not None and not checks:
+            acts.append(f"check checkpoint {subject.id} again")
+        docks = any(isinstance(m.value, DockLocation | AreaLocation) for m in mentions.of("place"))
+        if docks or mentions.has("HOME", "DOCK"):
+            acts.append(self.return_words)
+        elif mentions.has(*_ENDS):
+            acts.append("abort the mission")
+        elif mentions.has(*_HOME):
+            acts.append(self.return_words)
+        return acts

@@ -22,7 +22,7 @@ from argo_compiler.script.proposals.mentions import (
 )
 from argo_compiler.script.proposals.open_text import OpenText
 from argo_compiler.script.proposals.paraphrasing import reads, rephrased, sentence
-from argo_compiler.script.sentences.tree.nouns import Labelled, Nouns, Pronoun
+from argo_compiler.script.sentences.tree.nouns import AllOf, Labelled, Nouns, Pronoun, TheOne
 from argo_compiler.script.sentences.words.amounts import Length
 from argo_compiler.script.sentences.words.numbers import Figure
 from argo_compiler.script.sentences.words.prose import cue_pattern
@@ -250,12 +250,20 @@ def _by_mentions(of: OpenText) -> Iterator[Sentences]:
         yield from ((f"Check checkpoint {c.id}.",) for c in alike)
     if 0 < len(named) <= _MOST_CHOSEN:
         words = checkpoint_words(list(named.values()))
+        if len(named) > 1 and any(map(_is_of_kind, of.found.of("checkpoints"))):
+            yield (f"Check {words} in any order.",)
         yield (f"Check {words}.",)
         yield (f"{_sparing(named, of)} {words}.",)
         lengths = [length_words(mention.value) for mention in of.found.of("DURATION")]
         yield from ((f"Wait for {length}.", f"Check {words}.") for length in lengths if length)
         if len(named) <= _FEW:
             yield from ((f"Check checkpoint {id}.",) for id in named)
+
+
+def _is_of_kind(mention: Mention) -> bool:
+    """Return True for `all valves` or `the gauges on floor 3`, whose order nobody has named."""
+    nouns = mention.value.nouns if isinstance(mention.value, Nouns) else ()
+    return any(isinstance(noun, AllOf | TheOne) for noun in nouns)
 
 
 def _by_header(of: OpenText) -> Iterator[Sentences]:

@@ -10,7 +10,15 @@ from argo_compiler.base.catalog import CheckpointInfo, CheckpointKind
 from argo_compiler.script.documents.source import RefusedError
 from argo_compiler.script.proposals.known import Known
 from argo_compiler.script.proposals.mentions import Mention, Mentions, checkpoint_words
-from argo_compiler.script.sentences.tree.nouns import AllOf, Noun, Nouns, Pronoun, Quantity, TheOne
+from argo_compiler.script.sentences.tree.nouns import (
+    AllOf,
+    Kind,
+    Noun,
+    Nouns,
+    Pronoun,
+    Quantity,
+    TheOne,
+)
 from argo_compiler.script.sentences.tree.places import AreaLocation, DockLocation, FloorName
 from argo_compiler.script.sentences.words.amounts import Length
 from argo_compiler.script.sentences.words.numbers import Figure
@@ -198,7 +206,7 @@ def _check(found: Mentions, known: Known) -> Sentences | None:
             return None
     if _verb_before(found, named[-1]) or _words_between(found, named):
         return None
-    if found.has("measuring") and found.announces:
+    if (found.has("measuring") and found.announces) or any(map(_announces, named)):
         return None  # `It takes these checkpoints:`
     if found.has("first") and known.memory.so_far:
         return None
@@ -254,6 +262,15 @@ def _placed(
         if not {c.floor for c in near} <= known.floors(floor_names(place)):
             return None
     return checkpoints
+
+
+def _announces(named: Mention) -> bool:
+    """Return True for `Checkpoints to visit`, without which ones."""
+    nouns = named.value.nouns if isinstance(named.value, Nouns) else ()
+    return any(
+        isinstance(n, TheOne) and n.kind is Kind.CHECKPOINT and n.plural and not n.floors
+        for n in nouns
+    )
 
 
 def _has_no_floor(noun: Noun) -> bool:

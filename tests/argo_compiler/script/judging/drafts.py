@@ -47,6 +47,9 @@ _OF_CASE = tuple(
 """what is done in a case that names no checkpoint; after another try the mission goes on anyway"""
 _IN_BRACKETS = re.compile(r"\([^()]*\)")
 """in what a line means: the other name of a point, or another reading"""
+_FREE = re.compile(r"in any order|\border (?:of [^.]*)?is free|order: any", re.IGNORECASE)
+_ORDER = -9000
+"""stands for a free order"""
 _TO = re.compile(r"#(\d+) to #(\d+)")
 _ASKED = ("asked", "open")
 _NEEDED = re.compile(r"duration|area|docking|order is|stands for|rounds|When|If")
@@ -254,6 +257,8 @@ class _Meanings:
             for part in re.split(r"(?<=\.)\s+(?=[A-Z])", said):
                 spared = _SPARED.search(part) is not None
                 found.update({(spared, int(number)) for number in _POINT.findall(part)})
+                if _FREE.search(part):
+                    found[(False, _ORDER)] = 1
                 if _CASE.search(part):
                     found[(False, 0)] += 1
         return found

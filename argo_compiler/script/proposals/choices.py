@@ -21,7 +21,7 @@ from argo_compiler.script.proposals.mentions import (
     mentions_in,
 )
 from argo_compiler.script.proposals.open_text import OpenText
-from argo_compiler.script.proposals.paraphrasing import reads, rephrased, sentence
+from argo_compiler.script.proposals.paraphrasing import ORDERS, reads, rephrased, sentence
 from argo_compiler.script.sentences.tree.nouns import AllOf, Labelled, Nouns, Pronoun, TheOne
 from argo_compiler.script.sentences.words.amounts import Length
 from argo_compiler.script.sentences.words.numbers import Figure
@@ -53,11 +53,6 @@ _SIGNALS = (
 _DOCKING = ("home", "HOME", "DOCK", "END", "place")
 _PASSED_OVER = ("WORD", "SIGN", "STRAY", "DONE", MISPLACED)
 """types of words that a text is read without"""
-_ORDERS = (
-    *("MEASURE", "KEEP_MEASURING", "GO", "HOME", "START", "PATROL", "WAIT", "RECHARGE", "REPEAT"),
-    *("ADD", "DELETE", "REPLACE", "MOVE", "IF", "UNLESS", "ELSE", "UNTIL", "EVERY"),
-)
-"""types of words of which a text has one that the grammar may read alone"""
 _REPLACING = ("correction", "in_place_of", "NOT", "forbidding", "leave_out", "DELETE", "past")
 """kinds of mentions with which one checkpoint may take the place of another"""
 _CUT = re.compile(r"[,;:]\s+|\s+[-–/|]\s+|\s*(?:->|→|>)\s*|\s+(?=\()|[()]\s*|[.!?]\s+")
@@ -170,7 +165,7 @@ def _part(text: ScriptText, composer: Composer) -> Sentences | None:
         made = sentences_of(found, composer.known) if found.mentions else None
         if made:
             return made
-        if found.has(*_ORDERS) and reads(meant, composer.understanding):
+        if found.has(*ORDERS) and reads(meant, composer.understanding):
             return (sentence(_numbered(meant, composer)),)
         found = mentions_in(meant, composer.understanding)
     return None

@@ -17,6 +17,11 @@ _LONGEST = 300
 """characters of a text that is paraphrased"""
 _ALONE = (("AREA", "NUMBER"),)
 """what can be where a mission starts, or where it ends"""
+ORDERS = (
+    *("MEASURE", "KEEP_MEASURING", "GO", "HOME", "START", "PATROL", "WAIT", "RECHARGE", "REPEAT"),
+    *("ADD", "DELETE", "REPLACE", "MOVE", "IF", "UNLESS", "ELSE", "UNTIL", "EVERY"),
+)
+"""types of words of which a text has one that the grammar may read alone"""
 _BLANKS = re.compile(r"(?<=\s)\s+|\s+(?=[,;])")
 """blanks that are left where words were removed"""
 _PART = {"n": r"[-\d.,]*\d(?:\s?(?:%|°|[a-z]{1,8}))?", "k": r"[\w-]+", "x": r".+?", "y": r".+"}

@@ -24,7 +24,7 @@ from argo_compiler.script.proposals.mentions import (
     checkpoint_words,
     mentions_in,
 )
-from argo_compiler.script.proposals.paraphrasing import reads, sentence
+from argo_compiler.script.proposals.paraphrasing import ORDERS, reads, sentence
 from argo_compiler.script.sentences.tree.places import FloorName
 from argo_compiler.script.sentences.words.lexicon import expand
 from argo_compiler.script.sentences.words.prose import cue_pattern
@@ -226,6 +226,9 @@ def _without_checkpoint(row: FormRow, composer: Composer, first: bool) -> Propos
     if len(said) > 1 and ((first and _is_title(said[0], composer)) or _is_label(row, composer)):
         said = said[1:]
     if plain and len(said) == 1 and said[0].content:
+        orders = mentions_in(said[0], composer.understanding).has(*ORDERS)
+        if orders and reads(said[0], composer.understanding):
+            return Proposal((sentence(said[0]),), certain=True)
         inner = composer.propose(said[0])
         return inner if inner.sentences or len(row.cells) == 1 else Proposal(choices=((),))
     return Proposal(choices=((),))

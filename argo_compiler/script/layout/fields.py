@@ -274,8 +274,11 @@ class ScriptFields:
         return Text(span=value.span(), text=text)
 
     def _nothing(self, value: ScriptText, label: ScriptText) -> None:
-        types = self.understanding.types(value)
-        if {*types} & {"AREA", "KIND", "HASH", "DOCK"} or {*types[:1]} & {*VERBS}:
+        words = self.understanding.words(value)
+        types = [word.type for word in words]
+        names = (value.content[w.start : w.end].lower() for w in words if w.type == "IDENT")
+        named = {*types} & {"KIND", "HASH", "DOCK"} or ("AREA", "NUMBER") in pairwise(types)
+        if named or {*types[:1]} & {*VERBS} or any(n in self.understanding.names for n in names):
             message = f"a field `{label.content.rstrip(' :')}` has no effect on a mission"
             hint = "write a sentence if the robot has to do something, or remove the line"
             self.diagnostics.error("unknown-label", message, label.span(), hint)

@@ -8,7 +8,6 @@ from dataclasses import replace
 from itertools import chain
 
 from argo_compiler.base.catalog import Catalog
-from argo_compiler.script.documents.signs import CLOCK
 from argo_compiler.script.documents.source import Diagnostics, RefusedError, ScriptText
 from argo_compiler.script.layout.forms import CellRole
 from argo_compiler.script.parsing.script import Piece, Script
@@ -23,29 +22,21 @@ from argo_compiler.script.proposals.clock import (
     windowed,
 )
 from argo_compiler.script.proposals.composing import Composer, Proposal
-from argo_compiler.script.proposals.evidence import is_name
 from argo_compiler.script.proposals.frames import Sentences, floor_names
 from argo_compiler.script.proposals.known import Known
 from argo_compiler.script.proposals.mentions import OF_FORMS, Mention, Mentions, mentions_in
+from argo_compiler.script.proposals.neighbours import Neighbours
 from argo_compiler.script.proposals.rows import propose_row
 from argo_compiler.script.sentences.tree.nouns import AllOf, TheOne
 from argo_compiler.script.sentences.tree.orders import Measure, Sentence
 from argo_compiler.script.sentences.tree.script import ScriptStep
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.language import Language
-from argo_compiler.script.sentences.words.prose import cue_pattern
 
 MAX_PROPOSED = 2000
 """pieces of a script; no more are looked at"""
-_FIRST = 4
-"""pieces of a letter in which a name alone is a greeting"""
 _NUMBERED = re.compile(r"checkpoint ([0-9]+)")
-_OF_NAMES = frozenset(["WORD", "SIGN", "UNIT", "UNIT_S"])
-"""types of words that initials and names may be taken for"""
-_LAST = 3
-"""pieces at the end of a script in which a name alone is a signature"""
 _RETURN = re.compile(r"Return to the docking station(?: in starting area ([0-9]+))?\.")
-_NAME = re.compile(r"[^\W\d_a-zäöü][^\W\d_A-ZÄÖÜ]+,")
 
 
 def propose(
@@ -82,8 +73,8 @@ class _Proposer:
         self.composer = composer
         self.understanding = composer.understanding
         texts = (self._whole(p) for p in script.pieces if p.text.first in unread)
-        self.plan = find_plan(texts, composer.understanding)
-        self.in_log = False
+        self.neighbours = Neighbours(script, composer)
+        self.plan = None if self.neighbours.is_log else find_plan(texts, composer.understanding)
         self.found: dict[int, Proposal] = {}
 
     def all(self) -> dict[int, Proposal]:
@@ -100,7 +91,7 @@ class _Proposer:
                 self.composer.known.items |= {} if others else {str(number): checkpoint.id}
         for i, piece in enumerate(self.script.pieces):
             start = piece.text.first
-            self._note_heading(piece)
+            self.neighbours.note_heading(piece)
             if start not in self.script.rows:
                 self.composer.known.listed = None
             named = measured.get(start, [])
@@ -127,6 +118,8 @@ class _Proposer:
             else:
                 self._remember(named)
             said = proposal.sentences if proposal is not None else ()
+            aside = piece.aside if proposal is None else proposal.aside
+            self.neighbours.note(i, aside, asks=bool(named or said) and not aside)
             self.composer.before = said[-1] if said else piece.text.content
         self._end_later({*measured})
         return self.found
@@ -180,20 +173,10 @@ class _Proposer:
         row = self.script.rows.get(piece.text.first)
         return piece.text if row is None else row.place
 
-    def _note_heading(self, piece: Piece) -> None:
-        content = piece.text.content
-        if content.isupper() and piece.text.first not in self.script.rows:
-            logs = self.understanding.language.prose.form["logs"]
-            self.in_log = cue_pattern("logs", logs).fullmatch(content.strip(" :")) is not None
-
     def _proposal(self, piece: Piece, i: int) -> Proposal:
         whole = self._whole(piece)
-        if self.in_log and CLOCK.match(whole.content.lstrip()):
-            return Proposal(aside="an entry of a log")
-        if i < _FIRST and _NAME.fullmatch(piece.text.content):
-            return Proposal(aside="a greeting")
-        if self._is_signature(piece, i):
-            return Proposal(aside="a signature")
+        if reason := self.neighbours.reason(i, whole):
+            return Proposal(aside=reason)
         at_time = self._at_time(whole)
         if at_time is not None:
             return at_time
@@ -223,21 +206,6 @@ class _Proposer:
             places = [self.composer.known.floors(floor_names(place)) for place in found.of("place")]
             return all(here and here <= floors for floors in places)
         return False
-
-    def _is_signature(self, piece: Piece, i: int) -> bool:
-        """Return True for a name at the end of the script, or of one that the header names, and
-        for the time behind initials."""
-        text, pieces = piece.text, self.script.pieces
-        if CLOCK.fullmatch(text.content) and i > 0:
-            before = pieces[i - 1].text
-            same_line = text.source.line_at(before.first) == text.source.line_at(text.first)
-            return same_line and self.found.get(before.first) == Proposal(aside="a signature")
-        named = is_name(text.content) and {*self.understanding.types(text)} <= _OF_NAMES
-        if not named or mentions_in(text, self.understanding).mentions:
-            return False
-        ends = i >= len(pieces) - _LAST
-        header = text.source.lines[:_FIRST]
-        return ends or any(text.content in line and ":" in line for line in header)
 
     def _is_spared(self, named: Sequence[Mention], text: ScriptText) -> bool:
         """Return True for an item of a list that a line above it leaves out; an order of its own

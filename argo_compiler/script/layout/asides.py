@@ -64,6 +64,11 @@ _COUNTED = frozenset(
 _AREA = ("AREA", "NUMBER")
 _FLOORS = frozenset([("FLOOR", "NUMBER"), ("ORDINAL", "FLOOR"), _AREA])
 """types of words, side by side, that name a floor or an area"""
+_PARTICIPLE = re.compile(
+    r"(?!required|selected|planned|scheduled|listed|numbered|unmanned|elevated|detailed|combined)"
+    r"\w{4,}ed"
+)
+"""a word that may say in which state the listed points are: `isolated`"""
 _LONGEST_TITLE = 14
 """words"""
 _LONGEST_OCCASION = 10
@@ -369,6 +374,15 @@ class Asides:
         types = self.understanding.types(heading)
         timed = types[:1] in (("BEFORE",), ("AFTER",)) or CLOCK.search(heading.content) is not None
         return timed or _limits(heading, "set_aside", "past")
+
+    def keeps_away(self, heading: ScriptText) -> bool:
+        """Return True if a heading may say that others do what is listed below it, or nobody:
+        `Petra will do these:`, `Off limits`, `Isolated`."""
+        told = pattern(r"\b<keeping_away>\b").search(heading.content) is not None
+        usual = _phrases_of(self.prose.around_reactions)
+        unknown = (w for w in self.understanding.words(heading) if w.type == "WORD")
+        states = (_said(heading, word) for word in unknown)
+        return told or any(s not in usual and _PARTICIPLE.fullmatch(s) for s in states)
 
     def corrects(self, remark: ScriptText) -> bool:
         """Whether a remark may take something back, or say when or how it is done."""

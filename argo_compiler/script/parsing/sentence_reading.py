@@ -14,7 +14,11 @@ from argo_compiler.script.sentences.scopes import ask_of_scopes
 from argo_compiler.script.sentences.tree.orders import Amend, Follow, Sentence, Start
 from argo_compiler.script.sentences.tree.script import Said, Text, Unread
 from argo_compiler.script.sentences.understanding import Reading, Understanding
+from argo_compiler.script.sentences.words.loading import pattern
 from argo_compiler.script.sentences.words.word import VERBS
+
+_POINTING = r"\b<pointing>\b"
+"""words for what is listed below, or was measured before"""
 
 _BETWEEN_COMMAS = re.compile(r"(?:^|(?<=,))[^,]*")
 MAX_SENTENCE = 10_000
@@ -98,6 +102,8 @@ class SentenceReader:
         self.listed = _kind_listed(text, tuple(self.understanding.types(text)))
         stands_over = item.line.heading or text.content.endswith(":")
         if stands_over and self.fields.introduces(text):
+            return []
+        if (item.items or stands_over) and self._points_below(text):
             return []
         if {*self.understanding.types(text)} == {"KIND"}:
             if self.asides.sets_aside(text):
@@ -212,6 +218,20 @@ class SentenceReader:
         self.diagnostics.error(code, message, text.span(), hint)
         return [Unread(span=text.span())]
 
+    def _points_below(self, text: ScriptText) -> bool:
+        """Read a sentence that names what is listed below it, and not what was measured before:
+        `Please check these:`. With more than that it is asked about."""
+        types = {*self.understanding.types(text)}
+        if not types & {"THEM", "THIS"} or not pattern(_POINTING).search(text.content):
+            return False
+        if types <= {"MEASURE", "BE_MEASURED", "THEM", "THIS", "COLON", "GO"}:
+            self.note(text, "a heading")
+            return True
+        message = "this can be about what is listed below, or about what was measured before"
+        hint = "name the checkpoints, or write `do the following:`"
+        self.diagnostics.error("ambiguous-pronoun", message, text.span(), hint)
+        return True
+
     def _is_stray(self, text: ScriptText, item: LineItem) -> bool:
         """Whether a line is a number alone, as a page's is, and no list says of what."""
         alone = item.line.mark is LineMark.NONE and text.content == item.text.content
@@ -297,7 +317,8 @@ class SentenceReader:
     def _entitled(self, title: _Title, item: LineItem, first: bool) -> list[Said]:
         """Keeps a title, and reads what stands behind it."""
         self.begun = True
-        if self.asides.sets_aside(title.head):
+        listing = not first or title.head.content.endswith(":") or bool(item.items)
+        if self.asides.sets_aside(title.head) or (listing and self.asides.keeps_away(title.head)):
             self._ask_of_heading(title.head)
         elif first:
             doubtful = not self.asides.is_title(title.head) or self.asides.names_tasks(title.head)

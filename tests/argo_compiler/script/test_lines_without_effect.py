@@ -236,3 +236,33 @@ def test_a_row_without_a_task(row: str, state: LineState, catalog: Catalog) -> N
 )
 def test_german_lines_likewise(text: str, number: int, catalog: Catalog) -> None:
     assert states(text, number, catalog) == {ASIDE}
+
+
+@pytest.mark.parametrize(
+    "heading",
+    [
+        "The robot keeps away from these:",
+        "Petra will do these:",
+        "Keep clear of the following",
+        "Off limits",
+        "Isolated:",
+        "Blocked by scaffold",
+        "Reserve:",
+        "The contractor reads:",
+        "Manual round",
+        "The robot can't get to these:",
+        "Check these twice:",
+        "Diese prüft der Kollege:",
+        "Nicht erreichbar:",
+    ],
+)
+def test_a_heading_that_may_exclude_its_list_is_asked_about(heading: str, catalog: Catalog) -> None:
+    draft = draft_of(f"Check #1.\n{heading}\n- valve R7\n- valve R12\n", catalog)
+    assert draft.mission is None
+    assert {one.state for one in draft.lines if one.line == 2} == {LineState.OPEN}
+
+
+@pytest.mark.parametrize("heading", ["Upper decks:", "Today's points", "Please check these:"])
+def test_a_plain_heading_over_a_list_is_set_aside(heading: str, catalog: Catalog) -> None:
+    draft = draft_of(f"Check #1.\n{heading}\n- valve R7\n- valve R12\n", catalog)
+    assert measured_in(draft.require_mission()) == ["1", "11", "5"]

@@ -31,7 +31,7 @@ from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.language import Language
 from argo_compiler.script.sentences.words.lexicon import Lexicon, expand
 from argo_compiler.script.sentences.words.prose import cue_pattern
-from argo_compiler.script.sentences.words.unknown import UnknownError, UnknownFigure
+from argo_compiler.script.sentences.words.unknown import UnknownError, UnknownValue
 
 MAX_LINES = 120_000
 """of a script; one with more is refused unread"""
@@ -321,7 +321,7 @@ class _Parser:
         return said, text
 
     def _again(
-        self, item: LineItem, text: ScriptText, unknown: Mapping[int, UnknownFigure]
+        self, item: LineItem, text: ScriptText, unknown: Mapping[int, UnknownValue]
     ) -> list[Said] | None:
         """What a plain item says with another text, in which some figures are not known; None if
         that hangs on them."""

@@ -20,15 +20,15 @@ from argo_compiler.script.sentences.tree.script import Said
 from argo_compiler.script.sentences.words.lexicon import Lexicon
 from argo_compiler.script.sentences.words.unknown import (
     Unknown,
-    UnknownFigure,
     UnknownName,
+    UnknownValue,
     unknown_figure,
 )
 
 _MOST = 8192
 """texts that are kept, and shapes; then all are forgotten"""
 
-ReadAgain = Callable[[ScriptText, Mapping[int, UnknownFigure]], list[Said] | None]
+ReadAgain = Callable[[ScriptText, Mapping[int, UnknownValue]], list[Said] | None]
 """reads a text, in which the figures at these places of the source are not known; None if what it
 says hangs on them"""
 _PLAIN = re.compile(
@@ -66,7 +66,7 @@ def _changed(figure: str, digits: dict[int, str] | dict[int, int]) -> str:
 def _mover(part: object) -> _Move | None:
     """What makes the same part for another place; None if it says nothing of its place, nor of
     a figure that is not known."""
-    if type(part) in (Unknown, UnknownName):
+    if type(part) is Unknown or type(part) is UnknownName:
         fill = part.fill
         return lambda _lines, _columns, figures: fill(figures)
     if part is NOTHING_SAID:
@@ -195,7 +195,7 @@ def _of_shape(
 ) -> _Text | None:
     """What all texts of a shape say; None if that hangs on their figures, or on their digits."""
     places = [found.span() for found in _PLAIN.finditer(text.content)]
-    unknown = {
+    unknown: dict[int, UnknownValue] = {
         text.offsets[start]: unknown_figure(text.content[start:end], place)
         for place, (start, end) in enumerate(places)
     }

@@ -18,7 +18,7 @@ from argo_compiler.script.sentences.words.lexer import words, words_of
 from argo_compiler.script.sentences.words.lexicon import Entry, Lexicon, folded
 from argo_compiler.script.sentences.words.prose import either
 from argo_compiler.script.sentences.words.spelling import candidates
-from argo_compiler.script.sentences.words.unknown import UnknownFigure
+from argo_compiler.script.sentences.words.unknown import UnknownValue
 from argo_compiler.script.sentences.words.word import VERBS, Word
 
 Reading = tuple[Branch, list[Word]]
@@ -62,7 +62,7 @@ class Understanding:
         self.names = names
         """words of the site's names, in lower case"""
         self.diagnostics = diagnostics
-        self.unknown: Mapping[int, UnknownFigure] = {}
+        self.unknown: Mapping[int, UnknownValue] = {}
         """by their places in the source, figures that are to be taken for unknown"""
         self._with_unknown: tuple[object, dict[tuple[int, str], list[Word]]] = ({}, {})
         """words of texts by place and content, and the unknown figures that they have"""

@@ -13,7 +13,7 @@ from argo_compiler.script.sentences.words.joints import joined
 from argo_compiler.script.sentences.words.lexicon import Lexicon, folded
 from argo_compiler.script.sentences.words.merging import merged, negated
 from argo_compiler.script.sentences.words.numbers import Figure, compose, read_figure, split_number
-from argo_compiler.script.sentences.words.unknown import UnknownError, UnknownFigure
+from argo_compiler.script.sentences.words.unknown import UnknownError, UnknownValue
 from argo_compiler.script.sentences.words.without_effect import with_effect, without_empty
 from argo_compiler.script.sentences.words.word import VERBS, Word
 from argo_compiler.script.sentences.words.word_order import arranged
@@ -58,7 +58,7 @@ def _unknown(words: list[Word]) -> int:
 
 
 def words_of(
-    text: str, lexicon: Lexicon, unknown: Mapping[int, UnknownFigure] = MappingProxyType({})
+    text: str, lexicon: Lexicon, unknown: Mapping[int, UnknownValue] = MappingProxyType({})
 ) -> list[Word]:
     """As `words`; the figures that begin at these places are not known. Raises UnknownError if one
     of them is no number by itself."""
@@ -73,7 +73,7 @@ def words_of(
 
 
 def _put_together(
-    found: list[Word], lexicon: Lexicon, unknown: Mapping[int, UnknownFigure]
+    found: list[Word], lexicon: Lexicon, unknown: Mapping[int, UnknownValue]
 ) -> list[Word]:
     found = with_effect(found)
     if unknown:

@@ -119,3 +119,7 @@ class UnknownName(Unknown):
 
     def __bool__(self) -> bool:  # type: ignore[override]
         return True
+
+
+UnknownValue = UnknownFigure | UnknownName
+"""the value of a word that is not known"""

@@ -5,29 +5,9 @@ execution path, unless the robot's drive is meant. Leaves, groups and nodes are 
 (see `flow`).
 """
 
-from argo_compiler.analysis.analysing import analyse
-from argo_compiler.analysis.bound_verification import unproved_bounds
-from argo_compiler.analysis.results import (
-    Analysis,
-    Bound,
-    Bounds,
-    GroupFacts,
-    Stretch,
-    TaskFacts,
-    TransitionFacts,
-    Verdict,
-)
-from argo_compiler.analysis.travel import Leg, NoPath, RobotPose, Travel
-from argo_compiler.analysis.verification_claims import unproved
-from argo_compiler.analysis.witness import (
-    Invariant,
-    KeptReading,
-    LeastSpent,
-    LeastWitness,
-    ReadingScale,
-    Trap,
-    Witnesses,
-)
+from typing import TYPE_CHECKING
+
+from argo_compiler.base.lazy_names import lazy_names
 
 __all__ = [
     "Analysis",
@@ -53,3 +33,57 @@ __all__ = [
     "unproved",
     "unproved_bounds",
 ]
+
+if TYPE_CHECKING:
+    from argo_compiler.analysis.analysing import analyse
+    from argo_compiler.analysis.bound_verification import unproved_bounds
+    from argo_compiler.analysis.results import (
+        Analysis,
+        Bound,
+        Bounds,
+        GroupFacts,
+        Stretch,
+        TaskFacts,
+        TransitionFacts,
+        Verdict,
+    )
+    from argo_compiler.analysis.travel import Leg, NoPath, RobotPose, Travel
+    from argo_compiler.analysis.verification_claims import unproved
+    from argo_compiler.analysis.witness import (
+        Invariant,
+        KeptReading,
+        LeastSpent,
+        LeastWitness,
+        ReadingScale,
+        Trap,
+        Witnesses,
+    )
+else:
+    __getattr__, __dir__ = lazy_names(
+        __name__,
+        {
+            "analysing": ["analyse"],
+            "bound_verification": ["unproved_bounds"],
+            "results": [
+                "Analysis",
+                "Bound",
+                "Bounds",
+                "GroupFacts",
+                "Stretch",
+                "TaskFacts",
+                "TransitionFacts",
+                "Verdict",
+            ],
+            "travel": ["Leg", "NoPath", "RobotPose", "Travel"],
+            "verification_claims": ["unproved"],
+            "witness": [
+                "Invariant",
+                "KeptReading",
+                "LeastSpent",
+                "LeastWitness",
+                "ReadingScale",
+                "Trap",
+                "Witnesses",
+            ],
+        },
+    )

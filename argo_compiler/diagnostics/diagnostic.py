@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 
-from pydantic import Field
+from pydantic import BaseModel, Field
 from pydantic.json_schema import SkipJsonSchema
 
 from argo_compiler.base.errors import Remedy, RemedyChoice
@@ -22,8 +22,13 @@ class Span(Model):
     length: int = 1
 
 
-_CHECKED = Span(line=1, column=1, length=1)
-_fill = object.__setattr__
+_GIVEN = Span(line=1, column=1, length=1).__pydantic_fields_set__
+_set_values, _set_given, _set_extra, _set_private = (
+    BaseModel.__dict__[name].__set__
+    for name in (
+        *("__dict__", "__pydantic_fields_set__", "__pydantic_extra__", "__pydantic_private__"),
+    )
+)
 
 
 def span_at(line: int, column: int, length: int) -> Span:
@@ -32,10 +37,10 @@ def span_at(line: int, column: int, length: int) -> Span:
     This is much faster, as a script has very many spans.
     """
     new = object.__new__(Span)
-    _fill(new, "__dict__", {"line": line, "column": column, "length": length})
-    _fill(new, "__pydantic_fields_set__", _CHECKED.__pydantic_fields_set__)
-    _fill(new, "__pydantic_extra__", None)
-    _fill(new, "__pydantic_private__", None)
+    _set_values(new, {"line": line, "column": column, "length": length})
+    _set_given(new, _GIVEN)
+    _set_extra(new, None)
+    _set_private(new, None)
     return new
 
 

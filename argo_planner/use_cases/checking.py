@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
-from argo_compiler.analysis import Travel, analyse
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.errors import INCOMPLETE, ArgoError
 from argo_compiler.base.stages import stage
@@ -32,6 +31,7 @@ from argo_planner.use_cases.importing import (
 )
 
 if TYPE_CHECKING:
+    from argo_compiler.analysis import Travel
     from argo_compiler.script import DraftLine
 
 MAX_POSES = 1_000
@@ -51,7 +51,7 @@ def check_source(
     catalog: Catalog,
     start_area: int | None = None,
     end_area: int | None = None,
-    travel: Travel | None = None,
+    travel: "Travel | None" = None,
     site: OpenedSite | None = None,
 ) -> tuple[Diagnostic, ...]:
     """Return the diagnostics of a mission, by position in the source.
@@ -84,6 +84,8 @@ def check_source(
         if travel is not None and poses > MAX_POSES:
             travel = None
             found += (_too_many_poses(poses),)
+        from argo_compiler.analysis import analyse  # late: an incomplete draft needs none
+
         with stage("analysing the mission's paths"):
             found += analyse(loaded.mission, catalog, travel).diagnostics
         if site is not None:

@@ -22,6 +22,11 @@ _LONGEST_SHOWN = 60
 MOST_KEPT = 2_000
 """errors; further ones are counted, but not kept"""
 _LINE_END = re.compile(r"\r\n|\r|\n")
+_NUMBERED = re.compile(
+    r"[0-9]{1,6}\.(?: (?:[A-Za-z0-9#%()\"'+/-]|\.(?!\.)|[,:](?= ))+)+(?<=[a-z0-9)]\.)"
+)
+"""a step in plain signs: a sentence with its full stop, and one blank between two words of it"""
+_LONGEST_NUMBERED = 200
 _Item = TypeVar("_Item")
 _Found = TypeVar("_Found")
 
@@ -86,6 +91,19 @@ class Source:
         end = last if last is not None and last.line == first.line else first
         return self.lines[first.line - 1][first.column - 1 : end.column - 1 + end.length]
 
+    @cached_property
+    def unclear(self) -> tuple[int, ...]:
+        """The numbers of the lines that may be more than a sentence behind a step's number: that
+        may have columns, a field or a blank to fill in, or begin another kind of line."""
+        return tuple(
+            number
+            for number, line in enumerate(self.lines, start=1)
+            if self.document is not None
+            or number in self.expanded
+            or len(line) > _LONGEST_NUMBERED
+            or not _NUMBERED.fullmatch(line)
+        )
+
     def line_text(self, number: int) -> "ScriptText":
         """Line `number`, counted from 1, without its end, and with its short forms replaced."""
         if number in self.expanded:
@@ -109,9 +127,10 @@ class Source:
         return span_at(line, start - line_start + 1, length if length > 1 else 1)
 
 
-@dataclass(frozen=True)
+@dataclass(slots=True, unsafe_hash=True)
 class ScriptText:
-    """A piece of a script, perhaps healed: each character knows its offset in the source."""
+    """A piece of a script, perhaps healed: each character knows its offset in the source. Not
+    frozen, as very many are made, and a frozen one takes longer to make; nothing changes one."""
 
     content: str
     offsets: Sequence[int]

@@ -367,13 +367,12 @@ def _lines_of(piece: Piece) -> tuple[int, int]:
 def _errors_by_piece(reading: _Reading) -> dict[int, Diagnostic]:
     """Return the first error in each piece that has one, by the offset at which it begins."""
     pieces = reading.script.pieces
-    starts = [piece.text.first for piece in pieces]
+    errors = [d for d in reading.diagnostics if d.severity is Severity.ERROR]
+    starts = [piece.text.first for piece in pieces] if errors else []
     found: dict[int, Diagnostic] = {}
-    for diagnostic in reading.diagnostics:
+    for diagnostic in errors:
         span = diagnostic.span
-        if diagnostic.severity is not Severity.ERROR or span is None or not pieces:
-            continue
-        if diagnostic.code in _OF_OPTIONS:
+        if span is None or not pieces or diagnostic.code in _OF_OPTIONS:
             continue
         offset = pieces[0].text.source.offset_at(span.line, span.column)
         at = bisect_right(starts, offset) - 1

@@ -7,7 +7,7 @@ down to the label do not end the sentence, and the text beside the label does no
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import islice
 
@@ -43,12 +43,14 @@ class Cells:
         self.understanding = understanding
         self.label = fields.prose.label
 
-    def joined(self, lines: Sequence[ScriptText]) -> list[ScriptText]:
-        """The lines, those of a cell in the line of its label, their own lines empty."""
+    def joined(self, lines: Sequence[ScriptText], unclear: Iterable[int]) -> list[ScriptText]:
+        """The lines, those of a cell in the line of its label, their own lines empty. `unclear` are
+        the numbers of all lines that may be no numbered sentences."""
         found = list(lines)
+        near = sorted({i for n in unclear for i in (n - 2, n - 1)} - {-1})
         cells = [
             i
-            for i, line in enumerate(lines)
+            for i, line in zip(near, map(lines.__getitem__, near), strict=True)
             if self.fields.is_cell(line.strip()) or self._halves(lines, i) is not None
         ]
         above: _Cell | None = None

@@ -148,7 +148,7 @@ def forms(
     rows: dict[int, FormRow] = {}
     texts = {
         number: text
-        for number in range(1, len(source.lines) + 1)
+        for number in source.unclear
         if number not in taken and (text := _simple_field(source.line_text(number), prose))
     }
     taken = {**taken, **texts}
@@ -195,7 +195,7 @@ def forms(
         rows[number] = replace(
             rows[number], doubt=_doubt_of(source, number), computed=_is_computed(source, number)
         )
-    for number in range(1, len(source.lines) + 1):
+    for number in source.unclear:
         line = source.line_text(number)
         content = line.content
         known = number in rows or number in texts or number in taken
@@ -383,7 +383,11 @@ def _groups(source: Source, taken: Mapping[int, ScriptText]) -> Iterator[tuple[l
     group: list[int] = []
     cut = ""
     table: int | None = None
-    for number in range(1, len(source.lines) + 2):
+    for number in (*source.unclear, len(source.lines) + 1):
+        if group and number > group[-1] + 1:
+            if len(group) > 1:
+                yield group, cut
+            group, cut = [], ""
         line = source.line_text(number).content if number <= len(source.lines) else ""
         here = "" if number in taken else _cut_of(line)
         of = None if number in taken else _table_of(source, number)

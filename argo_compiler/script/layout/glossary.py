@@ -143,7 +143,12 @@ def _lines(
     heading: tuple[int, ScriptText] | None = None
     is_heading = cue_pattern("glossary", glossary.understanding.language.prose.form["glossary"])
     explaining = _explaining_lines(source, is_heading)
-    for number, line in enumerate(source.lines, start=1):
+    last = 0
+    for number in source.unclear:
+        line = source.lines[number - 1]
+        if number > last + 1:
+            headed, heading = False, None
+        last = number
         if number in explaining:
             text = source.line_text(number).strip()
             meanings = _explained_in_row(text, source, number, glossary)
@@ -276,13 +281,16 @@ def _meant(found: re.Match[str], text: ScriptText, glossary: Glossary) -> list[t
     """Return a short form with its meaning: a kind, a checkpoint or a place; none if it is no short
     form, or if it can't stand for that."""
     short = found["short"].strip()
+    abbreviated = _SHORT.fullmatch(short) is not None
+    if not abbreviated and tag_of(short) is None:
+        return []
     long = text[found.start("long") : found.end("long")]
     understanding = glossary.understanding
     types = understanding.types(long)
     if not types or "WORD" in types or short.lower() in understanding.names:
         return []
     named = bool({*types} & {"NUMBER", "IDENT", "STRING"})
-    if _SHORT.fullmatch(short) is None and (not named or tag_of(short) is None):
+    if not abbreviated and not named:
         return []
     starts = ("nouns", "location") if named or "KIND" not in types else ("nouns",)
     if all(isinstance(understanding.read(long, start), StumbleError) for start in starts):

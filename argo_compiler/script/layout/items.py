@@ -171,6 +171,8 @@ class LineSense:
 
     def is_beginning(self, text: ScriptText, ended: bool) -> bool:
         """Whether a text is how a sentence begins; the whole of one where it has ended."""
+        if self.understanding.has_strange_sign(text):
+            return False
         if ended:
             return not isinstance(self.understanding.read(text), StumbleError)
         types = self.understanding.types(text)
@@ -179,6 +181,8 @@ class LineSense:
 
     def _fits(self, sentence: ScriptText) -> bool:
         understanding = self.understanding
+        if understanding.has_strange_sign(sentence):
+            return False
         return understanding.fits(sentence) or (
             len(sentence.content) <= _LONGEST_MENDED
             and "WORD" in understanding.types(sentence)

@@ -131,16 +131,16 @@ class Lists:
 
     def _floors(self, item: LineItem) -> Sequence[FloorName]:
         """The floors that a text names, if it says nothing else."""
-        text = item.text[: len(item.text.content.rstrip(" :."))]
-        if not 0 < len(text.content) <= _LONGEST:
+        content = item.text.content.rstrip(" :.")
+        if not 0 < len(content) <= _LONGEST:
             return ()
-        alike = _FIGURE.sub("9", text.content)  # many lines differ in figures only
+        alike = _FIGURE.sub("9", content)  # many lines differ in figures only
         begun = self.begun.get(alike)
         if begun is None:
-            begun = self.begun[alike] = self.understanding.types(text.replaced(alike))[:1]
+            begun = self.begun[alike] = self.understanding.types(item.text.replaced(alike))[:1]
         if _FLOORS.isdisjoint(begun):
             return ()
-        found = self.understanding.location(text)
+        found = self.understanding.location(item.text[: len(content)])
         return found if isinstance(found, tuple) else ()
 
     # ---- under what the items are

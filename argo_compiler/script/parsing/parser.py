@@ -31,7 +31,7 @@ from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.language import Language
 from argo_compiler.script.sentences.words.lexicon import Lexicon, expand
 from argo_compiler.script.sentences.words.prose import cue_pattern
-from argo_compiler.script.sentences.words.unknown import UnknownError, UnknownFigure
+from argo_compiler.script.sentences.words.unknown import UnknownError, UnknownValue
 
 MAX_LINES = 120_000
 """of a script; one with more is refused unread"""
@@ -146,7 +146,9 @@ class _Parser:
         unreadable = (source.line_text(number).strip() for number in healed.unreadable)
         self.pieces += [Piece(text) for text in unreadable]
         self.diagnostics.extend(healed.diagnostics)
-        texts = Cells(self.fields, self.understanding).joined(healed.lines)
+        texts = Cells(self.fields, self.understanding).joined(
+            healed.lines, {*source.unclear, *read}
+        )
         width = max(map(len, source.lines))
         sense = LineSense(self.understanding, self.asides, self.fields, width)
         items = items_of(lines_of(texts), sense, language.words)
@@ -215,7 +217,7 @@ class _Parser:
         else:
             said = self._said(item)
         said = on_floors(said, item.floors)
-        inner = tuple(self._steps(item.items))
+        inner = tuple(self._steps(item.items)) if item.items else ()
         if not said and not inner and item.line.number is None:
             return None
         return ScriptStep(
@@ -319,7 +321,7 @@ class _Parser:
         return said, text
 
     def _again(
-        self, item: LineItem, text: ScriptText, unknown: Mapping[int, UnknownFigure]
+        self, item: LineItem, text: ScriptText, unknown: Mapping[int, UnknownValue]
     ) -> list[Said] | None:
         """What a plain item says with another text, in which some figures are not known; None if
         that hangs on them."""
@@ -345,8 +347,7 @@ class _Parser:
 
     def _is_said_below(self, item: LineItem, said: Sequence[Said]) -> bool:
         """Return True if an item stands over no others, or consists of conditions for these."""
-        cases = (isinstance(one, Sentence) and one.cases for one in said)
-        return not item.line.heading or all(cases)
+        return not item.line.heading or all(isinstance(one, Sentence) and one.cases for one in said)
 
     def _without_letter(self, item: LineItem) -> tuple[list[Said], ScriptText]:
         """Read what makes a letter of an item; return what is decided on for it instead, and the

@@ -5,13 +5,14 @@ Where that succeeds, nothing but the figures themselves can differ in what such 
 """
 
 import re
+from bisect import bisect_left
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cache, lru_cache
 from typing import Any
 
 from argo_compiler.diagnostics import Span, span_at
-from argo_compiler.script.documents.source import ScriptText
+from argo_compiler.script.documents.source import ScriptText, quotes
 from argo_compiler.script.layout.lines import sentences
 from argo_compiler.script.sentences.tree.manner import NOTHING_SAID, Manner
 from argo_compiler.script.sentences.tree.node import Node
@@ -19,14 +20,15 @@ from argo_compiler.script.sentences.tree.script import Said
 from argo_compiler.script.sentences.words.lexicon import Lexicon
 from argo_compiler.script.sentences.words.unknown import (
     Unknown,
-    UnknownFigure,
+    UnknownName,
+    UnknownValue,
     unknown_figure,
 )
 
 _MOST = 8192
 """texts that are kept, and shapes; then all are forgotten"""
 
-ReadAgain = Callable[[ScriptText, Mapping[int, UnknownFigure]], list[Said] | None]
+ReadAgain = Callable[[ScriptText, Mapping[int, UnknownValue]], list[Said] | None]
 """reads a text, in which the figures at these places of the source are not known; None if what it
 says hangs on them"""
 _PLAIN = re.compile(
@@ -64,7 +66,7 @@ def _changed(figure: str, digits: dict[int, str] | dict[int, int]) -> str:
 def _mover(part: object) -> _Move | None:
     """What makes the same part for another place; None if it says nothing of its place, nor of
     a figure that is not known."""
-    if type(part) is Unknown:
+    if type(part) is Unknown or type(part) is UnknownName:
         fill = part.fill
         return lambda _lines, _columns, figures: fill(figures)
     if part is NOTHING_SAID:
@@ -192,10 +194,18 @@ def _of_shape(
     text: ScriptText, figures: tuple[str, ...], said: list[Said], read: ReadAgain
 ) -> _Text | None:
     """What all texts of a shape say; None if that hangs on their figures, or on their digits."""
-    unknown = {
-        text.offsets[found.start()]: unknown_figure(found[0], place)
-        for place, found in enumerate(_PLAIN.finditer(text.content))
+    places = [found.span() for found in _PLAIN.finditer(text.content)]
+    unknown: dict[int, UnknownValue] = {
+        text.offsets[start]: unknown_figure(text.content[start:end], place)
+        for place, (start, end) in enumerate(places)
     }
+    for start, end in quotes(text.content):  # `"WAYPOINT 8"` is a name
+        inside = slice(bisect_left(places, (start,)), bisect_left(places, (end,)))
+        if places[inside] and "\\" not in text.content[start:end]:
+            parts = _PLAIN.split(text.content[start + 1 : end - 1])[::2]
+            for place, _ in places[inside]:
+                del unknown[text.offsets[place]]
+            unknown[text.offsets[start]] = UnknownName(parts, inside)
     others = _PLAIN.sub(lambda found: _changed(found[0], _OTHERS), text.content)
     found = read(ScriptText(others, text.offsets, text.source), unknown)
     if found is None:

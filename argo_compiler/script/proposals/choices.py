@@ -159,15 +159,14 @@ def _cuts(text: ScriptText, composer: Composer) -> list[int]:
 def _part(text: ScriptText, composer: Composer) -> Sentences | None:
     """Return what a part means without the words that nobody knows; None if it makes no sense."""
     bare = _bare(text, composer)
-    found = mentions_in(bare, composer.understanding).without(*_PASSED_OVER)
+    mentions = mentions_in(bare, composer.understanding)
     rewritten = rephrased(bare, composer.understanding).text if bare.content else bare
-    for meant in (bare, rewritten):
+    for found, meant in ((mentions.without(*_PASSED_OVER), bare), (mentions, rewritten)):
         made = sentences_of(found, composer.known) if found.mentions else None
         if made:
             return made
         if found.has(*ORDERS) and reads(meant, composer.understanding):
             return (sentence(_numbered(meant, composer)),)
-        found = mentions_in(meant, composer.understanding)
     return None
 
 

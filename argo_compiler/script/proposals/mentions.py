@@ -61,6 +61,8 @@ OF_FORMS = frozenset(
     ]
 )
 """kinds that have no effect on a mission beside the name of nothing that it has"""
+_TIMES = frozenset(["AT_LEAST", "BETWEEN", "FROM", "EARLIEST", "NUMBER", "DURATION"])
+"""types of words with which a time between two limits may begin"""
 _BETWEEN = ("AND_", "JOINT", "TO", "DASH", "BUT", "LATEST")
 """how types of words begin that stand between two limits"""
 _FIGURE = re.compile(r"[0-9]+(?:[.,][0-9]+)?")
@@ -189,7 +191,9 @@ def _phrases(
     """Yield the noun phrases and places, each with the index of its first word."""
     i = 0
     while i < len(words):
-        phrase = _phrase(words, i, text, understanding)
+        type_ = words[i].type
+        begun = type_ in _NOUNS or type_ in _PLACES or type_ in _TIMES
+        phrase = _phrase(words, i, text, understanding) if begun else None
         if phrase is None:
             i += 1
             continue
@@ -206,18 +210,21 @@ def _phrase(
     first = words[i].type
     starts = [name for name, types in (("nouns", _NOUNS), ("location", _PLACES)) if first in types]
     for start in starts:
-        for behind in range(min(len(words), i + _LONGEST), i, -1):
+        behind = min(len(words), i + _LONGEST)
+        while behind > i:
             types = tuple(word.type for word in words[i:behind])
             try:
                 branch = understanding.grammar.tree(types, start)
-            except StumbleError:
+            except StumbleError as stumble:
+                behind = min(behind - 1, i + stumble.at)  # a longer one stumbles there as well
                 continue
             node = build(branch, list(words[i:behind]), text, understanding.diagnostics)
             kind = "place"
             if start == "nouns":
                 kind = _kind_of(node)
                 if kind == "checkpoints" and isinstance((*node.nouns, *node.but)[-1], Pronoun):
-                    continue  # `all valves except R7, that one is locked out`
+                    behind -= 1  # `all valves except R7, that one is locked out`
+                    continue
             return Mention(kind, words[i].start, words[behind - 1].end, node), behind
     return None
 
@@ -262,9 +269,12 @@ def _kind_of(nouns: Nouns) -> str:
 
 def _cues(content: str, understanding: Understanding) -> Iterator[Mention]:
     """Yield the cues of a text; of two that overlap, the first and longest."""
+    prose = understanding.language.prose
+    if prose.cue.search(content.lower()) is None:
+        return  # to look for each by itself takes longer
     found: list[Mention] = []
     begins = len(content) - len(content.lstrip(' "(-'))
-    for name, phrases in understanding.language.prose.cues.items():
+    for name, phrases in prose.cues.items():
         if name in _APART:
             continue
         for match in cue_pattern(name, phrases).finditer(content):

@@ -9,7 +9,7 @@ from dataclasses import fields
 
 from argo_compiler.script.documents.source import Diagnostics
 from argo_compiler.script.sentences.tree import orders
-from argo_compiler.script.sentences.tree.manner import Manner
+from argo_compiler.script.sentences.tree.manner import NOTHING_SAID, Manner
 from argo_compiler.script.sentences.tree.orders import PlainWord, ScriptOrder
 
 ROUND = frozenset(
@@ -98,6 +98,8 @@ _FIELDS = [(field.name, field.default) for field in fields(Manner)]
 
 def said(manner: Manner) -> frozenset[str]:
     """The fields that say something."""
+    if manner is NOTHING_SAID:
+        return frozenset()
     return frozenset(name for name, default in _FIELDS if getattr(manner, name) != default)
 
 

@@ -4,8 +4,6 @@ from collections import defaultdict
 from collections.abc import Collection, Iterable
 from typing import Literal, NoReturn
 
-from rapidfuzz.distance import OSA
-
 from argo_compiler.base.catalog import Area, Catalog, CheckpointInfo, CheckpointKind, Floor, Place
 from argo_compiler.base.listing import listed
 from argo_compiler.base.model import Pose
@@ -239,5 +237,7 @@ def agrees(checkpoint: CheckpointInfo, kind: Kind) -> bool:
 
 
 def _same_place(said: str, known: str) -> bool:
+    from rapidfuzz.distance import OSA  # imported late: most scripts misspell no place
+
     figures = [[c for c in name if c.isdecimal()] for name in (said, known)]
     return figures[0] == figures[1] and OSA.normalized_similarity(said, known) >= _SAME_PLACE

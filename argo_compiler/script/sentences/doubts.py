@@ -223,7 +223,8 @@ class PlacingCheck:
             for sentence in step.sentences:
                 if isinstance(sentence, Sentence):
                     self._sentence(sentence)
-            self.steps(step.steps)
+            if step.steps:
+                self.steps(step.steps)
 
     def _sentence(self, sentence: Sentence) -> None:
         work = [order for order in sentence.orders if isinstance(order, _WORK)]

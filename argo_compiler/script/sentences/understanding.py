@@ -18,7 +18,7 @@ from argo_compiler.script.sentences.words.lexer import words, words_of
 from argo_compiler.script.sentences.words.lexicon import Entry, Lexicon, folded
 from argo_compiler.script.sentences.words.prose import either
 from argo_compiler.script.sentences.words.spelling import candidates
-from argo_compiler.script.sentences.words.unknown import UnknownFigure
+from argo_compiler.script.sentences.words.unknown import UnknownValue
 from argo_compiler.script.sentences.words.word import VERBS, Word
 
 Reading = tuple[Branch, list[Word]]
@@ -34,6 +34,9 @@ _LETTERS = {"0": "o", "1": "li", "5": "s", "8": "b"}
 """what text recognition takes for figures"""
 _DIGITS = str.maketrans("lIi|Oo", "111100")
 _LISTED = re.compile(r"([^(),:\d]{3,40}?)\s*[(,]\s*([^():\d]{3,40}?)\)?\s*:\s+(?=\S)")
+_SIGN = re.compile(r"[^\w\s.,;:&()\[\]=+'-]")
+"""a sign that by itself is a word"""
+_QUOTED = re.compile(r'"(?:[^"\\]|\\.)*"')
 _ARROW = re.compile(r"\s*(?:-+>|=+>|→|➔|»)\s*")
 _COMPARING = frozenset(
     [*("LESS", "GREATER", "AT_LEAST", "AT_MOST", "OR_MORE", "OR_LESS", "STATE", "OUTSIDE", "FAILS")]
@@ -59,7 +62,7 @@ class Understanding:
         self.names = names
         """words of the site's names, in lower case"""
         self.diagnostics = diagnostics
-        self.unknown: Mapping[int, UnknownFigure] = {}
+        self.unknown: Mapping[int, UnknownValue] = {}
         """by their places in the source, figures that are to be taken for unknown"""
         self._with_unknown: tuple[object, dict[tuple[int, str], list[Word]]] = ({}, {})
         """words of texts by place and content, and the unknown figures that they have"""
@@ -101,6 +104,8 @@ class Understanding:
 
     def fits(self, text: ScriptText) -> bool:
         """Whether a text makes sense by itself."""
+        if self.has_strange_sign(text):
+            return False
         found = self.words(text)
         if not found:
             return text.content != ""  # words that mean nothing
@@ -113,6 +118,13 @@ class Understanding:
             return False
         last = found[-1]
         return not (last.type == "KIND" and not last.value[2]) and not _is_amend(reading[0])
+
+    def has_strange_sign(self, text: ScriptText) -> bool:
+        """Return True if a text has a sign that is a word of no sentence, so that it can't fit."""
+        signs = _SIGN.findall(text.content)
+        if '"' in signs:
+            signs = _SIGN.findall(_QUOTED.sub("", text.content))
+        return bool(signs) and not _signs(self.language.lexicon).issuperset(signs)
 
     def unfinished(self, text: ScriptText) -> ScriptText | None:
         """The joint with which a text ends, if it does."""
@@ -295,6 +307,13 @@ def _contractions(phrases: str) -> list[tuple[re.Pattern[str], str]]:
     pairs = [pair.split("=>") for pair in phrases.split("|")]
     apostrophe = [(short.strip().replace("'", "['’]"), full.strip()) for short, full in pairs]
     return [(re.compile(rf"\b{short}\b", re.IGNORECASE), full) for short, full in apostrophe]
+
+
+@cache
+def _signs(lexicon: Lexicon) -> frozenset[str]:
+    """The signs in the phrases of a language and of the other one."""
+    every = (said for phrases in _both(lexicon) for said in phrases.values())
+    return frozenset('"'.join(phrase for said in every for phrase in said))
 
 
 @cache

@@ -22,6 +22,9 @@ def test_saved_tables_are_up_to_date(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(tables, "make_parser", not_current)
     monkeypatch.setattr(loading, "make_lexicons", not_current)
+    monkeypatch.setattr(loading, "make_texts", not_current)
+    loading.load_texts.cache_clear()
+    loading.load_texts()
     tables.load_parser()
     loading.load_lexicons()
 

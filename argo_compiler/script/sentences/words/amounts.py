@@ -113,7 +113,7 @@ def _of_clock(length: Length, unit: float) -> Length | None:
 
 def total(first: Word, second: Word) -> Word | None:
     """Hours, then minutes, then seconds; None if they are no lengths of time in this order."""
-    if {first.type, second.type} != {"DURATION"}:
+    if first.type != "DURATION" or second.type != "DURATION":
         return None
     a, b = first.value, second.value
     if a.unit <= b.unit or a.other is not None or b.other is not None:

@@ -13,7 +13,7 @@ from argo_compiler.script.sentences.words.joints import joined
 from argo_compiler.script.sentences.words.lexicon import Lexicon, folded
 from argo_compiler.script.sentences.words.merging import merged, negated
 from argo_compiler.script.sentences.words.numbers import Figure, compose, read_figure, split_number
-from argo_compiler.script.sentences.words.unknown import UnknownError, UnknownFigure
+from argo_compiler.script.sentences.words.unknown import UnknownError, UnknownValue
 from argo_compiler.script.sentences.words.without_effect import with_effect, without_empty
 from argo_compiler.script.sentences.words.word import VERBS, Word
 from argo_compiler.script.sentences.words.word_order import arranged
@@ -39,6 +39,8 @@ _NAMES = {("AREA", "NUMBER"), ("KIND", "IDENT"), ("KIND", "NUMBER"), ("AREA",), 
 """what is often put between quotation marks, and means the same without"""
 _NAMING = frozenset(["STEP", "SHOWN_IN", "ABOUT", "LPAR_CALLED", "LSQB"])
 _JOINING = frozenset(["JOINT", "TO", "DASH", "UPTO"])
+_FILLED = frozenset(["NUMBER", "STRING"])
+"""words that may have unknown figures"""
 _PLACED = frozenset(["AT_END", "AT_BEGIN", "THERE", "INSTEAD"])
 """words that say where something stands in the script, or on the site"""
 
@@ -56,25 +58,26 @@ def _unknown(words: list[Word]) -> int:
 
 
 def words_of(
-    text: str, lexicon: Lexicon, unknown: Mapping[int, UnknownFigure] = MappingProxyType({})
+    text: str, lexicon: Lexicon, unknown: Mapping[int, UnknownValue] = MappingProxyType({})
 ) -> list[Word]:
     """As `words`; the figures that begin at these places are not known. Raises UnknownError if one
     of them is no number by itself."""
-    found = _looked_up(text, lexicon, _PLACED)
+    pieces = _pieces(text)
+    found = _looked_up(text, pieces, lexicon, _PLACED)
     strange = _unknown(found)
     if lexicon.other is not None and strange:
-        other = _looked_up(text, lexicon.other, _PLACED)
+        other = _looked_up(text, pieces, lexicon.other, _PLACED)
         if 2 * _unknown(other) < strange:
             found, lexicon = other, lexicon.other
     return _put_together(found, lexicon, unknown)
 
 
 def _put_together(
-    found: list[Word], lexicon: Lexicon, unknown: Mapping[int, UnknownFigure]
+    found: list[Word], lexicon: Lexicon, unknown: Mapping[int, UnknownValue]
 ) -> list[Word]:
     found = with_effect(found)
     if unknown:
-        if not unknown.keys() <= {word.start for word in found if word.type == "NUMBER"}:
+        if not unknown.keys() <= {word.start for word in found if word.type in _FILLED}:
             raise UnknownError
         found = [replace(word, value=unknown.get(word.start, word.value)) for word in found]
     found = merged(found)
@@ -110,12 +113,22 @@ def _opening(whole: list[Word], found: list[Word]) -> list[Word]:
 
 def all_words(text: str, lexicon: Lexicon) -> list[Word]:
     """Return the words of a sentence one by one, those without effect as well."""
-    return _looked_up(text, lexicon, frozenset())
+    return _looked_up(text, _pieces(text), lexicon, frozenset())
 
 
-def _looked_up(text: str, lexicon: Lexicon, left_out: frozenset[str]) -> list[Word]:
+_Pieces = tuple[list[re.Match[str]], list[str]]
+"""words and signs of a text, and how the lexicon writes each"""
+
+
+def _pieces(text: str) -> _Pieces:
     pieces = list(_PIECE.finditer(_lower(text)))
-    said = [folded(piece.group()) for piece in pieces]
+    return pieces, [folded(piece.group()) for piece in pieces]
+
+
+def _looked_up(
+    text: str, in_text: _Pieces, lexicon: Lexicon, left_out: frozenset[str]
+) -> list[Word]:
+    pieces, said = in_text
     apart: set[int] = set()
     found: list[Word] = []
     i = 0
@@ -123,7 +136,7 @@ def _looked_up(text: str, lexicon: Lexicon, left_out: frozenset[str]) -> list[Wo
         if i in apart:
             i += 1
             continue
-        phrase = lexicon.longest(said, i)
+        phrase = lexicon.longest(said, i) if said[i] in lexicon.root.next else None
         if phrase is None:
             after = pieces[i + 1] if i + 1 < len(pieces) else None
             inner: list[Word] = []
@@ -204,6 +217,15 @@ def _plain(
     said, kind = piece.group(), piece.lastgroup or "WORD"
     value: object = said
     match kind:
+        case "SIGN":
+            kind = "JOINT" if said in _JOINTS else _SIGNS.get(said, "SIGN")
+            value = _JOINTS.get(said, said)
+            if kind == "DASH" and after is not None and after.lastgroup == "NUMBER":
+                last = before[-1].type if before else ""
+                negative = last not in ("NUMBER", "IDENT") and after.start() == piece.end()
+                kind = "MINUS" if negative else kind
+        case "WORD":
+            kind, value = _compound(said, lexicon)
         case "NUMBER":
             value = read_figure(said)
             kind = kind if value is not None else "BAD_NUMBER"
@@ -215,15 +237,6 @@ def _plain(
         case "CLOCK" | "GLUED":
             length = read_clock(said) if kind == "CLOCK" else read_glued(said)
             kind, value = (kind, said) if length is None else ("DURATION", length)
-        case "WORD":
-            kind, value = _compound(said, lexicon)
-        case "SIGN":
-            kind = "JOINT" if said in _JOINTS else _SIGNS.get(said, "SIGN")
-            value = _JOINTS.get(said, said)
-            if kind == "DASH" and after is not None and after.lastgroup == "NUMBER":
-                last = before[-1].type if before else ""
-                negative = last not in ("NUMBER", "IDENT") and after.start() == piece.end()
-                kind = "MINUS" if negative else kind
     return Word(kind, value, piece.start(), piece.end())
 
 

@@ -1,7 +1,6 @@
 """Reads the words of a language from its file, such as `english.toml`, or what was saved of it."""
 
 import re
-import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from importlib.resources import files
@@ -22,6 +21,8 @@ _Made = TypeVar("_Made")
 LANGUAGES = ("english", "german")
 _SAVED = "lexicons.tables"
 """beside the files: to make the lexicons takes a tenth of a second"""
+_SAVED_TEXTS = "texts.tables"
+"""beside the files: tables of them that are read at each start"""
 _MADE_BY = ("lexicon.py", "loading.py", "numbers.py")
 Table = Mapping[str, Any]
 """of a file"""
@@ -87,9 +88,26 @@ def load_lexicons() -> tuple[Lexicon, ...]:
 
 def save_lexicons(folder: Path) -> None:
     """Write what `load_lexicons` reads, unless it is there."""
-    path, key = folder / _SAVED, _key()
-    if not are_saved(path, key):
-        write_tables(path, key, make_lexicons())
+    key = _key()
+    for name, make in ((_SAVED, make_lexicons), (_SAVED_TEXTS, make_texts)):
+        if not are_saved(folder / name, key):
+            write_tables(folder / name, key, make())
+
+
+@cache
+def load_texts() -> dict[str, Table]:
+    """Return what `make_texts` does, from what was saved if that is of these files."""
+    saved: dict[str, Table] | None = find_tables(__package__, _SAVED_TEXTS, _key())
+    return make_texts() if saved is None else saved
+
+
+def make_texts() -> dict[str, Table]:
+    """Return of each language the tables of its file that stand for no words of sentences."""
+    tables = {language: table_of(language) for language in LANGUAGES}
+    return {
+        language: {name: table[name] for name in ("layout", "prose")}
+        for language, table in tables.items()
+    }
 
 
 def _key() -> bytes:
@@ -100,9 +118,10 @@ def _key() -> bytes:
 @cache
 def prose(language: str, besides: str | None = None) -> Prose:
     """What stands around sentences in a language; labels of `besides` are mixed with its own."""
-    said = table_of(language)["prose"]
+    texts = load_texts()
+    said = (texts.get(language) or table_of(language))["prose"]
     if besides is not None:
-        said = _mixed(said, table_of(besides)["prose"], language)
+        said = _mixed(said, (texts.get(besides) or table_of(besides))["prose"], language)
     values = dict(_field_values(said["values"]))
     return _made(Prose, {**said, "values": values}, f"{language}.toml: `prose`")
 
@@ -110,7 +129,7 @@ def prose(language: str, besides: str | None = None) -> Prose:
 @cache
 def everywhere(name: str) -> str:
     """A pattern of the words that `layout` has for `name` in any language."""
-    said = (table_of(language)["layout"][name] for language in LANGUAGES)
+    said = (texts["layout"][name] for texts in load_texts().values())
     return either("|".join(words for words in said if words))
 
 
@@ -165,6 +184,8 @@ def compare(one: str, two: str) -> None:
 @cache
 def table_of(language: str) -> dict[str, Any]:
     """All that the file of a language has; its phrases are separated by bars only."""
+    import tomllib  # imported late: what is saved needs none
+
     name = f"{language}.toml"
     text = files(__package__).joinpath(name).read_text(encoding="utf-8")
     try:

@@ -172,6 +172,8 @@ def _names_two(words: list[Word]) -> bool:
 
 
 def _numbers(words: list[Word]) -> list[Word]:
+    if all(word.type != "NUMBER_WORD" for word in words):
+        return words
     found: list[Word] = []
     i = 0
     while i < len(words):

@@ -85,6 +85,11 @@ class Prose:
         return re.compile(rf"(?<![\w-])(?:{'|'.join(names)})\s*:", re.IGNORECASE)
 
     @cached_property
+    def cue(self) -> re.Pattern[str]:
+        """How a cue of any kind begins, in lower case."""
+        return re.compile(rf"(?<![\w-])(?:{either('|'.join(self.cues.values()))})")
+
+    @cached_property
     def label_words(self) -> frozenset[str]:
         """All words of labels."""
         said = (phrase for text in self.labels.values() for phrase in expand(text))

@@ -3,9 +3,6 @@
 from collections.abc import Iterable
 from functools import lru_cache
 
-from rapidfuzz import fuzz, process
-from rapidfuzz.distance import OSA
-
 _ALIKE = 0.74
 """share of letters that must be in place: one error in four letters, two in eight"""
 
@@ -23,6 +20,9 @@ def candidates(word: str, known: frozenset[str]) -> tuple[str, ...]:
 
 @lru_cache(maxsize=4096)
 def _closest(word: str, known: frozenset[str]) -> tuple[str, ...]:
+    from rapidfuzz import process  # imported late: only misspelt words need it
+    from rapidfuzz.distance import OSA
+
     similarity = OSA.normalized_similarity
     alike = process.extract(word, _long(known), scorer=similarity, score_cutoff=_ALIKE, limit=None)
     distances = {other: OSA.distance(word, other) for other, _, _ in alike}
@@ -37,6 +37,8 @@ def _long(known: frozenset[str]) -> list[str]:
 
 def nearest(text: str, known: Iterable[str], limit: int = 3) -> tuple[str, ...]:
     """Up to `limit` known texts, the most similar first; none that is not similar at all."""
+    from rapidfuzz import fuzz, process
+
     found = process.extract(
         text, list(known), scorer=fuzz.ratio, processor=str.lower, limit=limit, score_cutoff=60
     )

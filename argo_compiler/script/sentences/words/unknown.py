@@ -1,17 +1,19 @@
 """Numbers of which only a range is known: what follows for one of them follows for all of it.
 
 A sentence is read with such numbers to see what hangs on its figures. Whatever asks more of one
-than its range tells raises UnknownError; so what comes out holds for all numbers of the range.
+than its range tells raises UnknownError; so what comes out holds for all numbers of the range. Of a
+quoted name with figures in it nothing is known.
 """
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import inf
 from typing import Any, NoReturn
 
 from argo_compiler.script.sentences.words.numbers import Figure
 
 Fill = Callable[[Sequence[str]], Any]
-"""the number, by the figures that a text has"""
+"""the number or name, by the figures that a text has"""
 
 
 class UnknownError(Exception):
@@ -101,3 +103,23 @@ def unknown_figure(said: str, place: int) -> UnknownFigure:
         low, high = 0.001, 1.0
     value: Any = Unknown(low, high, lambda figures: float(figures[place]))
     return UnknownFigure(value, said=said)
+
+
+class UnknownName(Unknown):
+    """A name that consists of these parts with figures, which are not known, between each two."""
+
+    __slots__ = ()
+
+    def __init__(self, parts: Sequence[str], places: slice) -> None:
+        def fill(figures: Sequence[str]) -> str:
+            behind = [*figures[places], ""]
+            return "".join([sign for pair in zip(parts, behind, strict=True) for sign in pair])
+
+        super().__init__(-inf, inf, fill)
+
+    def __bool__(self) -> bool:  # type: ignore[override]
+        return True
+
+
+UnknownValue = UnknownFigure | UnknownName
+"""the value of a word that is not known"""

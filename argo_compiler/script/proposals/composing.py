@@ -184,7 +184,7 @@ class Composer:
         return text.replace(found.start(), len(text.content), f", {orders.strip(' .')}")
 
     def _composed(self, text: ScriptText, found: Mentions) -> Proposal | None:
-        if not found.mentions or self._depends(text, found):
+        if not found.mentions or self._depends(text, found) or self._removes(text, found):
             return None
         self.known.warnings.clear()
         sentences = sentences_of(found, self.known)
@@ -255,6 +255,12 @@ class Composer:
                 limit = normal.high if name == "too_high" else normal.low
                 text = text.replace(*found.span(), prose.say[name].format(f"{limit:g}"))
         return text
+
+    def _removes(self, text: ScriptText, found: Mentions) -> bool:
+        """Return True for `take checkpoint 4 out again`, which nothing else tells from a check."""
+        away = cue_pattern("away", self.understanding.language.prose.form["away"])
+        said = (text.content[word.start : word.end] for word in found.unknown)
+        return not found.has("leave_out", "SPARE", "DELETE") and any(map(away.fullmatch, said))
 
     def _depends(self, text: ScriptText, found: Mentions) -> bool:
         """Return True if a text may begin with a case that it depends on: `On smoke, go home`."""

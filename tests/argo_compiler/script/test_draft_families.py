@@ -388,3 +388,13 @@ def test_a_limit_before_then_is_of_the_whole_mission(catalog: Catalog) -> None:
 def test_a_blank_before_a_sign_is_read(text: str, catalog: Catalog) -> None:
     draft = draft_of(f"Start in starting area 1.\nCheck #1.\n{text}", catalog)
     assert draft.lines
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["Take checkpoint #18 out again", "Cross R12 off then", "Nimm Messpunkt 18 wieder raus"],
+)
+def test_a_word_that_takes_away_is_never_passed_over(line: str, catalog: Catalog) -> None:
+    (*_, last) = draft_of(f"Check checkpoint 18 and R12.\n{line}", catalog).lines
+    assert last.state is LineState.OPEN
+    assert any(said.startswith("Delete") for sentences in last.choices for said in sentences)

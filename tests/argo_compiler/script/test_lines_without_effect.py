@@ -254,6 +254,10 @@ def test_german_lines_likewise(text: str, number: int, catalog: Catalog) -> None
         "Check these twice:",
         "Diese prüft der Kollege:",
         "Nicht erreichbar:",
+        "From bottom to top of this list:",
+        "Von unten nach oben abarbeiten:",
+        "Exceptions:",
+        "Macht der Schichtführer:",
     ],
 )
 def test_a_heading_that_may_exclude_its_list_is_asked_about(heading: str, catalog: Catalog) -> None:

@@ -219,8 +219,8 @@ class SentenceReader:
         return [Unread(span=text.span())]
 
     def _points_below(self, text: ScriptText) -> bool:
-        """Read a sentence that names what is listed below it, and not what was measured before:
-        `Please check these:`. With more than that it is asked about."""
+        """Return True for a sentence that may mean what is listed below it: `Please check these:`
+        is noted as a heading, and one that says more is asked about."""
         types = {*self.understanding.types(text)}
         if not types & {"THEM", "THIS"} or not pattern(_POINTING).search(text.content):
             return False

@@ -10,11 +10,12 @@ from itertools import pairwise
 
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.il import EventKind
-from argo_compiler.script.proposals.frames import Sentences, length_words
+from argo_compiler.script.proposals.composing import normal_end
+from argo_compiler.script.proposals.frames import Sentences
 from argo_compiler.script.proposals.mentions import Mention, Mentions
-from argo_compiler.script.proposals.open_text import OpenText
+from argo_compiler.script.proposals.open_text import ENDS, HOME, OpenText
 from argo_compiler.script.resolve.units import converted
-from argo_compiler.script.sentences.tree.nouns import Labelled, Nouns
+from argo_compiler.script.sentences.tree.nouns import Labelled
 from argo_compiler.script.sentences.words.numbers import Figure
 from argo_compiler.script.sentences.words.prose import cue_pattern
 from argo_compiler.script.sentences.words.word import Word
@@ -33,7 +34,7 @@ _MOST_SUBJECTS = 3
 """checkpoints of which each may be the one whose reading decides"""
 _REACH = 2
 """words between a relation and its amount"""
-_ENDS = frozenset([EventKind.ALL_CLEAR, EventKind.BATTERY_CHARGED, EventKind.CONNECTION_RESTORED])
+_OVER = frozenset([EventKind.ALL_CLEAR, EventKind.BATTERY_CHARGED, EventKind.CONNECTION_RESTORED])
 """events that only tell that another one is over"""
 _ALL_FAILURES = "If a reading fails, go on with the next checkpoint."
 
@@ -48,7 +49,7 @@ class _Limit:
     unit: str = ""
 
     def fits(self, checkpoint: CheckpointInfo) -> bool:
-        """Whether the limit can be one of what a checkpoint shows."""
+        """Return True if the limit can be one of what a checkpoint shows."""
         return self.unit == "" or converted(1.0, self.unit, checkpoint.unit) is not None
 
 
@@ -81,12 +82,12 @@ def _by_limit(of: OpenText, limit: _Limit) -> Iterator[Sentences]:
     subjects = [one for one in subjects if limit.fits(one)]
     if not (named or subjects):
         subjects = [one for one in known.memory.so_far.values() if limit.fits(one)][-1:]
+    every = next(iter(of.lengths("DURATION")), None)
     for subject in subjects[:_MOST_SUBJECTS]:
         case = f"checkpoint {subject.id} is {limit.words}"
         check = () if subject.id in known.memory.so_far else (f"Check checkpoint {subject.id}.",)
-        every = [length_words(mention.value) for mention in of.found.of("DURATION")]
-        if "UNTIL" in of.types and every and every[0]:
-            yield (f"Check checkpoint {subject.id} every {every[0]} until it is {limit.words}.",)
+        if every is not None and "UNTIL" in of.types:
+            yield (f"Check checkpoint {subject.id} every {every} until it is {limit.words}.",)
         acts = of.acts(rest, subject)
         if acts:
             yield (*check, f"If {case}, {_joined(acts)}.")
@@ -141,9 +142,9 @@ def _normal_limit(of: OpenText) -> _Limit | None:
         named = _between(of.found, 0, found.start()).of("checkpoints")
         subjects = of.named_by(named[-1]) if named else list(of.composer.known.memory.last)
         if len(subjects) == 1:
-            normal = subjects[0].nominal
-            words = f"above {normal.high:g}" if name == "too_high" else f"below {normal.low:g}"
-            return _Limit(f"{words} {subjects[0].unit}", *found.span())
+            relation = "above" if name == "too_high" else "below"
+            words = f"{relation} {normal_end(subjects[0], name)} {subjects[0].unit}"
+            return _Limit(words, *found.span())
     return None
 
 
@@ -153,7 +154,7 @@ def _normal_limit(of: OpenText) -> _Limit | None:
 def _by_failure(of: OpenText) -> Iterator[Sentences]:
     """Yield what is done if a checkpoint can't be read: that one, or each of them."""
     named = [c for m in of.found.of("checkpoints") if _is_labelled(m) for c in of.named_by(m)]
-    counts = [m.value.whole for m in of.found.of("TIMES", "MORE") if isinstance(m.value, Figure)]
+    counts = of.counts("TIMES", "MORE")
     times = {1: "once", 2: "twice"}.get(counts[0] or 1, f"{counts[0]} times") if counts else "once"
     retries = of.found.has("RETRY", "again", "MORE")
     if len(named) == 1:
@@ -171,18 +172,18 @@ def _by_event(of: OpenText) -> Iterator[Sentences]:
     """Yield what the robot may do where an event is named."""
     events = of.found.of("EVENT")
     event = events[0].value if events else None
-    if not isinstance(event, EventKind) or event in _ENDS:
+    if not isinstance(event, EventKind) or event in _OVER:
         return
     when = f"If {EVENTS[event]}"
-    lengths = [length_words(mention.value) for mention in of.found.of("DURATION")]
-    within = f" for at most {lengths[0]}, and resume" if lengths and lengths[0] else ""
+    length = next(iter(of.lengths("DURATION")), None)
+    within = f" for at most {length}, and resume" if length is not None else ""
     paused = f"pause{within or ' until all clear is given, and resume'}"
     charged = f"{of.return_words}, charge and continue"
     answers: dict[tuple[str, ...], str] = {
         ("RECHARGE",): charged if event is EventKind.LOW_BATTERY else "",
-        ("home", "HOME", "DOCK", "place"): of.return_words,
+        (*HOME, "place"): of.return_words,
         ("PAUSE", "WAIT"): paused,
-        ("END", "ABORT"): "abort the mission",
+        ENDS: "abort the mission",
         ("REPORT",): "report it",
     }
     likely = [answer for kinds, answer in answers.items() if of.found.has(*kinds)]
@@ -198,8 +199,7 @@ def _by_event(of: OpenText) -> Iterator[Sentences]:
 
 def _is_labelled(mention: Mention) -> bool:
     """Return True for `valve R7`; False for `a gauge`, which may be any."""
-    nouns = mention.value.nouns if isinstance(mention.value, Nouns) else ()
-    return all(isinstance(noun, Labelled) for noun in nouns)
+    return all(isinstance(noun, Labelled) for noun in mention.nouns)
 
 
 def _between(found: Mentions, start: int, end: int) -> Mentions:

@@ -14,17 +14,16 @@ from argo_compiler.script.documents.signs import CLOCK
 from argo_compiler.script.documents.source import RefusedError, ScriptText
 from argo_compiler.script.proposals.cases import by_cases
 from argo_compiler.script.proposals.composing import Composer
-from argo_compiler.script.proposals.frames import KINDS, Sentences, length_words, sentences_of
+from argo_compiler.script.proposals.frames import KINDS, Sentences, sentences_of
 from argo_compiler.script.proposals.mentions import (
     Mention,
     checkpoint_words,
     mentions_in,
 )
-from argo_compiler.script.proposals.open_text import OpenText
+from argo_compiler.script.proposals.open_text import HOME, OpenText
 from argo_compiler.script.proposals.paraphrasing import ORDERS, reads, rephrased, sentence
 from argo_compiler.script.sentences.tree.nouns import AllOf, Labelled, Nouns, Pronoun, TheOne
 from argo_compiler.script.sentences.words.amounts import Length
-from argo_compiler.script.sentences.words.numbers import Figure
 from argo_compiler.script.sentences.words.prose import cue_pattern
 from argo_compiler.script.sentences.words.spelling import candidates
 from argo_compiler.script.sentences.words.without_effect import MISPLACED
@@ -50,7 +49,7 @@ _SIGNALS = (
     *("INCLUDED", "RECHARGE", "in_place_of", MISPLACED),
 )
 """kinds of mentions without which a text is looked at"""
-_DOCKING = ("home", "HOME", "DOCK", "END", "place")
+_DOCKING = (*HOME, "END", "place")
 _PASSED_OVER = ("WORD", "SIGN", "STRAY", "DONE", MISPLACED)
 """types of words that a text is read without"""
 _REPLACING = ("correction", "in_place_of", "NOT", "forbidding", "leave_out", "DELETE", "past")
@@ -107,8 +106,7 @@ def _by_pronouns(of: OpenText) -> Iterator[Sentences]:
 
 def _candidates(pronouns: Sequence[Mention], composer: Composer) -> Sequence[CheckpointInfo]:
     """Return what a pronoun may be: `the pressure` is that of any gauge that was read."""
-    nouns = pronouns[0].value if pronouns else None
-    first = nouns.nouns[0] if isinstance(nouns, Nouns) else None
+    first = next((noun for mention in pronouns[:1] for noun in mention.nouns), None)
     kind = KINDS.get(first.quantity) if isinstance(first, Pronoun) else None
     if kind is None:
         return composer.known.memory.last
@@ -117,8 +115,7 @@ def _candidates(pronouns: Sequence[Mention], composer: Composer) -> Sequence[Che
 
 def _is_single(mention: Mention) -> bool:
     """Return True for a pronoun that means one checkpoint: `it`, `the level`."""
-    nouns = mention.value.nouns if isinstance(mention.value, Nouns) else ()
-    return all(isinstance(noun, Pronoun) and not noun.every for noun in nouns)
+    return all(isinstance(noun, Pronoun) and not noun.every for noun in mention.nouns)
 
 
 # ---- by its parts
@@ -226,7 +223,7 @@ def _by_acts(of: OpenText) -> Iterator[Sentences]:
     acts = of.acts(of.found, of.composer.known.last_named)
     if len(acts) > 1 and not of.found.has("IF", "UNLESS", "UNTIL", "ELSE", "EVENT"):
         yield tuple(f"{act[0].upper()}{act[1:]}." for act in acts)
-    elif not of.found.has("checkpoints", "EVENT") and of.found.has(*_DOCKING[:-1]):
+    elif not of.found.has("checkpoints", "EVENT") and of.found.has(*HOME, "END"):
         yield (f"{of.return_words[0].upper()}{of.return_words[1:]}.",)
 
 
@@ -248,24 +245,23 @@ def _by_mentions(of: OpenText) -> Iterator[Sentences]:
             yield (f"Check {words} in any order.",)
         yield (f"Check {words}.",)
         yield (f"{_sparing(named, of)} {words}.",)
-        lengths = [length_words(mention.value) for mention in of.found.of("DURATION")]
-        yield from ((f"Wait for {length}.", f"Check {words}.") for length in lengths if length)
+        lengths = filter(None, of.lengths("DURATION"))
+        yield from ((f"Wait for {length}.", f"Check {words}.") for length in lengths)
         if len(named) <= _FEW:
             yield from ((f"Check checkpoint {id}.",) for id in named)
 
 
 def _is_of_kind(mention: Mention) -> bool:
     """Return True for `all valves` or `the gauges on floor 3`, whose order nobody has named."""
-    nouns = mention.value.nouns if isinstance(mention.value, Nouns) else ()
-    return any(isinstance(noun, AllOf | TheOne) for noun in nouns)
+    return any(isinstance(noun, AllOf | TheOne) for noun in mention.nouns)
 
 
 def _by_header(of: OpenText) -> Iterator[Sentences]:
     """Yield where a mission starts and ends, and how long it takes: `max 30 min, area 2 to 1`."""
     if any(map(of.named_by, of.found.of("checkpoints"))):
         return
-    lengths = [length_words(mention.value) for mention in of.found.of("DURATION", "MOST_TIME")]
-    limits = [f"Maximum duration: {length}." for length in lengths if length]
+    lengths = [*filter(None, of.lengths("DURATION", "MOST_TIME"))]
+    limits = [f"Maximum duration: {length}." for length in lengths]
     places: list[Sentences] = []
     if len(of.areas) > 1:
         first, last = of.areas[0], of.areas[-1]
@@ -279,7 +275,7 @@ def _by_header(of: OpenText) -> Iterator[Sentences]:
     for limit in limits:
         yield from ((*place, limit) for place in places[:2])
     yield from places
-    for length in filter(None, lengths):
+    for length in lengths:
         yield from ((f"Maximum duration: {length}.",), (f"Wait for {length}.",))
 
 
@@ -327,8 +323,8 @@ def _by_rounds(of: OpenText) -> Iterator[Sentences]:
     """Yield what a text asks for that counts rounds: `2 rounds, 30 min start to start`."""
     if of.found.has("checkpoints"):
         return
-    counts = [m.value.whole for m in of.found.of("TIMES") if isinstance(m.value, Figure)]
-    lengths = [length for m in of.found.of("DURATION") if (length := length_words(m.value))]
+    counts = of.counts("TIMES")
+    lengths = [*filter(None, of.lengths("DURATION"))]
     clocks = [60 * int(m["hour"]) + int(m["minute"]) for m in CLOCK.finditer(of.text.content)]
     gaps = [(b - a) % _DAY_MIN for a, b in pairwise(clocks)]
     every = [

@@ -8,6 +8,7 @@ import re
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
+from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.script.documents.source import RefusedError, ScriptText
 from argo_compiler.script.proposals.evidence import evidence
 from argo_compiler.script.proposals.frames import Sentences, sentences_of
@@ -80,6 +81,12 @@ class Proposal:
     def is_open(self) -> bool:
         """Return True if nothing is proposed."""
         return not (self.sentences or self.aside or self.certain)
+
+
+def normal_end(checkpoint: CheckpointInfo, name: str) -> str:
+    """Return the end of the normal range beyond which a reading is `too_high` or `too_low`."""
+    normal = checkpoint.nominal
+    return f"{normal.high if name == 'too_high' else normal.low:g}"
 
 
 class Composer:
@@ -251,9 +258,8 @@ class Composer:
                 checkpoints = self.known.checkpoints(named)
                 if found is None or len(checkpoints) != 1:
                     continue
-                normal = checkpoints[0].nominal
-                limit = normal.high if name == "too_high" else normal.low
-                text = text.replace(*found.span(), prose.say[name].format(f"{limit:g}"))
+                limit = normal_end(checkpoints[0], name)
+                text = text.replace(*found.span(), prose.say[name].format(limit))
         return text
 
     def _removes(self, text: ScriptText, found: Mentions) -> bool:

@@ -77,9 +77,7 @@ def is_name(content: str) -> bool:
 def names_points(found: Mentions) -> bool:
     """Return True if a text names checkpoints by number or name, rather than a kind of them."""
     return any(
-        isinstance(noun, Labelled)
-        for mention in found.of("checkpoints")
-        for noun in mention.value.nouns  # type: ignore[attr-defined]
+        isinstance(noun, Labelled) for mention in found.of("checkpoints") for noun in mention.nouns
     )
 
 

@@ -66,8 +66,7 @@ def _leave_out(found: Mentions, known: Known) -> Sentences | None:
 
 def _may_be(pronoun: Mention, checkpoint: CheckpointInfo) -> bool:
     """Return True if a pronoun can mean a checkpoint: `the pressure` is that of a gauge."""
-    nouns = pronoun.value.nouns if isinstance(pronoun.value, Nouns) else ()
-    quantities = [noun.quantity for noun in nouns if isinstance(noun, Pronoun)]
+    quantities = [noun.quantity for noun in pronoun.nouns if isinstance(noun, Pronoun)]
     return all(KINDS.get(quantity, checkpoint.kind) is checkpoint.kind for quantity in quantities)
 
 
@@ -232,7 +231,7 @@ def _checks(
     times = counts[0].whole if counts and isinstance(counts[0], Figure) else 1
     if times != 1 and ((len(checkpoints) > 1 and not found.has("each")) or found.has("IF_TIME")):
         return None
-    nouns = [n for m in named if isinstance(m.value, Nouns) for n in m.value.nouns]
+    nouns = [noun for mention in named for noun in mention.nouns]
     free = len(checkpoints) > 1 and any(isinstance(noun, AllOf) for noun in nouns)
     known.measured(checkpoints)
     if times == 1:
@@ -266,10 +265,9 @@ def _placed(
 
 def _announces(named: Mention) -> bool:
     """Return True for `Checkpoints to visit`, without which ones."""
-    nouns = named.value.nouns if isinstance(named.value, Nouns) else ()
     return any(
         isinstance(n, TheOne) and n.kind is Kind.CHECKPOINT and n.plural and not n.floors
-        for n in nouns
+        for n in named.nouns
     )
 
 

@@ -152,7 +152,7 @@ class Known:
 
 def is_number(mention: Mention) -> bool:
     """Return True for a checkpoint by its number: `#10`, `checkpoint 10`."""
-    nouns = mention.value.nouns if isinstance(mention.value, Nouns) else ()
     return all(
-        isinstance(noun, Labelled) and (noun.hash or noun.kind is Kind.CHECKPOINT) for noun in nouns
+        isinstance(noun, Labelled) and (noun.hash or noun.kind is Kind.CHECKPOINT)
+        for noun in mention.nouns
     )

@@ -9,7 +9,7 @@ from argo_compiler.script.documents.source import ScriptText
 from argo_compiler.script.sentences.building.sentences import build
 from argo_compiler.script.sentences.doubts import is_question
 from argo_compiler.script.sentences.grammar.parser import StumbleError
-from argo_compiler.script.sentences.tree.nouns import AllOf, Nouns, Pronoun
+from argo_compiler.script.sentences.tree.nouns import AllOf, Noun, Nouns, Pronoun
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.amounts import Length
 from argo_compiler.script.sentences.words.lexer import all_words
@@ -93,6 +93,11 @@ class Mention:
     value: object = None
     limits_s: tuple[float, float] = (0.0, 0.0)
     """of a time between two limits"""
+
+    @property
+    def nouns(self) -> tuple[Noun, ...]:
+        """The nouns of a noun phrase, without its exceptions; none of another part."""
+        return self.value.nouns if isinstance(self.value, Nouns) else ()
 
 
 @dataclass(frozen=True)

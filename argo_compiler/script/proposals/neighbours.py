@@ -116,8 +116,8 @@ class Neighbours:
 
     @cached_property
     def is_log(self) -> bool:
-        """Whether the script is a log by its first line, and lines with a time of day say what was
-        read, or who handed over; then these are no times of a plan."""
+        """True for a log: by its first line, and by lines with a time of day that say what was
+        read, or who handed over. These times are no times of a plan."""
         source = self.script.source
         first = next((line for line in source.lines if line.strip()), "")
         title = cue_pattern("logs", f"{self.form['logs']} | {self.form['log_titles']}")

@@ -11,8 +11,10 @@ from argo_compiler.script.proposals.mentions import Mention, Mentions, checkpoin
 from argo_compiler.script.sentences.tree.places import AreaLocation, DockLocation
 from argo_compiler.script.sentences.words.numbers import Figure
 
-_HOME = ("home", "HOME", "DOCK")
-_ENDS = ("END", "ABORT")
+HOME = ("home", "HOME", "DOCK")
+"""kinds of mentions that send the robot back"""
+ENDS = ("END", "ABORT")
+"""kinds of mentions that end the mission"""
 _SPARING = ("forbidding", "NOT", "leave_out", "EXCEPT", "SPARE", "DELETE")
 
 
@@ -32,6 +34,15 @@ class OpenText:
             return self.composer.known.checkpoints([mention])
         return []
 
+    def counts(self, *kinds: str) -> list[int | None]:
+        """Return the numbers of mentions of these kinds; None for one that is not clear."""
+        values = (mention.value for mention in self.found.of(*kinds))
+        return [value.whole for value in values if isinstance(value, Figure)]
+
+    def lengths(self, *kinds: str) -> list[str | None]:
+        """Return the times of mentions of these kinds in words; None for one that is not clear."""
+        return [length_words(mention.value) for mention in self.found.of(*kinds)]
+
     @property
     def types(self) -> tuple[str, ...]:
         """The types of the words, also of those that are part of a larger mention."""
@@ -43,12 +54,12 @@ class OpenText:
         places = (mention.value for mention in self.found.of("place"))
         docks = (one.area if isinstance(one, DockLocation) else one for one in places)
         areas = [place.area for place in docks if isinstance(place, AreaLocation)]
-        numbers = [m.value.whole for m in self.found.of("NUMBER") if isinstance(m.value, Figure)]
+        numbers = self.counts("NUMBER")
         return areas or [n for n in numbers if n is not None and self.found.has("AREA")]
 
     @property
     def return_words(self) -> str:
-        """How the robot is sent back: `return to the docking station in starting area 1`."""
+        """The words that send the robot back, to the area that the text names if it names one."""
         area = next((a for a in self.areas if self.composer.known.catalog.area(a)), None)
         where = "" if area is None else f" in starting area {area}"
         return f"return to the docking station{where}"
@@ -71,8 +82,8 @@ class OpenText:
         docks = any(isinstance(m.value, DockLocation | AreaLocation) for m in mentions.of("place"))
         if docks or mentions.has("HOME", "DOCK"):
             acts.append(self.return_words)
-        elif mentions.has(*_ENDS):
+        elif mentions.has(*ENDS):
             acts.append("abort the mission")
-        elif mentions.has(*_HOME):
+        elif mentions.has("home"):
             acts.append(self.return_words)
         return acts

@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from itertools import chain
+from typing import TypeGuard
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.script.documents.source import Diagnostics, RefusedError, ScriptText
@@ -27,7 +28,7 @@ from argo_compiler.script.proposals.known import Known
 from argo_compiler.script.proposals.mentions import OF_FORMS, Mention, Mentions, mentions_in
 from argo_compiler.script.proposals.neighbours import Neighbours
 from argo_compiler.script.proposals.rows import propose_row
-from argo_compiler.script.sentences.tree.nouns import AllOf, TheOne
+from argo_compiler.script.sentences.tree.nouns import AllOf, Noun, TheOne
 from argo_compiler.script.sentences.tree.orders import Measure, Sentence
 from argo_compiler.script.sentences.tree.script import ScriptStep
 from argo_compiler.script.sentences.understanding import Understanding
@@ -99,7 +100,7 @@ class _Proposer:
             if start in self.unread and len(self.found) < MAX_PROPOSED:
                 proposal = self._proposal(piece, i)
             elif start in self.unclear and len(self.found) < MAX_PROPOSED:
-                proposal = Proposal(choices=choices_of(piece.text, self.composer))
+                proposal = Proposal()
             elif self.plan is not None and has_date(piece.text) and not named:
                 proposal = Proposal(choices=((),), doubt=NO_DATES)
             elif self._is_heading_of_rows(piece, i):
@@ -153,7 +154,8 @@ class _Proposer:
         found = mentions_in(piece.text, self.understanding)
         below = self.script.pieces[i + 1 : i + 2]
         over_rows = all(one.text.first in self.script.rows for one in below)
-        kinds = {n.kind for m in found.of("checkpoints") for n in m.value.nouns if _is_kind(n)}  # type: ignore[attr-defined]
+        nouns = (noun for mention in found.of("checkpoints") for noun in mention.nouns)
+        kinds = {noun.kind for noun in nouns if _is_kind(noun)}
         alone = found.only("checkpoints", *OF_FORMS, "UNIT", "LPAR_HOW")
         if not (below and over_rows and len(kinds) == 1 and alone):
             return False
@@ -233,7 +235,7 @@ class _Proposer:
                 self.composer.known.measured(self.composer.known.checkpoints([mention]))
 
 
-def _is_kind(noun: object) -> bool:
+def _is_kind(noun: Noun) -> TypeGuard[AllOf | TheOne]:
     """Return True for `pressure gauges`, without a number."""
     return isinstance(noun, AllOf) or (isinstance(noun, TheOne) and noun.plural)
 

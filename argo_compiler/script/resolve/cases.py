@@ -1,7 +1,7 @@
 """What is done if something is so: after a value, after a failure, after an event."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import combinations, pairwise
 from typing import NoReturn
 
@@ -57,6 +57,16 @@ _EXCEPTIONS = (
 """states that can't be asked for turned round"""
 
 
+@dataclass(frozen=True)
+class _FailureRule:
+    """What is done if any reading of a kind fails; `policy` is None if only another try is asked
+    for."""
+
+    kind: Kind
+    retries: tuple[orders.Retry, ...]
+    policy: OnFailure | None
+
+
 class Cases:
     """Plans cases behind what they are looked at after, and what is done in each. Raises
     RefusedError where that is not clear."""
@@ -76,7 +86,7 @@ class Cases:
         """the tasks of which it is said what is done if they fail"""
         self.asked: tuple[CheckpointInfo, ...] = ()
         """what `it` means in a condition, and where that does not hold"""
-        self.general: list[tuple[Case, Test]] = []
+        self.general: list[_FailureRule] = []
         """what is done if any of several tasks fails"""
 
     def add(self, case: Case, block: ProgramBlock) -> None:
@@ -280,36 +290,33 @@ class Cases:
 
     def _general(self, case: Case, condition: SaidCondition, test: Test) -> None:
         """Note what is done if any task fails: `if a reading fails, try it once more`."""
-        retries = [order for order in case.orders if isinstance(order, orders.Retry)]
+        retries = tuple(order for order in case.orders if isinstance(order, orders.Retry))
         rest = [order for order in case.orders if not (order in retries or _is_next(order))]
-        policy = _policy(rest) if rest else OnFailure.CONTINUE
+        policy = _policy(rest)
         failed = isinstance(test.predicate, InState) and test.predicate.state is TaskState.FAILED
         goes_on = policy is OnFailure.CONTINUE and not retries and test.is_of_failure
         plain = condition.tests == [test] and not (condition.negated or test.negated)
-        if policy is None or not plain or not (goes_on or failed):
+        if (rest and policy is None) or not plain or not (goes_on or failed):
             message = "this can be any of several checkpoints, or the last one"
             hint = "name the checkpoint: `if checkpoint 4 fails, ...`"
             self.diagnostics.refuse("ambiguous-pronoun", message, case.span, hint)
-        self.general.append((case, test))
+        nouns = () if test.subject is None else test.subject.nouns
+        kind = next((n.kind for n in nouns if isinstance(n, TheOne)), Kind.CHECKPOINT)
+        self.general.append(_FailureRule(kind, retries, policy))
 
     def finish(self) -> None:
         """Apply to each reading what is done if any fails, unless something is ordered for it."""
-        for case, test in self.general:
-            nouns = () if test.subject is None else test.subject.nouns
-            kind = next((n.kind for n in nouns if isinstance(n, TheOne)), Kind.CHECKPOINT)
-            readings = self.context.readings(kind)
-            for order in case.orders:
-                if isinstance(order, orders.Retry):
-                    self.context.recent = [do for do in readings if not do.retries]
-                    if self.context.recent:
-                        self.manners.amend(replace(order, again=False, every=False))
-            others = [o for o in case.orders if not (isinstance(o, orders.Retry) or _is_next(o))]
-            policy = _policy(others)
-            open_ = [d for d in readings if not d.failure and not any(d is t for t in self.told)]
-            if policy is not None:
+        for rule in self.general:
+            readings = self.context.readings(rule.kind)
+            for order in rule.retries:
+                self.context.recent = [do for do in readings if not do.retries]
+                if self.context.recent:
+                    self.manners.amend(replace(order, again=False, every=False))
+            if rule.policy is not None:
+                open_ = [d for d in readings if not (d.failure or any(d is t for t in self.told))]
                 self.told += open_
                 self.context.recent = open_
-                self.manners.on_failure(policy)
+                self.manners.on_failure(rule.policy)
 
     def _failure(self, case: Case, block: ProgramBlock) -> None:
         """Plan the orders that are carried out if the last task fails."""

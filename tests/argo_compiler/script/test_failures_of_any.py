@@ -1,4 +1,4 @@
-"""What is done if any of several readings fails: `if a gauge can't be read, try it once more`."""
+"""Rules on the failure of any reading: `if a gauge can't be read, try it once more`."""
 
 import pytest
 

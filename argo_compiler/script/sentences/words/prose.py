@@ -86,7 +86,7 @@ class Prose:
 
     @cached_property
     def cue(self) -> re.Pattern[str]:
-        """How a cue of any kind begins, in lower case."""
+        """The pattern of the phrases of all cues, in lower case."""
         return re.compile(rf"(?<![\w-])(?:{either('|'.join(self.cues.values()))})")
 
     @cached_property

@@ -121,12 +121,15 @@ def import_script(
             sentences = {at: said for at, said in sentences.items() if at not in refused}
             reading = read({**said, **proposed, **sentences})
         errors = _errors_by_piece(reading)
-        lacking = {at for at in errors if at not in said and not _has_choices(proposals.get(at))}
-        if lacking:  # in error only with the proposals for this line or for others
-            others = propose(script, unread - lacking, unclear | lacking, catalog, start_area)
-            for at in lacking & others.keys():
-                before = proposals.get(at, others[at])
-                proposals[at] = replace(before, choices=others[at].choices)
+    lacking = {at for at in errors if at not in proposals or not proposals[at].choices}
+    if lacking:  # in error only with what was decided or proposed for this line or for others
+        from argo_compiler.script.proposals.proposing import propose
+
+        others = propose(script, unread - lacking, unclear | lacking, catalog, start_area)
+        for at in lacking & others.keys():
+            before = proposals.get(at, others[at])
+            proposals[at] = replace(before, choices=others[at].choices)
+    if proposed or assisted:
         proposals |= {at: one for at, one in assisted.items() if at not in refused}
     known = _Known(errors, acts, proposals, suggested, assisted, refused)
     lines = tuple(_lines(reading, known))
@@ -140,10 +143,6 @@ def import_script(
         diagnostics=_all_diagnostics(reading, notes),
         text=reading.script.source_text,
     )
-
-
-def _has_choices(proposal: "Proposal | None") -> bool:
-    return proposal is not None and any(proposal.choices)
 
 
 def _all_diagnostics(reading: _Reading, notes: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:
@@ -275,6 +274,7 @@ class _Known:
             doubt = "" if proposal is None else proposal.doubt
             found |= {"state": LineState.OPEN, "reason": doubt or error.message}
             found |= {"hint": error.hint or "", "is_question": error.code not in _UNREAD}
+            found |= {"choices": () if proposal is None else proposal.choices}
         if (refusal := self.refused.get(at)) is not None and "act" not in found:
             sentences = " ".join(self.assisted[at].sentences)
             found["hint"] = f"an assistant suggests `{sentences}`, but {refusal.message}"

@@ -333,7 +333,7 @@ class ScriptFields:
         where = None if areas_named else self.understanding.location(value)
         dock_named = any(word.type == "DOCK" for word in found)
         if where is None or isinstance(where, tuple) or dock_named:
-            areas = self._areas(value)
+            areas = self._areas(value, dock_named)
             self._set(name, areas, value, areas and areas.areas)
             return
         if not self._is_new(name, _plain(value), value):
@@ -382,7 +382,7 @@ class ScriptFields:
 
     # ---- starting areas: `docked in "Starting area" 1 or 2, chosen by the staff`
 
-    def _areas(self, value: ScriptText) -> Areas | None:
+    def _areas(self, value: ScriptText, dock: bool) -> Areas | None:
         """The areas that a field offers; more than one leaves the choice open."""
         errors = self.diagnostics.errors
         found = list(self._numbers_of_areas(self.understanding.words(value)))
@@ -410,7 +410,7 @@ class ScriptFields:
         if self.diagnostics.errors > errors:
             return None
         at = value[found[0][0].start : found[0][0].end] if found else value
-        return Areas(span=at.span(), areas=tuple(areas))
+        return Areas(span=at.span(), areas=tuple(areas), dock=dock)
 
     def _may_ask(self, aside: ScriptText) -> bool:
         """Whether words behind an area may change what it means."""

@@ -118,6 +118,13 @@ class LineSense:
         limit = self.understanding.types(bare) == ("MOST_TIME",)  # of the mission, not of a task
         return alone or limit or self.fields.is_field(text)
 
+    def counts(self, above: ScriptText, below: ScriptText) -> bool:
+        """Return True if a number at the end of a line would count the checkpoints of a kind which
+        stands alone in the next one: `1, 4` over `Level gauges`."""
+        bare = below[: len(below.content.rstrip(" .:"))]
+        kinds = {"KIND"} >= {*self.understanding.types(bare)}
+        return kinds and above.content[-1:].isdigit() and below.content[0].isupper()
+
     def is_broken(self, line: str, below: ScriptText) -> bool:
         """Return True if a line was broken for its length and goes on in the next one."""
         first = below.content.split(maxsplit=1)[0]
@@ -271,7 +278,7 @@ def _are_one(item: LineItem, line: ScriptLine, sense: LineSense) -> bool:
     """Whether an item goes on with a line that has no mark. It hangs on nothing but the texts, the
     item's mark, and whether the line stands further to the right."""
     last, below = item.last, line.text
-    if sense.stands_alone(below):
+    if sense.stands_alone(below) or sense.counts(last, below):
         return False
     if _NAMED_STEP.match(below.content) and not _TEXTS.fullmatch(last.content):
         return False

@@ -23,7 +23,12 @@ from argo_compiler.script.layout.rows import COLUMN_HEADINGS, tables
 from argo_compiler.script.parsing.repeats import Repeats, repeats
 from argo_compiler.script.parsing.script import Piece, Script
 from argo_compiler.script.parsing.sentence_reading import SentenceReader
-from argo_compiler.script.sentences.doubts import PlacingCheck, ask_of_dots
+from argo_compiler.script.sentences.doubts import (
+    PlacingCheck,
+    ask_of_dots,
+    asks_for_work,
+    returns_at_end,
+)
 from argo_compiler.script.sentences.tree.nouns import Labelled
 from argo_compiler.script.sentences.tree.orders import Measure, Sentence, Start
 from argo_compiler.script.sentences.tree.script import Said, ScriptStep, Unread
@@ -154,6 +159,7 @@ class _Parser:
         items = items_of(lines_of(texts), sense, language.words)
         lists = Lists(self.understanding, self._record)
         steps = list(self._steps(lists.told(items)))
+        steps, at_end = _with_end_apart(steps)
         PlacingCheck(self.diagnostics).steps(steps)
         _ask_of_title(steps, self.diagnostics)
         refers = cue_pattern("referring", language.prose.cues["referring"])
@@ -162,7 +168,7 @@ class _Parser:
         ):
             _ask_of_quotes(steps, self.diagnostics)
         first = [_step_of(sentence) for sentence in self.fields.first]
-        last = [_step_of(sentence) for sentence in self.fields.last]
+        last = [_step_of(sentence) for sentence in (*at_end, *self.fields.last)]
         return Script(
             source=source,
             header=self.fields.header,
@@ -401,6 +407,21 @@ def _reader_of(fields: ScriptFields, field: Field) -> Callable[[ScriptText], lis
 
 def _step_of(sentence: Sentence) -> ScriptStep:
     return ScriptStep(span=sentence.span, number=None, sentences=(sentence,))
+
+
+def _with_end_apart(steps: Sequence[ScriptStep]) -> tuple[list[ScriptStep], list[Sentence]]:
+    """Return the steps without those sentences above all tasks that let the mission end docked, and
+    those sentences: `At the end, return to the docking station.`"""
+    found = list(steps)
+    ends: list[Sentence] = []
+    for i, step in enumerate(steps):
+        apart = [one for one in step.sentences if returns_at_end(one)]
+        others = tuple(one for one in step.sentences if one not in apart)
+        if step.steps or any(map(asks_for_work, others)):
+            return found, ends
+        found[i] = replace(step, sentences=others)
+        ends += apart
+    return list(steps), []
 
 
 def _ask_of_title(steps: Sequence[ScriptStep], diagnostics: Diagnostics) -> None:

@@ -79,6 +79,7 @@ def choices_of(
     for way in _WAYS if len(text.content) <= _LONGEST else (_by_mentions,):
         with composer.known.unchanged():
             made |= dict.fromkeys(filter(_is_possible, way(open_text)))
+    made.pop((sentence(text),), None)  # it is open as it is
     return (*list(made)[:_MOST_CHOICES], ())
 
 
@@ -305,14 +306,16 @@ def _by_edits(of: OpenText) -> Iterator[Sentences]:
     if not ids or not above:
         return
     id, others = ids[0], [one for one in ids[1:] if one in above]
+    if of.found.has("pronoun") and not of.found.has("BETWEEN"):
+        others = others or [c.id for c in known.memory.last[:1]]
     verb = "Move" if id in above else "Add"
-    for kind, side in (("BEFORE", "before"), ("AFTER", "after")):
-        if of.found.has(kind) and others:
+    for kind, side in (("BEFORE", "before"), ("AFTER", "after"), ("BETWEEN", "after")):
+        if of.found.has(kind) and others and id not in others:
             yield (f"{verb} checkpoint {id} {side} checkpoint {others[0]}.",)
     if of.found.has("BEFORE", "first", "AT_BEGIN") and id != above[0]:
         yield (f"{verb} checkpoint {id} before checkpoint {above[0]}.",)
-    if of.found.has("last", "AT_END") and id in above[:-1]:
-        yield (f"Move checkpoint {id} after checkpoint {above[-1]}.",)
+    if of.found.has("last", "AT_END") and id != above[-1]:
+        yield (f"{verb} checkpoint {id} after checkpoint {above[-1]}.",)
     old = [one for one in ids if one in above]
     new = [one for one in ids if one not in above]
     if len(old) == len(new) == 1 and of.found.has(*_REPLACING):
@@ -390,9 +393,9 @@ def _sparing(ids: Collection[int], of: OpenText) -> str:
 _WAYS: tuple[Callable[[OpenText], Iterator[Sentences]], ...] = (
     _by_pronouns,
     _by_corrections,
+    _by_edits,
     by_cases,
     _by_parts,
-    _by_edits,
     _by_rounds,
     _by_order,
     _by_acts,

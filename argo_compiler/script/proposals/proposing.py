@@ -143,10 +143,11 @@ class _Proposer:
     def _ending(self, sentences: Sentences) -> Sentences:
         """Return sentences of which the last, a return, says only where the mission ends."""
         returned = _RETURN.fullmatch(sentences[-1]) if sentences else None
-        area = returned and (returned[1] or self.composer.known.start_area)
-        if returned is None or area is None:
+        if returned is None:
             return sentences
-        return (*sentences[:-1], f"End of the mission: starting area {area}.")
+        area = returned[1] or self.composer.known.start_area
+        where = "docking station" if area is None else f"starting area {area}"
+        return (*sentences[:-1], f"End of the mission: {where}.")
 
     def _is_heading_of_rows(self, piece: Piece, i: int) -> bool:
         """Return True for a kind over rows of a sheet: `PRESSURE GAUGES (bar)`. What these name by

@@ -239,7 +239,7 @@ class Repeating:
             if not (found := self._all(round_)):
                 message = "there is nothing before this to repeat"
                 hint = "write it after the tasks to repeat, or `do the following twice:`"
-                self.diagnostics.refuse("empty-step", message, order.span, hint)
+                self.context.refuse_missing("empty-step", message, order.span, hint)
             return found
         nodes = self.context.nodes_of(order.steps)
         noted = [id(node) for node in repetition.late]

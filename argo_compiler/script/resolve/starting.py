@@ -30,6 +30,8 @@ class AreaChoice:
     """the steps stay as they are"""
     said: bool = False
     """that it is this one, or none, was said at all"""
+    dock: bool = False
+    """the docking station is meant, but not in which area"""
 
 
 def area_choices(
@@ -74,6 +76,8 @@ def _choice(
         areas = listed(numbers, "or")
         message = f"the script leaves the {which} open: starting area {areas}"
         diagnostics.error("area-choice", message, span, str(choice), choice)
+    elif option is None and not offered and which == "end" and cell.dock:
+        return AreaChoice(None, span, said=True, dock=True)
     elif option is None and not offered:
         message = f"this names no starting area for the mission's {which}"
         hint = "write, for example, `starting area 1`"
@@ -212,12 +216,23 @@ class Starting:
         end = self.end
         if end.as_planned:
             self.end_area = end.area
-        elif end.area is not None and (context.docked is None or not context.docked.is_listed):
-            area = self.lookup.area(end.area, end.span)
-            self.end_area = area.number
-            context.docked = dock(area.dock, end.span)
-            context.put([context.docked], context.program, context.program.last)
+        elif context.docked is None or not context.docked.is_listed:
+            self._end_docked()
         self._find_dock()
+
+    def _end_docked(self) -> None:
+        """Adds the way into the dock in which the header lets the mission end."""
+        number = self.start_area if self.end.dock else self.end.area
+        span = self.end.span
+        if number is not None:
+            area = self.lookup.area(number, span)
+        elif self.end.dock and span is not None:
+            area = self._nearest(span)
+        else:
+            return
+        self.end_area = area.number
+        docked = self.context.docked = dock(area.dock, span)
+        self.context.put([docked], self.context.program, self.context.program.last)
 
     def _find_dock(self) -> None:
         if self.header.dock_said:

@@ -9,13 +9,14 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import takewhile
+from typing import TypeGuard
 
 from argo_compiler.script.documents.source import Diagnostics, ScriptText
 from argo_compiler.script.sentences.tree import orders
 from argo_compiler.script.sentences.tree.conditions import Test, TooLate
 from argo_compiler.script.sentences.tree.nouns import AllOf, Labelled, TheOne
 from argo_compiler.script.sentences.tree.orders import Case, Placed, Placing, ScriptOrder, Sentence
-from argo_compiler.script.sentences.tree.script import ScriptStep
+from argo_compiler.script.sentences.tree.script import Said, ScriptStep
 from argo_compiler.script.sentences.words.lexer import all_words, placed_words
 from argo_compiler.script.sentences.words.lexicon import Lexicon
 from argo_compiler.script.sentences.words.loading import everywhere
@@ -205,6 +206,20 @@ def placed_in(text: ScriptText, node: Sentence, lexicon: Lexicon) -> tuple[Place
         placing = Placing.AT_BEGIN if first else Placing(word.type)
         found.append(Placed(span=span, placing=placing, orders=before))
     return tuple(found)
+
+
+def asks_for_work(sentence: Said) -> bool:
+    """Return True for a sentence that orders to measure or to drive somewhere but home."""
+    orders_ = sentence.orders if isinstance(sentence, Sentence) else ()
+    return any(isinstance(order, _WORK) for order in orders_)
+
+
+def returns_at_end(sentence: Said) -> TypeGuard[Sentence]:
+    """Return True for `At the end, return to the docking station`, and nothing else."""
+    if not isinstance(sentence, Sentence) or sentence.cases or sentence.facts:
+        return False
+    at_end = {placed.placing for placed in sentence.placed} == {Placing.AT_END}
+    return at_end and len(sentence.orders) == 1 and isinstance(sentence.orders[0], orders.Home)
 
 
 @dataclass

@@ -3,7 +3,7 @@
 import pytest
 
 from argo_compiler.base.catalog import Catalog
-from argo_compiler.script import LineState
+from argo_compiler.script import LineState, import_script
 from tests.argo_compiler.script.conftest import draft_of, measured_in
 
 BEFORE = "Check pressure gauge 3 and valve R12.\n"
@@ -92,6 +92,12 @@ BEFORE = "Check pressure gauge 3 and valve R12.\n"
             "7 points, Bob: 19 20 18 17",
             "Check checkpoint 19, checkpoint 20, checkpoint 18 and checkpoint 17.",
         ),
+        # changes of the list above
+        (
+            "Hang valve R7 between pressure gauge 3 and valve R12",
+            "Add checkpoint 11 after checkpoint 6.",
+        ),
+        ("Put valve R7 at the beginning of your list", "Add checkpoint 11 before checkpoint 6."),
         # the order, times, and numbers that can be checkpoints
         ("The exact sequence is up to you", "Order: any."),
         ("Hurry up, lunch is in 20 minutes", "Maximum duration: 20 minutes."),
@@ -123,3 +129,32 @@ def test_a_time_with_two_readings_is_in_no_choice(catalog: Catalog) -> None:
     said = [sentence for sentences in last.choices for sentence in sentences]
     assert "Repeat everything 4 times." in said
     assert not any("None" in sentence for sentence in said)
+
+
+def test_the_text_of_an_open_line_is_no_choice(catalog: Catalog) -> None:
+    (*_, last) = draft_of(f"{BEFORE}every 30 min, 4 rounds total", catalog).lines
+    assert last.choices[0] == ("Repeat everything every 30 minutes, 4 times.",)
+
+
+def test_a_choice_that_does_not_fit_leaves_the_others(catalog: Catalog) -> None:
+    text = f"{BEFORE}If that one is more than 30 deg, stop there and go to the dock in area 1."
+    draft = draft_of(text, catalog)
+    line = draft.lines[-1]
+    wrong = next(i for i, one in enumerate(line.choices, start=1) if "stop there" in one[0])
+    again = draft_of(text, catalog, draft.choose(line.label, wrong)).lines[-1]
+    assert again.state is LineState.OPEN
+    assert again.choices == line.choices
+
+
+def test_rounds_may_be_chosen_above_the_tasks_that_are_open(catalog: Catalog) -> None:
+    text = "every 30 min do a round, 6 rounds in all\nround = R7, PG3, somehow"
+    draft = draft_of(text, catalog)
+    rounds, tasks = draft_of(text, catalog, draft.choose("1", 1)).lines
+    assert rounds.state is LineState.UNDERSTOOD
+    assert tasks.state is LineState.OPEN
+
+
+def test_a_return_that_is_chosen_above_the_tasks_is_the_end(catalog: Catalog) -> None:
+    text = "3.2 The whole thing ends docked where it began, Mia.\n1. Check #3.\n2. Check #5."
+    choices = import_script(text, catalog).lines[0].choices
+    assert ("End of the mission: docking station.",) in choices

@@ -5,7 +5,7 @@ import pytest
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.il import Action, Mission, Mode, Order
-from tests.argo_compiler.script.conftest import findings
+from tests.argo_compiler.script.conftest import findings, refusals
 from tests.whole_scripts import import_whole
 
 STEPS = "1. Check #4\n"
@@ -144,3 +144,34 @@ def test_docks_that_are_chosen_later_are_asked_for(catalog: Catalog) -> None:
     assert [d.code for d in faults(text, catalog)] == ["script.area-choice"] * 2
     found = import_whole(text, catalog, start_area=1, end_area=2).mission
     assert (found.start_area, found.end_area) == (1, 2)
+
+
+@pytest.mark.parametrize(
+    "end",
+    [
+        "End of the mission: docking station",
+        "End of the mission: docked in its docking station",
+        "At the end, return to the docking station.",
+        "At the end it goes back to its dock.",
+    ],
+)
+def test_the_end_is_in_the_dock_of_the_start_if_no_area_is_named(
+    end: str, catalog: Catalog
+) -> None:
+    text = f"Start in starting area 2.\n{end}\n1. Check #3.\n2. Check #5."
+    found = import_whole(text, catalog).mission
+    assert [task.action for task in found.tasks] == ["START", "MEASURE", "MEASURE", "WAYPOINT"]
+    assert found.end_area == 2
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Check #3.\nAt the end, return to the docking station.\nCheck #5.",
+        "Finally, return to the docking station. Then check #3.",
+        "At the end, return to the docking station if #3 is above 4.\nCheck #3.",
+        "Do the following twice:\n- At the end, return to the docking station.\n- Check #3.",
+    ],
+)
+def test_a_return_at_the_end_among_tasks_is_asked_about(text: str, catalog: Catalog) -> None:
+    assert refusals(text, catalog)

@@ -6,7 +6,7 @@ from argo_compiler.base.catalog import Catalog
 from argo_compiler.diagnostics import Severity
 from argo_compiler.il import Order
 from argo_compiler.script import LineState, import_script, parse
-from tests.argo_compiler.script.conftest import findings, measured
+from tests.argo_compiler.script.conftest import draft_of, findings, measured, measured_in
 from tests.whole_scripts import import_whole
 
 START = "Start in starting area 1\n"
@@ -274,3 +274,16 @@ def test_a_sentence_of_very_many_lines_is_refused_with_its_length() -> None:
     errors = [d for d in parse(text).diagnostics if d.severity == "error"]
     assert [(d.code, d.span.line) for d in errors if d.span] == [("script.too-long", 3)]
     assert "13008 characters; at most 10000" in errors[0].message
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Pressure gauges\n1, 4\nLevel gauges\n2, 3",
+        "Pressure gauges:\n1, 4\nLevel gauges:\n2, 3",
+        "Check pressure gauges 1, 4\nLevel gauges 2, 3",
+    ],
+)
+def test_a_number_at_the_end_of_a_line_counts_no_kind_below_it(text: str, catalog: Catalog) -> None:
+    draft = draft_of(text, catalog)
+    assert draft.mission is None or measured_in(draft.mission) == ["1", "9", "7", "12"]

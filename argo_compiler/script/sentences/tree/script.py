@@ -20,6 +20,8 @@ class Areas(Node):
     """A field that names starting areas: more than one leaves the choice to the preparation."""
 
     areas: tuple[int, ...]
+    dock: bool = False
+    """whether it names the docking station, perhaps without its area"""
 
 
 @node

@@ -274,7 +274,9 @@ class _Known:
             doubt = "" if proposal is None else proposal.doubt
             found |= {"state": LineState.OPEN, "reason": doubt or error.message}
             found |= {"hint": error.hint or "", "is_question": error.code not in _UNREAD}
-            found |= {"choices": () if proposal is None else proposal.choices}
+            refused = decision.sentences if decision is not None else None
+            choices = () if proposal is None else proposal.choices
+            found |= {"choices": tuple(choice for choice in choices if choice != refused)}
         if (refusal := self.refused.get(at)) is not None and "act" not in found:
             sentences = " ".join(self.assisted[at].sentences)
             found["hint"] = f"an assistant suggests `{sentences}`, but {refusal.message}"

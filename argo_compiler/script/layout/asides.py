@@ -41,6 +41,8 @@ _ASKING = _MANNERS | {
     *("GREATER", "LESS", "BETWEEN", "BE_MEASURED", "FAILS", "OCCURS"),
 }
 """words of these types are in no title"""
+_TELLING = frozenset(["KIND", "VALUE"])
+"""words of these types in a remark may be about checkpoints"""
 _NAMED = frozenset(["KIND", "HASH", "STEP", "AREA", "DOCK", "FLOOR"])
 _LABELS = frozenset(["NUMBER", "IDENT", "STRING", "HASH"])
 _WHOLE = frozenset(["HOME", "END", "ABORT", "GO_ON", "RECHARGE", "PAUSE", "PARK"])
@@ -386,9 +388,14 @@ class Asides:
 
     def corrects(self, remark: ScriptText) -> bool:
         """Whether a remark may take something back, or say when or how it is done."""
-        return "KIND" in self.understanding.types(remark) or _limits(
-            remark, "set_aside", "correcting"
-        )
+        words = self.understanding.words(remark)
+        telling = any(word.type in _TELLING or _is_figure(remark, word) for word in words)
+        return telling or self.overturns(remark) or _limits(remark, "set_aside", "correcting")
+
+    def overturns(self, remark: ScriptText) -> bool:
+        """Return True if a remark may say that something is wrong, or of the order: `the other way
+        round`, `R7 was meant`."""
+        return pattern(r"\b<overturning>\b").search(remark.content) is not None
 
     def ranks(self, text: ScriptText) -> bool:
         """Whether a text says of a kind only when it is done: `The valves come first`."""
@@ -442,6 +449,12 @@ def _limits(text: ScriptText, *names: str) -> bool:
     whole = text.content.strip(" :.!?()*_")
     in_text = pattern(rf"\b(?:{said})\b").search(text.content)
     return in_text is not None or pattern("<in_some_case>").fullmatch(whole) is not None
+
+
+def _is_figure(text: ScriptText, word: Word) -> bool:
+    """Return True for a number in figures, without a unit; not of a heading: `Task 1:`"""
+    heading = text.content.endswith(":")
+    return word.type == "NUMBER" and text.content[word.start].isdigit() and not heading
 
 
 def _said(text: ScriptText, word: Word) -> str:

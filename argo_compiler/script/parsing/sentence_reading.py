@@ -75,7 +75,9 @@ class SentenceReader:
             reading = self.understanding.read(inner)
             if not isinstance(reading, StumbleError):
                 return [self._node(inner, reading)]
-        if self.asides.bids(inner):
+        if self.asides.overturns(inner):
+            ask_of_remark(text, self.diagnostics)
+        elif self.asides.bids(inner):
             message = f"`{text.content}` is taken for a remark: the command in it has no effect"
             hint = "write it as a step if the robot has to do it"
             self.diagnostics.warning("remark", message, text.span(), hint)
@@ -233,9 +235,11 @@ class SentenceReader:
         return True
 
     def _is_stray(self, text: ScriptText, item: LineItem) -> bool:
-        """Whether a line is a number alone, as a page's is, and no list says of what."""
+        """Return True for a number alone, as a page's or behind `ext.`, if no list says of what."""
         alone = item.line.mark is LineMark.NONE and text.content == item.text.content
-        return alone and not self.fields.lists and self.understanding.types(text) == ("NUMBER",)
+        behind = text.first > item.text.first
+        number = self.understanding.types(text) == ("NUMBER",)
+        return number and (alone or behind) and not self.fields.lists
 
     def _node(self, text: ScriptText, reading: Reading) -> Said:
         self.begun = True

@@ -12,7 +12,7 @@ from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.script.documents.source import RefusedError, ScriptText
 from argo_compiler.script.proposals.evidence import evidence
 from argo_compiler.script.proposals.frames import Sentences, sentences_of
-from argo_compiler.script.proposals.known import Known
+from argo_compiler.script.proposals.known import Known, is_number
 from argo_compiler.script.proposals.mentions import (
     Mentions,
     mentions_in,
@@ -193,6 +193,8 @@ class Composer:
     def _composed(self, text: ScriptText, found: Mentions) -> Proposal | None:
         if not found.mentions or self._depends(text, found) or self._removes(text, found):
             return None
+        if self._numbers_robot(text, found):
+            return None
         self.known.warnings.clear()
         sentences = sentences_of(found, self.known)
         if sentences is None:
@@ -267,6 +269,13 @@ class Composer:
         away = cue_pattern("away", self.understanding.language.prose.form["away"])
         said = (text.content[word.start : word.end] for word in found.unknown)
         return not found.has("leave_out", "SPARE", "DELETE") and any(map(away.fullmatch, said))
+
+    def _numbers_robot(self, text: ScriptText, found: Mentions) -> bool:
+        """Return True for `robot #2`, where the number is that of the robot."""
+        subjects = self.understanding.language.lexicon.phrases["SUBJECT", None]
+        numbered = (m for m in found.of("checkpoints") if is_number(m))
+        before = (text.content[: mention.start].lower().rstrip() for mention in numbered)
+        return any(part.endswith(tuple(subjects)) for part in before)
 
     def _depends(self, text: ScriptText, found: Mentions) -> bool:
         """Return True if a text may begin with a case that it depends on: `On smoke, go home`."""

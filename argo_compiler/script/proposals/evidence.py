@@ -13,6 +13,7 @@ from argo_compiler.script.sentences.tree.nouns import Labelled
 from argo_compiler.script.sentences.tree.places import DockLocation
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.language import Language
+from argo_compiler.script.sentences.words.loading import pattern
 from argo_compiler.script.sentences.words.prose import cue_pattern
 
 STATEMENT = "a statement that names nothing of the mission"
@@ -60,7 +61,9 @@ _IN_PLACE = (
 
 def evidence(text: ScriptText, found: Mentions, language: Language, clause: bool = False) -> str:
     """Return why a piece, or a clause of one, has no effect; empty if nothing shows that it has
-    none."""
+    none. What says that something is wrong, or of the order, has no such evidence."""
+    if pattern(r"\b<overturning>\b").search(text.content) is not None:
+        return ""
     for reason, is_such in _OF_CLAUSES if clause else (*_OF_LINES, *_OF_CLAUSES):
         if is_such(text, found, language):
             return reason

@@ -186,7 +186,15 @@ class _Proposer:
         row = self.script.rows.get(piece.text.first)
         if row is not None:
             return propose_row(row, self.composer, first=i == 0)
-        return self.composer.propose(piece.text)
+        made = self.composer.propose(piece.text)
+        if made.aside and self._empties_heading(i):
+            return Proposal(doubt="this may be of the line above")
+        return made
+
+    def _empties_heading(self, i: int) -> bool:
+        """Return True for a line below a kind that stands alone: `Gauges` over `none today`."""
+        above = self.script.pieces[i - 1].text if i > 0 else None
+        return above is not None and {*self.understanding.types(above)} == {"KIND"}
 
     def _at_time(self, text: ScriptText) -> Proposal | None:
         """Return what is done at a time of day; None if the text names none, or if it is not known

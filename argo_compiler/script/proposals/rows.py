@@ -115,7 +115,7 @@ def propose_row(row: FormRow, composer: Composer, first: bool = False) -> Propos
     check, spare = f"Check {words}{found.manner}.", f"Do not check {words}."
     if row.doubt:
         return Proposal(choices=((spare,), (check,)), doubt=row.doubt)
-    if row.box is not None and row.box.strip():
+    if (row.box is not None and row.box.strip()) or _TICKED_BOX.search(row.place.content):
         return Proposal(choices=((spare,), (check,)), doubt=_TICKED)
     if found.tag and _may_explain(row, found.tag):
         doubt = f"this can be a task, or only say what `{found.tag}` stands for"

@@ -28,6 +28,7 @@ from argo_compiler.script.resolve.tasks import TaskMaker
 from argo_compiler.script.sentences.tree import orders
 from argo_compiler.script.sentences.tree.manner import NOTHING_SAID, Manner
 from argo_compiler.script.sentences.tree.node import Node
+from argo_compiler.script.sentences.tree.nouns import Pronoun
 from argo_compiler.script.sentences.tree.orders import Fact, PlainWord, ScriptOrder, Sentence
 from argo_compiler.script.sentences.tree.places import (
     AreaLocation,
@@ -378,6 +379,10 @@ class Planner:
             self.manners.furnish(order, demanded)
             return
         tasks = self.making.tasks(order)
+        if isinstance(order, orders.Measure) and self._is_same_reading(order, tasks, block):
+            message = "this can be the reading that was asked for just before, or one more"
+            hint = "write `check it again` for one more, or remove this"
+            self.diagnostics.refuse("ambiguous-measure", message, order.span, hint)
         if isinstance(order, orders.Start) and not order.here:
             self.manners.name(order, tasks)
             self.manners.furnish(order, tasks)
@@ -387,6 +392,16 @@ class Planner:
             self._put(order, self.manners.apply(order, tasks), tasks, block)
             if tasks[-1].docks and block is self.context.program:
                 self.context.docked = tasks[-1]
+
+    def _is_same_reading(
+        self, order: orders.Measure, tasks: Sequence[Do], block: ProgramBlock
+    ) -> bool:
+        """Return True if `read it` directly follows the order to measure what it means."""
+        before = self.context.recent
+        pronouns = all(isinstance(noun, Pronoun) for noun in order.what.nouns)
+        follows = bool(before) and block.last is before[-1] and not before[-1].ways
+        same = [do.object_id for do in tasks] == [do.object_id for do in before]
+        return pronouns and follows and same and not order.manner
 
     def _put(
         self,

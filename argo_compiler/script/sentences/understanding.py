@@ -16,6 +16,7 @@ from argo_compiler.script.sentences.tree.places import FloorName, Location
 from argo_compiler.script.sentences.words.language import Language
 from argo_compiler.script.sentences.words.lexer import words, words_of
 from argo_compiler.script.sentences.words.lexicon import Entry, Lexicon, folded
+from argo_compiler.script.sentences.words.loading import pattern
 from argo_compiler.script.sentences.words.prose import either
 from argo_compiler.script.sentences.words.spelling import candidates
 from argo_compiler.script.sentences.words.unknown import UnknownValue
@@ -153,7 +154,10 @@ class Understanding:
         slips: list[tuple[Word, tuple[str, ...]]] = []
         for word in self.words(text):
             if word.type == "WORD" and str(word.value) not in self.known:
-                meant = candidates(text.content[word.start : word.end], self.known)
+                said = text.content[word.start : word.end]
+                if pattern("<ordinary>").fullmatch(said) is not None:
+                    continue
+                meant = candidates(said, self.known)
                 if any(folded(other) in self.language.lexicon.numerals for other in meant):
                     return None  # a number is never guessed
                 if meant:

@@ -57,6 +57,29 @@ def conditions(text: str, catalog: Catalog) -> list[tuple[str | None, ConditionT
         ("3. Check #1\n1. Check #3\n2. Check #2", "the order of their numbers"),
         ("Check #4 in reverse order.", "no reverse order"),
         ("Check the valves on floor 3 and the gauges.", "on all floors"),
+        # what a remark says of checkpoints or their order, labelled or not
+        ("Read #1, #2, #3 - the 2 is a slip, 4 was meant.", "a change, or a remark"),
+        ("Read #1, #2 and #3 (that one is a mistake).", "a change, or a remark"),
+        ("- #4\n- #1 (before that)", "a change, or a remark"),
+        ("- #4\n- #1 (vorher)", "a change, or a remark"),
+        ("Gauges (pressure)\n1, 2, 5", "a change, or a remark"),
+        ("Note: the order on the sheet is wrong.\n#18, #17, #16", "a change, or a remark"),
+        ("Note: reversed!\n#18, #17, #16", "a change, or a remark"),
+        ("Bemerkung: richtig ist umgekehrt.\n#18, #17, #16", ""),
+        # numbers that are of something else
+        ("Contact: ext. 14\nCheck valve R40.", "or have no meaning"),
+        ("Robot #2 shall read #6 and #8.", ""),
+        ("Roboter Nr. 2 soll #6 prüfen.", ""),
+        # boxes behind a name
+        ("Valve R7: read it? yes [ ] no [x]\nCheck #1.", "ticked"),
+        ("Valve R7 [x] yes [ ] no\nCheck #1.", "ticked"),
+        # the same reading, or one more
+        ("Check #7. Read it.", "or one more"),
+        ("1. #7 and #8\n2. Read them.", "or one more"),
+        ("Prüfe #7. Lies es ab.", "or one more"),
+        ("Valves\nR31, R7\nGauges\nnone today", "the line above"),
+        # a word of its own is not a misspelt one
+        ("Alles auf Etage 1 außer den Manometern, #1 aber doch.", "`doch`"),
         ("Check all valves and all gauges on floor 3.", "the last one only"),
         ("Check everything except the valves on floor 2 and floor 3.", "a further exception"),
         ("Check #1. If it is above 4 bara, check #4.", "absolute"),

@@ -107,7 +107,7 @@ def test_mutated_scripts_and_files_result_in_missions_or_diagnostics(tmp_path: P
 
     attempt()
     for kind in ("script: mission", "script: refused", "file: mission", "file: refused"):
-        assert outcomes[kind] > examples(20)
+        assert outcomes[kind] > examples(2000) // 100
 
 
 def test_generated_sentences_satisfy_the_laws() -> None:
@@ -125,5 +125,5 @@ def test_generated_sentences_satisfy_the_laws() -> None:
         outcomes[outcome] += 1
 
     attempt()
-    assert outcomes["mission"] > examples(30)
-    assert outcomes["refused"] > examples(30)
+    assert outcomes["mission"] > examples(200) // 8
+    assert outcomes["refused"] > examples(200) // 8

@@ -278,6 +278,10 @@ SCRIPT = {
         "An order has to be done at the end, but others come after it.",
         "Write the last order below the others.",
     ),
+    "script.not-neighbours": error(
+        "A wait is put between two tasks that do not come one right after the other.",
+        "Write the wait in a line of its own, between the lines of the two.",
+    ),
     "script.not-planned": error(
         "An edit names a step that is not in the mission at this point.",
         "Add the step before the edit, or correct the name.",

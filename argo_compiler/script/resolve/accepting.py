@@ -41,7 +41,7 @@ _USED: Mapping[type[ScriptOrder], frozenset[str]] = {
     orders.Start: OF_TASKS,
     orders.WaitOrder: OF_TASKS - {"speed"}
     | _CASE
-    | {"duration", "until", "pose", "person"}
+    | {"duration", "until", "pose", "person", "task_pair"}
     | {"charge", "charge_time"},
     orders.Patrol: OF_TASKS - {"reading_limit", "object_id"} | ROUND | _CASE | {"order"},
     orders.Repeat: ROUND | {"time_limit", "order"},
@@ -80,6 +80,7 @@ _WORDS = {
     "shown_in": "the group that it is shown in",
     "object_id": "an object",
     "pose": "the robot's position",
+    "task_pair": "the tasks between which it is done",
     "order": "an order",
     "backwards": "that it is reversed",
     "floors": "floors",

@@ -1,6 +1,8 @@
 """Changes of the plan: what is added, taken out, moved or replaced."""
 
 from collections.abc import Sequence
+from dataclasses import replace
+from typing import NoReturn
 
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.base.listing import listed
@@ -14,6 +16,7 @@ from argo_compiler.script.resolve.program import (
     Leave,
     ProgramNode,
     ProgramRound,
+    all_nodes,
     measurement,
 )
 from argo_compiler.script.sentences.tree import orders
@@ -63,6 +66,67 @@ class Edits:
         anchor = _outside(anchors[0] if side is Side.BEFORE else anchors[-1], side)
         before = anchor.before if side is Side.BEFORE else anchor
         self.context.put(nodes, anchor.home, before)
+
+    def put_between(
+        self, between: Nouns | Steps, nodes: Sequence[ProgramNode]
+    ) -> tuple[ProgramNode, ProgramNode]:
+        """Put nodes between two neighbouring tasks, and return these.
+
+        Raises RefusedError if they are not neighbours.
+        """
+        first, second = self._ends(between)
+        before, after = _behind(first), _ahead(second)
+        if first is second or before.after is not after:
+            self._refuse_ends(between, first, second)
+        if _goes_elsewhere(before):
+            message = "the mission may go elsewhere after the first of these, and not to this wait"
+            hint = "write the wait in a line of its own, between the lines of the two"
+            self.diagnostics.refuse("bound-task", message, between.span, hint)
+        self.context.put(nodes, before.home, before)
+        self.context.step += nodes
+        self.context.recent = [node for node in nodes if isinstance(node, Do)]
+        return first, second
+
+    def _ends(self, between: Nouns | Steps) -> tuple[ProgramNode, ProgramNode]:
+        """The last task of the first, and the first task of the second."""
+        things: list[Nouns | Steps | CheckpointInfo] = []
+        if isinstance(between, Steps):
+            things += [replace(between, points=(point,)) for point in between.points]
+        else:
+            nouns = self.context.nouns
+            things += nouns.all(between) if between.either else nouns.each(between)
+        if len(things) != 2:
+            message = f"this names {len(things)} checkpoints, but a wait is between two tasks"
+            hint = "name two: `between #1 and #3`"
+            self.diagnostics.refuse("not-neighbours", message, between.span, hint)
+
+        def found(thing: Nouns | Steps | CheckpointInfo) -> Sequence[ProgramNode]:
+            if isinstance(thing, CheckpointInfo):
+                return [self._measured(thing, between.span)]
+            return self._found(thing)
+
+        first, second = self.diagnostics.each(found, things)
+        return first[-1], second[0]
+
+    def _refuse_ends(
+        self, between: Nouns | Steps, first: ProgramNode, second: ProgramNode
+    ) -> NoReturn:
+        if first is second:
+            message = "nothing is between a task and itself"
+            hint = "name two tasks, one after the other"
+        else:
+            nodes = list(all_nodes(self.context.program))
+            start, end = nodes.index(first), nodes.index(second)
+            inner = len(list(all_nodes([first])))
+            tasks = [node for node in nodes[start + inner : end] if isinstance(node, Do)]
+            message = "these two do not come one right after the other"
+            hint = "write the wait in a line of its own, where it is to be"
+            if end < start:
+                message = "the second of these comes before the first"
+                hint = "name first what is done first"
+            elif tasks and (source := tasks[0].source):
+                message += f": `{tasks[0].base}` (line {source.line}) comes between"
+        self.diagnostics.refuse("not-neighbours", message, between.span, hint)
 
     def _take_out(self, do: ProgramNode, edit: Edit) -> list[ProgramNode]:
         """Takes a task out of the program, with where it leads."""
@@ -148,6 +212,26 @@ def _outside(node: ProgramNode, side: Side) -> ProgramNode:
         if inner is not None or not isinstance(node.owner, ProgramRound):
             return node
         node = node.owner
+
+
+def _behind(node: ProgramNode) -> ProgramNode:
+    """The node; or the round that ends with it."""
+    while node.after is None and isinstance(node.owner, ProgramRound):
+        node = node.owner
+    return node
+
+
+def _ahead(node: ProgramNode) -> ProgramNode:
+    """The node; or the round that begins with it."""
+    while node.before is None and isinstance(node.owner, ProgramRound):
+        node = node.owner
+    return node
+
+
+def _goes_elsewhere(node: ProgramNode) -> bool:
+    """Return True if the mission may leave a node for another one than what stands behind it."""
+    nodes = all_nodes([node])
+    return any(isinstance(n, Leave) or (isinstance(n, Do) and bool(n.ways)) for n in nodes)
 
 
 def _emptied(node: ProgramNode) -> ProgramNode:

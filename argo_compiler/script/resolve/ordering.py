@@ -41,6 +41,8 @@ class Ordering:
     """what comes before what"""
     left_out: list[Span] = field(default_factory=list)
     """where it is said that what does not fit is left out: then each task may be"""
+    between: list[tuple[Span, ProgramNode, ProgramNode, ProgramNode]] = field(default_factory=list)
+    """waits between two neighbours: the first of these, the wait, the second"""
     pairs: list[tuple[Span, Do | str, Do | str]] = field(default_factory=list)
     """what has to come before what, names if it was left out; known when all is planned"""
 
@@ -63,6 +65,7 @@ class Ordering:
         order, diagnostics = self._order(program), self.context.diagnostics
         for do in _tasks(program) if self.left_out else ():
             do.optional = do.optional or _may_move(do)
+        self._require_between(program, order)
         if order is Order.ANY:
             for span, nodes in self.precise:
                 self.pairs += [(span, a, b) for a, b in pairwise(_tasks(nodes))]
@@ -72,6 +75,22 @@ class Ordering:
                 before, after = diagnostics.each(partial(self._tasks_of, span), pair)
                 self.pairs += [(span, a, b) for a, b in product(before, after)]
         return order
+
+    def _require_between(self, program: ProgramBlock, order: Order) -> None:
+        """Add an error for each wait between two tasks that is not, or not surely, between them."""
+        nodes = all_nodes(program) if self.between else ()
+        places = {id(node): i for i, node in enumerate(nodes, start=1)}
+        for span, *three in self.between:
+            first, wait, second = (places.get(id(node), 0) for node in three)
+            if not 0 < first < wait < second:
+                message = "a later line changes these tasks, so that the wait is not between them"
+                hint = "write the wait after that line"
+            elif order is Order.ANY:
+                message = "these two tasks may change places with others"
+                hint = "remove this wait, or the words that leave the order open"
+            else:
+                continue
+            self.context.diagnostics.error("not-neighbours", message, span, hint)
 
     def _tasks_of(self, span: Span, thing: CheckpointInfo | Steps) -> Sequence[Do | str]:
         return self._of_steps(thing) if isinstance(thing, Steps) else [self._planned(span, thing)]

@@ -28,13 +28,14 @@ from argo_compiler.script.resolve.tasks import TaskMaker
 from argo_compiler.script.sentences.tree import orders
 from argo_compiler.script.sentences.tree.manner import NOTHING_SAID, Manner
 from argo_compiler.script.sentences.tree.node import Node
-from argo_compiler.script.sentences.tree.nouns import Pronoun
+from argo_compiler.script.sentences.tree.nouns import Nouns, Pronoun
 from argo_compiler.script.sentences.tree.orders import Fact, PlainWord, ScriptOrder, Sentence
 from argo_compiler.script.sentences.tree.places import (
     AreaLocation,
     DockLocation,
     FloorName,
     Location,
+    Steps,
 )
 from argo_compiler.script.sentences.tree.script import ScriptHeader, ScriptStep, Unread
 
@@ -277,7 +278,8 @@ class Planner:
         if isinstance(order, orders.Amend) and self.repeating.limited(order, block):
             return
         require_used(order, self.diagnostics)
-        if isinstance(order, _WHOLE_PLAN) and in_branch(block):
+        changes = isinstance(order, _WHOLE_PLAN) or order.manner.task_pair is not None
+        if changes and in_branch(block):
             message = "this changes the mission, so it can't depend on a condition"
             self.diagnostics.refuse("route", message, order.span, "write it as a separate step")
         if not isinstance(order, orders.Measure):
@@ -294,6 +296,8 @@ class Planner:
             case orders.Beside():
                 for measure in self.making.measured_beside(order):
                     self.order(measure, block)
+            case orders.WaitOrder() if order.manner.task_pair is not None:
+                self._wait_between(order, order.manner.task_pair)
             case orders.WaitOrder(where=where) if where is not None:
                 self._wait_at(order, where, block)
             case orders.Amend() | orders.Retry():
@@ -366,6 +370,24 @@ class Planner:
             return
         self.order(orders.Go(span=order.span, where=where), block)
         self.order(replace(order, where=None), block)
+
+    def _wait_between(self, order: orders.WaitOrder, between: Nouns | Steps) -> None:
+        """Put a wait between two neighbouring tasks that are planned already."""
+        if order.where is not None:
+            message = "a wait between two tasks is where the robot is then, not at another place"
+            hint = "remove the place, or write the drive and the wait between the two lines"
+            self.diagnostics.refuse("stray-clause", message, order.span, hint)
+        if order.manner.condition is not None or order.manner.until is not None:
+            # `it` would be what was measured last in the script, and not before the wait.
+            message = "a wait between two tasks has a duration, and no condition"
+            hint = "write the wait and its condition in a line between the lines of the two"
+            self.diagnostics.refuse("stray-clause", message, order.span, hint)
+        tasks = self.making.tasks(order)
+        self.manners.name(order, tasks)
+        self.repeating.fill_known()
+        nodes = self.manners.apply(order, tasks)
+        first, second = self.edits.put_between(between, nodes)
+        self.ordering.between.append((order.span, first, nodes[0], second))
 
     def _amend(self, order: ScriptOrder) -> None:
         recent = self.context.recent

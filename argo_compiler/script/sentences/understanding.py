@@ -215,8 +215,8 @@ class Understanding:
         """The text with letters among digits read as digits, `#l7`, and with words that have
         digits in them read as those that they can only be: `p0int`. Digits by themselves are never
         changed."""
-        for pattern, meant in ((_WORD, self._with_letters), (_MIXED, self._with_digits)):
-            for found in reversed(list(pattern.finditer(text.content))):
+        for signs, meant in ((_WORD, self._with_letters), (_MIXED, self._with_digits)):
+            for found in reversed(list(signs.finditer(text.content))):
                 start, end = found.span()
                 quoted = any(a < start < b for a, b in quotes(text.content))
                 if quoted or found[0].lower() in self.names or (said := meant(found)) is None:

@@ -72,6 +72,7 @@ CLAUSES = {
     "standing": "standing at x 3 y 4",
     "shown": 'shown in "Alpha"',
     "about": 'about object "pump"',
+    "between": "between checkpoint 1 and checkpoint 2",
     "joints": 'with joints ["arm"] at [1.5]',
     "any order": "in any order",
     "mission time": "no more than 25 minutes in total",

@@ -156,6 +156,7 @@ RULES: dict[str, Make] = {
     "for_": _for,
     "until": lambda part: Manner(until=part.the(SaidCondition)),
     "between_times": _between_times,
+    "between_tasks": lambda part: Manner(task_pair=part.children[-1]),
     "at_most": _at_most,
     "if_time": lambda _: Manner(optional=True),
     "priority": _priority,

@@ -177,8 +177,10 @@ RULES: dict[str, Make] = {
     # `except valve R40`, behind how the others are measured
     "but": lambda part: Nouns(span=part.span, nouns=(), but=part.joined(list)),
     "label": _label,
+    "identifier": _label,
     "upto": lambda part: part.the(Label),
     "named": named,
+    "marked": named,
     "of": _of,
     "aka": _aka,
     "all": _all,
@@ -186,4 +188,5 @@ RULES: dict[str, Make] = {
     "pronoun": _pronoun,
     "the_same": _pronoun,
     "nouns": _nouns,
+    "ends": _nouns,
 }

@@ -151,5 +151,6 @@ RULES: dict[str, Make] = {
     "heading": _heading,
     "location": lambda part: part.children[-1],
     "steps": _steps,
+    "end_steps": _steps,
     "places": _places,
 }

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 from argo_compiler.il import Afterwards, JointState, Order
 from argo_compiler.script.sentences.tree.conditions import Amount, SaidCondition
-from argo_compiler.script.sentences.tree.places import Coordinates, FloorName
+from argo_compiler.script.sentences.tree.nouns import Nouns
+from argo_compiler.script.sentences.tree.places import Coordinates, FloorName, Steps
 
 
 @dataclass(slots=True, kw_only=True, unsafe_hash=True)
@@ -57,6 +58,8 @@ class Manner:
     """where all that is measured is: `on the second floor, check the valve`"""
     backwards: bool = False
     """whether what is measured is measured from the last to the first"""
+    task_pair: Nouns | Steps | None = None
+    """the neighbouring tasks between which it is done"""
     order: Order | None = None
     """whether the tasks may change places"""
     condition: SaidCondition | None = None

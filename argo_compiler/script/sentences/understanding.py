@@ -154,10 +154,10 @@ class Understanding:
         slips: list[tuple[Word, tuple[str, ...]]] = []
         for word in self.words(text):
             if word.type == "WORD" and str(word.value) not in self.known:
-                said = text.content[word.start : word.end]
-                if pattern("<ordinary>").fullmatch(said) is not None:
+                shown = text.content[word.start : word.end]
+                if pattern("<ordinary>").fullmatch(shown) is not None:
                     continue
-                meant = candidates(said, self.known)
+                meant = candidates(shown, self.known)
                 if any(folded(other) in self.language.lexicon.numerals for other in meant):
                     return None  # a number is never guessed
                 if meant:

@@ -314,7 +314,7 @@ class Asides:
         start = 0
         for found in _BRACKETS.finditer(text.content):
             inner = text[found.start() : found.end()].strip()
-            if not any(map(str.isalnum, inner.content)):
+            if not any(map(str.isalnum, inner.content)) or inner.content.lower() == "(x)":
                 continue  # `(-)`, `(x)` may mean that it is left out, or done
             if self.adds(inner[1:-1]) or _FIGURES.search(inner.content):
                 continue

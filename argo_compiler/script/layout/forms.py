@@ -89,10 +89,12 @@ _BOXES = re.compile(r"[□☐]|\[\s+\]")
 _QUOTED = re.compile(r'"[^"]*"')
 _MARK = r"\s*(?:[-*•]\s+|[0-9]{1,3}\s*[.):]?\s+)?"
 """a bullet, or the number of a row"""
-_BOX = re.compile(rf"{_MARK}(?:\[([ xX*✓v~-]?)\]|([□☐☑☒✓✔✗✘]))\s*")
+_BOX = re.compile(
+    rf"{_MARK}(?:\[(?P<square>[ xX*✓v~-]?)\]|\((?P<round>[ xX*✓]?)\)|(?P<sign>[□☐☑☒✓✔✗✘]))\s*"
+)
 _TICKED = {"☑": "x", "☒": "x", "✓": "x", "✔": "x", "✗": "-", "✘": "-", "□": " ", "☐": " "}
-_OPEN_BOX = re.compile(rf"{_MARK}(?:\[\s?\]|[□☐])")
-_OF_FORMS = re.compile(r"[\[□☐☑☒✓✔✗✘_…]|~~|\.{4}")
+_OPEN_BOX = re.compile(rf"{_MARK}(?:\[\s?\]|\(\s?\)|[□☐])")
+_OF_FORMS = re.compile(r"[\[□☐☑☒✓✔✗✘_…]|~~|\.{4}|\([ xX*✓]?\)")
 """a line without such signs has no box and no blank, and nothing of it is struck"""
 _CUTTING = re.compile(r"[|\t;,…]|\.{3}|\s\s")
 """a line without such signs has one cell"""
@@ -367,7 +369,7 @@ def _row(line: ScriptText, cells: Sequence[Cell], cut: str) -> FormRow:
     box = _BOX.match(line.content)
     mark: str | None = None
     if box is not None:
-        mark = _TICKED.get(box[2] or "") or (box[1] or " ").lower()
+        mark = _TICKED.get(box["sign"] or "") or (box["square"] or box["round"] or " ").lower()
         first = cells[0].text
         inner = _BOX.match(first.content)
         rest = first[inner.end() :].strip() if inner is not None else first

@@ -54,6 +54,7 @@ _UNSURE = (
 )
 """mentions beside which a proposal has to be confirmed"""
 _LIKE_CHECKS = re.compile(r"(?:Check|Order:|Maximum|Start|Return|End)")
+_HOMEWARDS = re.compile(r"Return |End of the mission|Abort")
 _CUT_FIGURES = re.compile(r"(?<=\d)[ \t]+(?=\d)")
 _MOST_CLAUSES = 14
 
@@ -247,6 +248,8 @@ class Composer:
                 self.known.reset(before)
                 return None
             i = k
+        if unused and all(map(_HOMEWARDS.match, sentences)):
+            return None  # `Siren: back to the dock`
         return Proposal(tuple(sentences), tuple(unused)) if sentences else None
 
     def within(self, text: ScriptText) -> ScriptText:

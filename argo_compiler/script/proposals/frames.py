@@ -317,8 +317,8 @@ def _start_and_end(found: Mentions, _: Known) -> Sentences | None:
     if starts and not homes and len(areas) == 1:
         area = _area_of(areas[0])
         return None if area is None else (f"Start in starting area {area}.",)
-    if homes and not areas and any(0 < word.end <= homes[0].start for word in found.unknown):
-        return None  # `the shutdown ends tomorrow`
+    if (homes or docks) and not starts and _may_be_in_case(found, [*homes, *docks]):
+        return None
     if (homes or docks) and not starts and len(areas) <= 1:
         area = _area_of(areas[0]) if areas else None
         where = f" in starting area {area}" if area is not None else ""
@@ -330,6 +330,20 @@ def _start_and_end(found: Mentions, _: Known) -> Sentences | None:
         end = last if last is not None else first
         return (f"Start in starting area {first}.", f"End of the mission: starting area {end}.")
     return None
+
+
+_NEAR = 5
+"""characters between `end` and what ends, perhaps with an article"""
+
+
+def _may_be_in_case(found: Mentions, homes: Sequence[Mention]) -> bool:
+    """Return True if unknown words may say when the robot goes home, or what ends: `Siren: back to
+    the dock`, `the shutdown ends tomorrow`, `end of list`."""
+    first = min(home.start for home in homes)
+    before = any(found.occasion <= word.start < first for word in found.unknown)
+    behind = (word.start - home.end for home in homes for word in found.unknown)
+    of_others = not found.has("place") and any(0 <= gap <= _NEAR for gap in behind)
+    return (before and not found.has("last")) or of_others
 
 
 def _order(found: Mentions, _: Known) -> Sentences | None:

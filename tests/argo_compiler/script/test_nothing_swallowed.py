@@ -73,6 +73,15 @@ def conditions(text: str, catalog: Catalog) -> list[tuple[str | None, ConditionT
         # boxes behind a name
         ("Valve R7: read it? yes [ ] no [x]\nCheck #1.", "ticked"),
         ("Valve R7 [x] yes [ ] no\nCheck #1.", "ticked"),
+        ("(x)  Valve R12\n( )  Pressure gauge 3", "ticked"),
+        ("1. (X) Valve R12\n2. ( ) Pressure gauge 3", "ticked"),
+        ("Valve R12 (x)\nPressure gauge 3", "`x`"),
+        # what may be the occasion of a return, or what ends
+        ("Check #1.\nSiren: back to the dock at once", ""),
+        ("Check #1.\nThunderstorm - return to the docking station", ""),
+        ("Check #1.\nSpecial: in heavy rain return to the dock", ""),
+        ("Check #1.\nEND OF LIST", ""),
+        ("Prüfe #1.\nEnde der Liste", ""),
         # the same reading, or one more
         ("Check #7. Read it.", "or one more"),
         ("1. #7 and #8\n2. Read them.", "or one more"),

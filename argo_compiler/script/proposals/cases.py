@@ -58,7 +58,7 @@ def by_cases(of: OpenText) -> Iterator[Sentences]:
     limit = _limit(of)
     if limit is not None:
         yield from _by_limit(of, limit)
-    elif of.found.has("FAILS"):
+    elif of.found.has("FAILS") or _tells("failing", of):
         yield from _by_failure(of)
     elif of.found.has("ELSE") and (acts := of.acts(of.found)):
         yield (f"Otherwise, {_joined(acts)}.",)
@@ -152,20 +152,29 @@ def _normal_limit(of: OpenText) -> _Limit | None:
 
 
 def _by_failure(of: OpenText) -> Iterator[Sentences]:
-    """Yield what is done if a checkpoint can't be read: that one, or each of them."""
+    """Yield what is done if a checkpoint can't be read: that one, or each of them; first, if it is
+    to be tried again."""
     named = [c for m in of.found.of("checkpoints") if _is_labelled(m) for c in of.named_by(m)]
-    counts = of.counts("TIMES", "MORE")
+    one = len({c.id for c in named}) == 1
+    if not one and not of.composer.known.memory.so_far:
+        return
+    case = f"If checkpoint {named[0].id} fails" if one else "If a reading fails"
+    counts = of.counts("TIMES", "MORE", "MOST_TIMES", "NUMBER")
     times = {1: "once", 2: "twice"}.get(counts[0] or 1, f"{counts[0]} times") if counts else "once"
-    retries = of.found.has("RETRY", "again", "MORE")
-    if len(named) == 1:
-        case = f"If checkpoint {named[0].id} fails"
-        rest = of.found.without("checkpoints")
-        acts = [f"try it again {times}"] if retries else of.acts(rest)
-        yield from ((f"{case}, {act}.",) for act in (*acts, of.return_words, "abort the mission"))
-    elif of.composer.known.memory.so_far:
-        if retries:
-            yield (f"If a reading fails, try again {times}.",)
-        yield (_ALL_FAILURES,)
+    acts = [a for a in of.acts(of.found.without("checkpoints")) if not a.startswith("wait")]
+    acts = acts or [of.return_words, "abort the mission"] if one else acts
+    if of.found.has("RETRY", "again", "MORE") or _tells("trying", of):
+        again = f"{case}, try again {times}."
+        yield from ((again, f"If it still fails, {act}.") for act in acts)
+        yield (again,)
+    yield (f"{case}, go on with the next checkpoint.",)
+    yield from ((f"{case}, {act}.",) for act in acts)
+
+
+def _tells(name: str, of: OpenText) -> bool:
+    """Return True if a text has one of the phrases that say something of a case."""
+    phrases = of.composer.understanding.language.prose.cues[name]
+    return cue_pattern(name, phrases).search(of.text.content) is not None
 
 
 def _by_event(of: OpenText) -> Iterator[Sentences]:

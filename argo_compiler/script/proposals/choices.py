@@ -7,6 +7,7 @@ taken it. The likeliest comes first.
 import re
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from itertools import pairwise
 
 from argo_compiler.base.catalog import CheckpointInfo
@@ -59,7 +60,10 @@ _CUT_WORDS = ("AND_", "JOINT", "NEXT", "COLON")
 """how types of words begin that part a text"""
 _LISTED = re.compile(r"(?<![\w.,#-])\d{1,3}(?:(?:\s*[,;/>+–-]\s*|\s+)\d{1,3}){2,}(?![\w.,]*\d)")
 """three or more bare numbers, one after the other"""
+_DASHED = re.compile(r"#?\d{1,3}(?:\s*[-–>]\s*#?\d{1,3}){2,}(?![\w.,]*\d)")
+"""three or more numbers with dashes in between: a list, or ranges"""
 _RETURN = "Return to the docking station"
+_ENDLESS = re.compile(r"(?:one |a round )?(?:every|alle) [\w.]+ \w+\.", re.IGNORECASE)
 _AREA = re.compile(r"(?<![\w#-])([^\W\d_])\s?([1-9])(?![\w-])")
 """an area by its initial: `A2`"""
 _ARTICLE = re.compile(r"\b(?:the|der|die|das)\s+$", re.IGNORECASE)
@@ -84,8 +88,12 @@ def choices_of(
 
 
 def _is_possible(sentences: Sentences) -> bool:
-    """Return False for nothing, and for tasks behind the return to the docking station."""
-    return bool(sentences) and not any(s.startswith(_RETURN) for s in sentences[:-1])
+    """Return False for nothing, for tasks behind the return to the docking station, and for what
+    never ends: `Every 5 minutes.`"""
+    endless = any(map(_ENDLESS.fullmatch, sentences))
+    return (
+        bool(sentences) and not endless and not any(s.startswith(_RETURN) for s in sentences[:-1])
+    )
 
 
 # ---- with pronouns replaced
@@ -351,6 +359,19 @@ def _pauses(of: OpenText) -> bool:
     return of.found.has("IN_BETWEEN", "PAUSE", "PAUSE_OF", "WAIT", "later")
 
 
+def _by_dashes(of: OpenText) -> Iterator[Sentences]:
+    """Yield the list of `#2 - #4 - #7`, whose dashes can be those of ranges, and what follows."""
+    found = _DASHED.search(of.text.content)
+    catalog = {c.id: c for c in of.composer.known.catalog.checkpoints}
+    ids = [int(number) for number in re.findall(r"\d+", found[0])] if found else []
+    if found is None or not {*ids} <= catalog.keys():
+        return
+    behind = tuple(m for m in of.found.mentions if m.start >= found.end())
+    acts = of.acts(replace(of.found, mentions=behind))
+    check = f"Check {checkpoint_words([catalog[id] for id in ids])}."
+    yield (check, *(f"{act[0].upper()}{act[1:]}." for act in acts))
+
+
 def _by_order(of: OpenText) -> Iterator[Sentences]:
     """Yield what a text may be that speaks of the order."""
     labels = of.composer.understanding.language.prose.labels["order"]
@@ -393,6 +414,7 @@ def _sparing(ids: Collection[int], of: OpenText) -> str:
 _WAYS: tuple[Callable[[OpenText], Iterator[Sentences]], ...] = (
     _by_pronouns,
     _by_corrections,
+    _by_dashes,
     _by_edits,
     by_cases,
     _by_parts,

@@ -196,6 +196,7 @@ def _check(found: Mentions, known: Known) -> Sentences | None:
         "VALUE",
         "each",
         "IF_TIME",
+        "BOTH",
     )
     if not found.only("checkpoints", "pronoun", "MORE", "again", *allowed):
         return None
@@ -211,7 +212,7 @@ def _check(found: Mentions, known: Known) -> Sentences | None:
         return None
     with suppress(RefusedError):
         checkpoints = _placed(named, found.of("place"), known)
-        if checkpoints is None:
+        if checkpoints is None or (found.has("BOTH") and len(checkpoints) != _BOTH):
             return None
         return _checks(named, checkpoints, found, known)
     return None
@@ -232,7 +233,8 @@ def _checks(
     if times != 1 and ((len(checkpoints) > 1 and not found.has("each")) or found.has("IF_TIME")):
         return None
     nouns = [noun for mention in named for noun in mention.nouns]
-    free = len(checkpoints) > 1 and any(isinstance(noun, AllOf) for noun in nouns)
+    all_of_kind = found.has("BOTH") or any(isinstance(noun, AllOf) for noun in nouns)
+    free = len(checkpoints) > 1 and all_of_kind
     known.measured(checkpoints)
     if times == 1:
         manner = " in any order" if free else " if there is time" if found.has("IF_TIME") else ""
@@ -332,6 +334,7 @@ def _start_and_end(found: Mentions, _: Known) -> Sentences | None:
     return None
 
 
+_BOTH = 2
 _NEAR = 5
 """characters between `end` and what ends, perhaps with an article"""
 

@@ -72,7 +72,7 @@ _APART = frozenset(
     [
         *("subject", "stating", "asking", "clause", "answer", "wondering", "people", "of_others"),
         *("needless", "likewise", "retracting", "too_high", "too_low", "in_case"),
-        *("by_then", "at_time"),
+        *("by_then", "at_time", "failing", "trying"),
     ]
 )
 """cues that are no mentions, but part a text or tell statements"""

@@ -92,6 +92,22 @@ BEFORE = "Check pressure gauge 3 and valve R12.\n"
             "7 points, Bob: 19 20 18 17",
             "Check checkpoint 19, checkpoint 20, checkpoint 18 and checkpoint 17.",
         ),
+        (
+            "#2 - #4 - #7 - #6 - then dock in area 1, ok?",
+            "Check checkpoint 2, checkpoint 4, checkpoint 7 and checkpoint 6. "
+            "Return to the docking station in starting area 1.",
+        ),
+        # failures
+        ("gauge illegible: try again twice, carry on", "If a reading fails, try again twice."),
+        (
+            "No reading - 2 more tries and after that, hmm, dock",
+            "If a reading fails, try again twice. If it still fails, return to the docking "
+            "station.",
+        ),
+        (
+            "and if it can't see R12 skip it",
+            "If checkpoint 5 fails, go on with the next checkpoint.",
+        ),
         # changes of the list above
         (
             "Hang valve R7 between pressure gauge 3 and valve R12",

@@ -325,6 +325,10 @@ def test_each_candidate_of_a_pronoun_is_a_choice(text: str, chosen: str, catalog
             "for the visit we need the whole third floor: all gauges and valves there except R7",
             ("Check checkpoint 9, checkpoint 12 and checkpoint 10 in any order.",),
         ),
+        (
+            "On the second floor it reads both pressure gauges",
+            ("Check checkpoint 6 and checkpoint 8 in any order.",),
+        ),
         ("End: docking station, same area", ("End of the mission: starting area 1.",)),
     ],
 )

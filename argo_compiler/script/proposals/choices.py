@@ -311,23 +311,29 @@ def _by_edits(of: OpenText) -> Iterator[Sentences]:
     named = [c.id for mention in of.found.of("checkpoints") for c in of.named_by(mention)]
     items = [known.items.get(of.text.content[m.start : m.end]) for m in of.found.of("NUMBER")]
     ids = [*dict.fromkeys([*named, *(id for id in items if id is not None)])]
-    if not ids or not above:
+    if not ids or not above or of.found.has("again", "MORE"):
         return
     id, others = ids[0], [one for one in ids[1:] if one in above]
-    if of.found.has("pronoun") and not of.found.has("BETWEEN"):
-        others = others or [c.id for c in known.memory.last[:1]]
     verb = "Move" if id in above else "Add"
-    for kind, side in (("BEFORE", "before"), ("AFTER", "after"), ("BETWEEN", "after")):
-        if of.found.has(kind) and others and id not in others:
-            yield (f"{verb} checkpoint {id} {side} checkpoint {others[0]}.",)
+    yield from _beside(of, f"{verb} checkpoint {id}", [one for one in others if one != id])
     if of.found.has("BEFORE", "first", "AT_BEGIN") and id != above[0]:
         yield (f"{verb} checkpoint {id} before checkpoint {above[0]}.",)
+    if of.found.has("pronoun") and not others and not of.found.has("BETWEEN"):
+        last = [c.id for c in known.memory.last[:1] if c.id != id]
+        yield from _beside(of, f"{verb} checkpoint {id}", last)
     if of.found.has("last", "AT_END") and id != above[-1]:
         yield (f"{verb} checkpoint {id} after checkpoint {above[-1]}.",)
     old = [one for one in ids if one in above]
     new = [one for one in ids if one not in above]
     if len(old) == len(new) == 1 and of.found.has(*_REPLACING):
         yield (f"Replace checkpoint {old[0]} by checkpoint {new[0]}.",)
+
+
+def _beside(of: OpenText, change: str, others: Sequence[int]) -> Iterator[Sentences]:
+    """Yield a change that puts a checkpoint before or after the first of others."""
+    for kind, side in (("BEFORE", "before"), ("AFTER", "after"), ("BETWEEN", "after")):
+        if of.found.has(kind) and others:
+            yield (f"{change} {side} checkpoint {others[0]}.",)
 
 
 def _by_rounds(of: OpenText) -> Iterator[Sentences]:

@@ -168,7 +168,8 @@ class _Proposer:
         row = self.script.rows.get(piece.text.first)
         numbers = [c.text.content for c in row.cells if c.role is CellRole.NUMBER] if row else []
         named = _NUMBERED.findall(" ".join(proposal.sentences))
-        first = row.place.content.split()[0].strip(".):|") if row and row.place.content else ""
+        words = row.place.content.strip(" |").split() if row is not None else []
+        first = words[0].strip(".):|") if words else ""
         if row is not None and len({*named}) == 1:
             self.composer.known.items[(numbers or [first])[0].strip(".")] = int(named[0])
 

@@ -45,6 +45,8 @@ _OF_CASE = tuple(
     )
 )
 """what is done in a case that names no checkpoint; after another try the mission goes on anyway"""
+_MOVED = re.compile(r"\b(?:first|last|before|after|between)\b", re.IGNORECASE)
+_MOVES = re.compile(r"(?:Add|Move) ")
 _IN_BRACKETS = re.compile(r"\([^()]*\)")
 """in what a line means: the other name of a point, or another reading"""
 _FREE = re.compile(r"in any order|\border (?:of [^.]*)?is free|order: any", re.IGNORECASE)
@@ -197,6 +199,9 @@ def _answered(
     if wanted:
         means = meaning([wanted])
         for number, sentences in enumerate(line.choices, start=1):
+            if _changes_as(wanted, sentences, meaning):
+                return draft.choose(line.label, number)
+        for number, sentences in enumerate(line.choices, start=1):
             if sentences and meaning.whole(sentences) == meaning.whole([wanted]):
                 return draft.choose(line.label, number)
         if sum(other.means == wanted for other in case.lines.values()) > 1:
@@ -205,6 +210,15 @@ def _answered(
         if expected.must.startswith("understood") and needed:
             verdict.problems.append(f"line {line.label} has no choice `{wanted}`: {line.reason}")
     return draft.set_aside([line.label])
+
+
+def _changes_as(wanted: str, sentences: Sequence[str], meaning: "_Meanings") -> bool:
+    """Return True if a choice moves the checkpoint that a line moves; the mission shows whether it
+    is moved to the right place."""
+    if len(sentences) != 1 or not _MOVED.search(wanted) or not _MOVES.match(sentences[0]):
+        return False
+    names = _POINT.findall(sentences[0])
+    return any(meaning([wanted])[False, int(number)] for number in names[:1])
 
 
 def _part_of(means: Meaning, draft: Draft, line: DraftLine, meaning: "_Meanings") -> tuple:

@@ -6,15 +6,13 @@ taken it. The likeliest comes first.
 
 import re
 from collections.abc import Callable, Collection, Iterator, Sequence
-from contextlib import suppress
 from dataclasses import replace
-from itertools import pairwise
 
 from argo_compiler.base.catalog import CheckpointInfo
-from argo_compiler.script.documents.signs import CLOCK
-from argo_compiler.script.documents.source import RefusedError, ScriptText
+from argo_compiler.script.documents.source import ScriptText
 from argo_compiler.script.proposals.cases import by_cases
 from argo_compiler.script.proposals.composing import Composer
+from argo_compiler.script.proposals.edits import by_corrections, by_edits
 from argo_compiler.script.proposals.frames import KINDS, Sentences, sentences_of
 from argo_compiler.script.proposals.mentions import (
     Mention,
@@ -22,11 +20,11 @@ from argo_compiler.script.proposals.mentions import (
     mentions_in,
 )
 from argo_compiler.script.proposals.open_text import HOME, OpenText
-from argo_compiler.script.proposals.paraphrasing import ORDERS, reads, rephrased, sentence
-from argo_compiler.script.sentences.tree.nouns import AllOf, Labelled, Nouns, Pronoun, TheOne
-from argo_compiler.script.sentences.words.amounts import Length
+from argo_compiler.script.proposals.paraphrasing import reads, rephrased, sentence
+from argo_compiler.script.proposals.parts import by_parts
+from argo_compiler.script.proposals.rounds import by_rounds
+from argo_compiler.script.sentences.tree.nouns import AllOf, Pronoun, TheOne
 from argo_compiler.script.sentences.words.prose import cue_pattern
-from argo_compiler.script.sentences.words.spelling import candidates
 from argo_compiler.script.sentences.words.without_effect import MISPLACED
 
 _MOST_CHOICES = 9
@@ -34,16 +32,10 @@ _MOST_CHOSEN = 10
 """checkpoints of a text that may be chosen together"""
 _FEW = 3
 """checkpoints of a text each of which may be meant alone"""
-_MOST_PARTS = 24
-_LONGEST_PART = 8
-"""parts that are read as one"""
 _LONGEST = 500
 """characters of a text that is taken apart"""
-_DAY_MIN = 24 * 60
 _LONGEST_LOOKED_AT = 5_000
 """characters of a text whose mentions are looked at; a longer one can only be set aside"""
-_MOST_TAKEN_APART = 20_000
-"""characters of all texts of a script that are taken apart: of some hundreds of open lines"""
 _SIGNALS = (
     *("forbidding", "past", "question", "correction", "leave_out", "IF", "IF_ONLY", "UNLESS"),
     *("ELSE", "UNTIL", "NOT", "EXCEPT", "pronoun", "STATE", "MORE", "again", "TIMES", "GREATER"),
@@ -51,13 +43,6 @@ _SIGNALS = (
 )
 """kinds of mentions without which a text is looked at"""
 _DOCKING = (*HOME, "END", "place")
-_PASSED_OVER = ("WORD", "SIGN", "STRAY", "DONE", MISPLACED)
-"""types of words that a text is read without"""
-_REPLACING = ("correction", "in_place_of", "NOT", "forbidding", "leave_out", "DELETE", "past")
-"""kinds of mentions with which one checkpoint may take the place of another"""
-_CUT = re.compile(r"[,;:]\s+|\s+[-–/|]\s+|\s*(?:->|→|>)\s*|\s+(?=\()|[()]\s*|[.!?]\s+")
-_CUT_WORDS = ("AND_", "JOINT", "NEXT", "COLON")
-"""how types of words begin that part a text"""
 _LISTED = re.compile(r"(?<![\w.,#-])\d{1,3}(?:(?:\s*[,;/>+–-]\s*|\s+)\d{1,3}){2,}(?![\w.,]*\d)")
 """three or more bare numbers, one after the other"""
 _DASHED = re.compile(r"#?\d{1,3}(?:\s*[-–>]\s*#?\d{1,3}){2,}(?![\w.,]*\d)")
@@ -127,85 +112,6 @@ def _is_single(mention: Mention) -> bool:
     return all(isinstance(noun, Pronoun) and not noun.every for noun in mention.nouns)
 
 
-# ---- by its parts
-
-
-def _by_parts(of: OpenText) -> Iterator[Sentences]:
-    """Yield what the parts of a text mean that mean something: the longest that make sense."""
-    of.composer.taken_apart += len(of.text.content)
-    if of.composer.taken_apart > _MOST_TAKEN_APART:
-        return
-    starts = [0, *_cuts(of.text, of.composer), len(of.text.content)]
-    pieces = (of.text[start:end] for start, end in pairwise(starts))
-    known = [bool(_bare(piece, of.composer).content) for piece in pieces]
-    made: list[str] = []
-    i = 0
-    while i < len(starts) - 1:
-        for k in range(min(len(starts) - 1, i + _LONGEST_PART), i, -1):
-            part = _part(of.text[starts[i] : starts[k]], of.composer) if any(known[i:k]) else None
-            if part is not None:
-                made += part
-                break
-        i = k
-    yield tuple(made)
-
-
-def _cuts(text: ScriptText, composer: Composer) -> list[int]:
-    """Return where the parts of a text begin, but for the first."""
-    words = composer.understanding.words(text)
-    cuts = {m.end() for m in _CUT.finditer(text.content)}
-    cuts |= {m.start() for m in _CUT.finditer(text.content)}
-    cuts |= {word.start for word in words if word.type.startswith((*_CUT_WORDS, "WORD"))}
-    cuts |= {word.end for word in words if word.type == "WORD"}
-    cues = composer.understanding.language.prose.cues
-    cuts |= {m.start() for m in cue_pattern("clause", cues["clause"]).finditer(text.content)}
-    return sorted(cuts - {0, len(text.content)})[: _MOST_PARTS - 1]
-
-
-def _part(text: ScriptText, composer: Composer) -> Sentences | None:
-    """Return what a part means without the words that nobody knows; None if it makes no sense."""
-    bare = _bare(text, composer)
-    mentions = mentions_in(bare, composer.understanding)
-    rewritten = rephrased(bare, composer.understanding).text if bare.content else bare
-    for found, meant in ((mentions.without(*_PASSED_OVER), bare), (mentions, rewritten)):
-        made = sentences_of(found, composer.known) if found.mentions else None
-        if made:
-            return made
-        if found.has(*ORDERS) and reads(meant, composer.understanding):
-            return (sentence(_numbered(meant, composer)),)
-    return None
-
-
-def _numbered(text: ScriptText, composer: Composer) -> ScriptText:
-    """Return a text with its checkpoints by number, but for `all valves` and the like."""
-    for mention in reversed(mentions_in(text, composer.understanding).of("checkpoints")):
-        nouns = mention.value
-        assert isinstance(nouns, Nouns)
-        if not nouns.but and all(isinstance(noun, Labelled) for noun in nouns.nouns):
-            with suppress(RefusedError):
-                words = checkpoint_words(composer.known.checkpoints([mention]))
-                text = text.replace(mention.start, mention.end, words)
-    return text
-
-
-def _bare(text: ScriptText, composer: Composer) -> ScriptText:
-    """Return a text without words that mean nothing, and without what joins it to others; words
-    that are misspelt are put right."""
-    understanding = composer.understanding
-    for word in reversed(understanding.words(text)):
-        if word.type == "WORD":
-            meant = candidates(text.content[word.start : word.end], understanding.known)
-            if meant:
-                text = text.replace(word.start, word.end, min(meant))
-    words = understanding.words(text)
-    while words and words[0].type.startswith((*_CUT_WORDS, *_PASSED_OVER)):
-        words = words[1:]
-    start = words[0].start if words else len(text.content)
-    for word in reversed([word for word in words if word.type in _PASSED_OVER]):
-        text = text.without(word.start, word.end)
-    return _tidied(text[start:])
-
-
 def _with_areas(text: ScriptText, composer: Composer) -> ScriptText:
     """Return a text with `area 2` for `A2`, if the site has that area."""
     phrases = composer.understanding.language.lexicon.phrases["AREA", None]
@@ -214,14 +120,6 @@ def _with_areas(text: ScriptText, composer: Composer) -> ScriptText:
         if names and composer.known.catalog.area(int(found[2])):
             text = text.replace(*found.span(), f"{names[0]} {found[2]}")
     return text
-
-
-def _tidied(text: ScriptText) -> ScriptText:
-    for blanks in reversed(list(re.finditer(r"(?<=\s)\s+|\s+(?=[,;.])", text.content))):
-        text = text.without(*blanks.span())
-    content = text.content
-    first = len(content) - len(content.lstrip(" ,;:.-–/>|()"))
-    return text[first : max(first, len(content.rstrip(" ,;:.-–/>|(")))]
 
 
 # ---- by what is mentioned
@@ -288,83 +186,6 @@ def _by_header(of: OpenText) -> Iterator[Sentences]:
         yield from ((f"Maximum duration: {length}.",), (f"Wait for {length}.",))
 
 
-def _by_corrections(of: OpenText) -> Iterator[Sentences]:
-    """Yield the checkpoints without those that are taken back: `R12 - wait, not R12, R31`."""
-    named: list[CheckpointInfo] = []
-    taken_back: set[int] = set()
-    for mention in of.found.of("checkpoints"):
-        checkpoints = of.named_by(mention)
-        before = [m for m in of.found.of("NOT", "forbidding") if m.end <= mention.start]
-        if before and not of.text.content[before[-1].end : mention.start].strip():
-            again = {c.id for c in checkpoints} & {c.id for c in named}
-            taken_back |= again or {c.id for c in checkpoints}
-        named += checkpoints
-    left = {c.id: c for c in named if c.id not in taken_back}
-    if taken_back and left:
-        yield (f"Check {checkpoint_words(list(left.values()))}.",)
-
-
-def _by_edits(of: OpenText) -> Iterator[Sentences]:
-    """Yield how a text changes what stands above: `before all that, R25`, `item 5 comes first`,
-    `R12 is wrong, it is R25`."""
-    known, above = of.composer.known, of.above
-    named = [c.id for mention in of.found.of("checkpoints") for c in of.named_by(mention)]
-    items = [known.items.get(of.text.content[m.start : m.end]) for m in of.found.of("NUMBER")]
-    ids = [*dict.fromkeys([*named, *(id for id in items if id is not None)])]
-    if not ids or not above or of.found.has("again", "MORE"):
-        return
-    id, others = ids[0], [one for one in ids[1:] if one in above]
-    verb = "Move" if id in above else "Add"
-    yield from _beside(of, f"{verb} checkpoint {id}", [one for one in others if one != id])
-    if of.found.has("BEFORE", "first", "AT_BEGIN") and id != above[0]:
-        yield (f"{verb} checkpoint {id} before checkpoint {above[0]}.",)
-    if of.found.has("pronoun") and not others and not of.found.has("BETWEEN"):
-        last = [c.id for c in known.memory.last[:1] if c.id != id]
-        yield from _beside(of, f"{verb} checkpoint {id}", last)
-    if of.found.has("last", "AT_END") and id != above[-1]:
-        yield (f"{verb} checkpoint {id} after checkpoint {above[-1]}.",)
-    old = [one for one in ids if one in above]
-    new = [one for one in ids if one not in above]
-    if len(old) == len(new) == 1 and of.found.has(*_REPLACING):
-        yield (f"Replace checkpoint {old[0]} by checkpoint {new[0]}.",)
-
-
-def _beside(of: OpenText, change: str, others: Sequence[int]) -> Iterator[Sentences]:
-    """Yield a change that puts a checkpoint before or after the first of others."""
-    for kind, side in (("BEFORE", "before"), ("AFTER", "after"), ("BETWEEN", "after")):
-        if of.found.has(kind) and others:
-            yield (f"{change} {side} checkpoint {others[0]}.",)
-
-
-def _by_rounds(of: OpenText) -> Iterator[Sentences]:
-    """Yield what a text asks for that counts rounds: `2 rounds, 30 min start to start`."""
-    if of.found.has("checkpoints"):
-        return
-    counts = of.counts("TIMES")
-    lengths = [*filter(None, of.lengths("DURATION"))]
-    clocks = [60 * int(m["hour"]) + int(m["minute"]) for m in CLOCK.finditer(of.text.content)]
-    gaps = [(b - a) % _DAY_MIN for a, b in pairwise(clocks)]
-    every = [
-        m.value.seconds / 60
-        for m in of.found.of("DURATION")
-        if isinstance(m.value, Length) and m.value.other is None
-    ]
-    if len(gaps) == len(every) == 1 and every[0] > 0 and gaps[0] % every[0] == 0:
-        counts = [*counts, int(gaps[0] / every[0]) + 1]  # `every hour, from 8:00 to 11:00`
-    elif gaps and len({*gaps}) == 1 and gaps[0] > 0:
-        yield (f"Repeat everything every {gaps[0]} minutes, {len(clocks)} times.",)
-    for count in (c for c in counts if c is not None and c > 1):
-        for length in lengths:
-            spaced = f"Repeat everything every {length}, {count} times."
-            paused = f"Repeat everything {count} times, with a wait of {length} in between."
-            yield from ((a,) for a in ((paused, spaced) if _pauses(of) else (spaced, paused)))
-        yield (f"Repeat everything {count} times.",)
-
-
-def _pauses(of: OpenText) -> bool:
-    return of.found.has("IN_BETWEEN", "PAUSE", "PAUSE_OF", "WAIT", "later")
-
-
 def _by_dashes(of: OpenText) -> Iterator[Sentences]:
     """Yield the list of `#2 - #4 - #7`, whose dashes can be those of ranges, and what follows."""
     found = _DASHED.search(of.text.content)
@@ -419,12 +240,12 @@ def _sparing(ids: Collection[int], of: OpenText) -> str:
 
 _WAYS: tuple[Callable[[OpenText], Iterator[Sentences]], ...] = (
     _by_pronouns,
-    _by_corrections,
+    by_corrections,
     _by_dashes,
-    _by_edits,
+    by_edits,
     by_cases,
-    _by_parts,
-    _by_rounds,
+    by_parts,
+    by_rounds,
     _by_order,
     _by_acts,
     _by_mentions,

@@ -4,6 +4,8 @@ language names the place as one without effect. `tests.campaigns.deletions` trie
 import random
 from collections.abc import Iterable
 
+import pytest
+
 from tests.argo_compiler.script.deletion import DeletionTrial
 from tests.argo_compiler.script.importing_scripts import (
     ImportingScript,
@@ -12,7 +14,7 @@ from tests.argo_compiler.script.importing_scripts import (
 )
 from tests.conftest import FIRST_SEED, examples, sample, seeds
 
-WORDS = 4
+WORDS = 2
 """words of a script that are left out, one at a time, and one line"""
 
 
@@ -31,6 +33,7 @@ def swallowed(scripts: Iterable[ImportingScript]) -> list[str]:
     return found
 
 
+@pytest.mark.long
 def test_no_word_of_written_scripts_is_swallowed() -> None:
     written = written_scripts()
     random.Random(FIRST_SEED).shuffle(written)
@@ -41,6 +44,6 @@ def test_no_word_of_written_scripts_is_swallowed() -> None:
 
 
 def test_no_word_of_generated_scripts_is_swallowed() -> None:
-    scripts = list(generated_scripts(seeds(800)))
-    assert len(scripts) > examples(100)
+    scripts = list(generated_scripts(seeds(400)))
+    assert len(scripts) > examples(50)
     assert not swallowed(scripts)

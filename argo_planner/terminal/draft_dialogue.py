@@ -7,6 +7,7 @@ from pathlib import Path
 from argo_compiler.base.errors import Invalid
 from argo_compiler.script import Draft, DraftActs, DraftLine, LineState
 from argo_compiler.script.documents.source import Source
+from argo_compiler.script.drafts.naming_nothing import lines_naming_nothing
 from argo_planner.terminal import keyboard
 from argo_planner.terminal.draft_decisions import Deciding
 from argo_planner.terminal.draft_display import printable
@@ -25,6 +26,8 @@ _HELP = """\
 c     confirm: the sentences behind => count for this line
 1..9  choose: the sentences of this choice count
 a     set aside: the line has no effect
+r     set aside the rest: all lines that can only be set aside and name nothing of a mission; they
+      are listed first
 s     say the line in other words: type sentences, Enter ends them, and an empty line goes back
 n     next: skip this line for now; so does the space bar
 u     undo the last decision
@@ -66,6 +69,8 @@ class _Dialogue:
         """line and part from which lines are asked about"""
         self.before: list[tuple[Draft, tuple[int, int]]] = []
         """the draft before each decision, and the line that it was about"""
+        self.idle: tuple[Draft, Sequence[DraftLine]] | None = None
+        """a draft, and its lines that name nothing"""
 
     def run(self) -> None:
         """Ask until no line is left, or the person quits."""
@@ -80,7 +85,8 @@ class _Dialogue:
 
     def _ask(self, line: DraftLine) -> bool:
         """Ask until the line is decided on or skipped; return False if the person quits."""
-        keys = f"{', '.join(_keys(line, bool(self.before)))}: "
+        idle = self._naming_nothing(line)
+        keys = f"{', '.join(_keys(line, bool(self.before), len(idle)))}: "
         while True:
             print(keys, end="", flush=True)
             match read_key().lower():
@@ -95,6 +101,9 @@ class _Dialogue:
                     print("undone")
                     self._undo()
                     return True
+                case "r" if idle:
+                    if self._set_aside_all(line, idle):
+                        return True
                 case "?":
                     print(f"help\n{_HELP}")
                 case "s":
@@ -120,6 +129,27 @@ class _Dialogue:
             print("the sentence has characters that can't be printed")
             return False
         return self._decide(line, DraftActs(say=((line.label, (sentence,)),)), "")
+
+    def _naming_nothing(self, line: DraftLine) -> Sequence[DraftLine]:
+        """Return the lines that name nothing, if `line` is one of several."""
+        if line.choices != ((),):
+            return ()
+        draft = self.deciding.draft
+        if self.idle is None or self.idle[0] is not draft:
+            self.idle = draft, lines_naming_nothing(draft, self.deciding.site.catalog)
+        found = self.idle[1]
+        return found if len(found) > 1 and line in found else ()
+
+    def _set_aside_all(self, line: DraftLine, idle: Sequence[DraftLine]) -> bool:
+        """List lines, and set them aside if the person agrees; return True if that is done."""
+        print("the rest")
+        print("\n".join(f"  {one.label:>5} | {_cut(one.text)}" for one in idle))
+        print(f"set these {len(idle)} lines aside? y yes, any other key no: ", end="", flush=True)
+        if read_key().lower() != "y":
+            print("no")
+            return False
+        labels = tuple(one.label for one in idle)
+        return self._decide(line, DraftActs(set_aside=labels), "set aside")
 
     def _decide(self, line: DraftLine, acts: DraftActs, message: str) -> bool:
         """Carry out acts on a line and write the draft; return False if that is impossible."""
@@ -175,13 +205,16 @@ def _act(line: DraftLine, key: str) -> tuple[DraftActs, str] | None:
     return None
 
 
-def _keys(line: DraftLine, can_undo: bool) -> Iterator[str]:
+def _keys(line: DraftLine, can_undo: bool, idle: int) -> Iterator[str]:
     """Yield the keys that do something with a line."""
     if line.state is LineState.PROPOSED:
         yield "c confirm"
     if digits := _digits(line):
         yield f"{digits[0]}-{digits[-1]} choose" if len(digits) > 1 else "1 choose"
-    yield from ("a set aside", "s say", "n next")
+    yield "a set aside"
+    if idle:
+        yield f"r set aside the rest that names nothing ({idle})"
+    yield from ("s say", "n next")
     if can_undo:
         yield "u undo"
     yield from ("q quit", "? help")

@@ -28,13 +28,14 @@ from argo_compiler.files.mission_file import MissionFile, decode_mission
 from argo_compiler.il import Mission
 from argo_compiler.isar.recognition import find_isar_data
 from argo_compiler.ros.recognition import is_bag_content
+from argo_compiler.script.documents.document import Document
 from argo_compiler.script.documents.reading import document_format
 from argo_compiler.script.documents.source import Source as Script
 from argo_env.planning.opening import OpenedSite
 from argo_env.planning.site_warnings import above_own_speed_warnings, with_seeing_poses
 
 if TYPE_CHECKING:
-    from argo_compiler.script import Document, Draft, LineDecision
+    from argo_compiler.script import Draft, LineDecision
     from argo_compiler.script.assistant.suggestion import LineSuggestion
 
 _log = logging.getLogger(__name__)
@@ -69,9 +70,10 @@ class Upload:
     """A file or folder to import, with its name."""
 
     name: str
-    content: bytes | Mapping[str, bytes] | Path
+    content: bytes | Mapping[str, bytes] | Path | Document
     """content of a file, or of the files of a rosbag2 folder by name; a Path is a bag on this
-    machine, which may be larger than the memory"""
+    machine, which may be larger than the memory; a Document is what the file of a script has been
+    read as already"""
     decisions: tuple["LineDecision", ...] = ()
     """of a script: what a person has decided on for its lines"""
     suggestions: tuple["LineSuggestion", ...] = ()
@@ -114,6 +116,8 @@ class ImportedMission:
 
 def guess_source_kind(upload: Upload) -> SourceKind:
     """Return the kind of an upload by its name and content; a script if it is nothing else."""
+    if isinstance(upload.content, Document):
+        return SourceKind.SCRIPT
     if not isinstance(upload.content, bytes) or is_bag_content(upload.name, upload.content):
         return SourceKind.BAG
     # A pipe has no name with a suffix, but no script begins with a brace.
@@ -149,18 +153,15 @@ def load_unchecked_mission(
     _log.info("%s is read as a %s", name, kind)
     if kind is not SourceKind.SCRIPT:
         require_no_areas(name, start_area, end_area)
-    if not isinstance(upload.content, bytes):
+    if kind is SourceKind.SCRIPT:
+        return _load_script(upload, catalog, start_area, end_area)
+    assert not isinstance(upload.content, Document), "a document is a script"
+    if kind is SourceKind.BAG or not isinstance(upload.content, bytes):
         return _load_bag(upload.content, name)
-    match kind:
-        case SourceKind.BAG:
-            return _load_bag(upload.content, name)
-        case SourceKind.ISAR:
-            return _load_isar(upload.content, name, catalog, site)
-        case SourceKind.MISSION:
-            file = decode_mission(upload.content, name)
-            return LoadedMission(file.mission, file.diagnostics_with_positions(file.changes), file)
-        case SourceKind.SCRIPT:
-            return _load_script(upload, catalog, start_area, end_area)
+    if kind is SourceKind.ISAR:
+        return _load_isar(upload.content, name, catalog, site)
+    file = decode_mission(upload.content, name)
+    return LoadedMission(file.mission, file.diagnostics_with_positions(file.changes), file)
 
 
 def _beginning(upload: Upload, size: int) -> bytes:
@@ -221,7 +222,7 @@ def _load_script(
             "`Check checkpoint 4`"
         )
     mission = draft.require_mission()
-    return LoadedMission(mission, draft.diagnostics, Script.of(_script_in(upload), name))
+    return LoadedMission(mission, draft.diagnostics, Script.of(script_in(upload), name))
 
 
 def _has_steps(draft: "Draft") -> bool:
@@ -247,14 +248,13 @@ def load_draft(
     Raises:
         ArgoError: The upload is no script: not text, empty, or too long.
     """
-    assert isinstance(upload.content, bytes), "a script is one file"
-    if not _is_document(upload):
+    if isinstance(upload.content, bytes) and not _is_document(upload):
         require_no_foreign_file(upload.name, upload.content)
     with collector_held():
         from argo_compiler.script import import_script
 
     return import_script(
-        _script_in(upload),
+        script_in(upload),
         catalog,
         source_name=upload.name,
         start_area=start_area,
@@ -264,13 +264,16 @@ def load_draft(
     )
 
 
-def _script_in(upload: Upload) -> "str | Document":
+def script_in(upload: Upload) -> str | Document:
+    """Return the script in an upload; raises ArgoError as `load_draft` does."""
+    if isinstance(upload.content, Document):
+        return upload.content
     assert isinstance(upload.content, bytes), "a script is one file"
     return _decoded(upload.content, upload.name)
 
 
 @lru_cache(maxsize=1)
-def _decoded(content: bytes, name: str) -> "str | Document":
+def _decoded(content: bytes, name: str) -> str | Document:
     """Return the script in a file; the last one is cached, as each decision reads it again."""
     from argo_compiler.script import decode_document
 
@@ -280,7 +283,9 @@ def _decoded(content: bytes, name: str) -> "str | Document":
 def _is_document(upload: Upload) -> bool:
     """Return True if an upload is a document that is no text, such as a workbook."""
     content = upload.content
-    return isinstance(content, bytes) and document_format(content) is not None
+    if isinstance(content, bytes):
+        return document_format(content) is not None
+    return isinstance(content, Document)
 
 
 def import_mission(

@@ -67,6 +67,28 @@ def test_one_key_a_line_leads_to_the_mission(terminal: Terminal, folder: Path) -
     assert "Befriend valve R12` counts as `Check checkpoint 5.`" in terminal.output
 
 
+def test_lines_that_name_nothing_are_listed_and_set_aside_together(folder: Path) -> None:
+    steps = "Photograph the pump\nBefriend valve R12.\nWave to the camera\nDo not hurry\n"
+    (folder / "list.txt").write_text(f"Start in starting area 1.\n{steps}", "utf-8")
+    with start(folder, "list.txt") as terminal:
+        terminal.expect(r"a set aside, r set aside the rest that names nothing \(2\), s say")
+        terminal.type("r")
+        shown = terminal.expect("any other key no: ")
+        assert "      2 | Photograph the pump" in shown
+        assert "      4 | Wave to the camera" in shown
+        assert "R12" not in shown
+        assert "hurry" not in shown
+        terminal.type("n")
+        assert "r set aside the rest" in terminal.expect(r"\? help: ")
+        terminal.type("ry")
+        assert "line 3 (2 left)" in terminal.expect(r"\? help: ")
+        terminal.type("u")
+        assert "line 2 (4 left)" in terminal.expect(r"\? help: ")
+        terminal.type("ry1a")
+        assert terminal.end() == 0
+    assert (folder / "list.txt.draft").read_text("utf-8").count("set aside by hand") == 3
+
+
 def test_keys_typed_ahead_are_taken_in_their_order(terminal: Terminal, folder: Path) -> None:
     terminal.type("ca1")
     assert terminal.end() == 0

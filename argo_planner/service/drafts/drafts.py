@@ -7,6 +7,7 @@ from datetime import datetime
 
 from argo_compiler.base.errors import Conflict, Invalid, NotFound
 from argo_compiler.diagnostics import DiagnosticError
+from argo_compiler.script.documents.document import Document
 from argo_compiler.script.drafts.draft import Draft, IncompleteDraft, LineState
 from argo_planner.service.core.plan_limits import require_displayable_name
 from argo_planner.service.core.refusals import StaleRevision
@@ -62,7 +63,7 @@ class Drafts:
         self,
         name: str,
         source_name: str,
-        text: str,
+        script: str | Document,
         reading: DraftReading,
         areas: tuple[int | None, int | None],
     ) -> DraftState:
@@ -73,6 +74,8 @@ class Drafts:
         """
         require_displayable_name(name, "the mission")
         draft = reading.draft
+        document = script if isinstance(script, Document) else None
+        text = script if isinstance(script, str) else script.text
         if len(text) > MAX_TEXT_LENGTH or len(draft.lines) > MOST_LINES:
             raise Invalid(
                 f"{IncompleteDraft(draft)}; with more than {MOST_LINES:,} lines or "
@@ -87,6 +90,7 @@ class Drafts:
                 name=name,
                 source_name=source_name,
                 text=text,
+                document=document,
                 start_area=areas[0],
                 end_area=areas[1],
                 created=now,
@@ -167,7 +171,7 @@ class Drafts:
     async def _read(self, stored: DraftRecord, visitor: str) -> DraftReading:
         return await self._scripts.read_draft(
             stored.source_name,
-            stored.text,
+            stored.document or stored.text,
             visitor,
             (stored.start_area, stored.end_area),
             stored.decisions,
@@ -208,7 +212,7 @@ def _state(stored: DraftRecord, reading: DraftReading) -> DraftState:
         start_area=stored.start_area,
         end_area=stored.end_area,
         areas_to_choose=areas_to_choose(reading.draft, reading.problems),
-        lines=drafted_lines(reading.draft, reading.steps),
+        lines=drafted_lines(reading.draft, reading.steps, reading.naming_nothing),
         diagnostics=other_messages(reading.draft, reading.problems),
         is_complete=reading.imported is not None,
     )

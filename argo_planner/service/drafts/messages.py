@@ -1,7 +1,7 @@
 """The draft of a script as clients see it, and the acts by which they decide on its lines."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 from datetime import datetime
 from typing import Annotated, Literal
@@ -114,6 +114,8 @@ class DraftedLine(Model):
     line: int
     """number of its first line in the script, from 1"""
     last_line: int
+    place: str = ""
+    """in a document: its cells, or its page; `line` then only numbers the lines of the draft"""
     text: str
     state: LineState
     sentences: tuple[str, ...] = ()
@@ -127,6 +129,8 @@ class DraftedLine(Model):
     hint: str = ""
     choices: tuple[tuple[str, ...], ...] = ()
     """for an open line, what it may become; no sentences: it is set aside"""
+    names_nothing: bool = False
+    """whether it is open, can only be set aside, and mentions nothing of a mission"""
     act: Act | None = None
     """what a person has done with it"""
 
@@ -146,8 +150,16 @@ class DraftState(DraftSummary):
     """whether the draft can become a mission"""
 
 
-def drafted_lines(draft: Draft, steps: Mapping[int, tuple[str, ...]]) -> tuple[DraftedLine, ...]:
-    """Return the lines of a draft as clients see them; `steps` are those of lines by number."""
+def drafted_lines(
+    draft: Draft, steps: Mapping[int, tuple[str, ...]], naming_nothing: Collection[str] = ()
+) -> tuple[DraftedLine, ...]:
+    """Return the lines of a draft as clients see them.
+
+    Args:
+        draft: The draft.
+        steps: The steps of its lines, by number.
+        naming_nothing: Labels of the lines that mention nothing of a mission.
+    """
     names = DraftLine.model_fields.keys() & DraftedLine.model_fields.keys()
     found = []
     for line in draft.lines:
@@ -155,6 +167,7 @@ def drafted_lines(draft: Draft, steps: Mapping[int, tuple[str, ...]]) -> tuple[D
         said = [step for number in _numbers(line) for step in steps.get(number, ())]
         fields = {name: getattr(line, name) for name in names}
         fields |= {"label": line.label, "steps": tuple(said) if own else ()}
+        fields["names_nothing"] = line.label in naming_nothing
         found.append(DraftedLine.model_construct(**fields))
     return tuple(found)
 
@@ -171,11 +184,8 @@ def areas_to_choose(
 
 def other_messages(draft: Draft, problems: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
     """Return the messages of a draft, and the problems, without what its lines state already."""
-    reasons = {
-        (number, line.reason)
-        for line in draft.lines
-        if line.state is LineState.OPEN
-        for number in _numbers(line)
+    open_ = {
+        number for line in draft.lines if line.state is LineState.OPEN for number in _numbers(line)
     }
     aside = {
         number
@@ -187,7 +197,7 @@ def other_messages(draft: Draft, problems: Iterable[Diagnostic]) -> tuple[Diagno
     def is_other(diagnostic: Diagnostic) -> bool:
         number = 0 if diagnostic.span is None else diagnostic.span.line
         if diagnostic.severity is Severity.ERROR:
-            return (number, diagnostic.message) not in reasons
+            return number not in open_
         return not (diagnostic.code in OF_ASIDES and number in aside)
 
     found = filter(is_other, draft.diagnostics)

@@ -17,13 +17,14 @@ from argo_compiler.diagnostics import Diagnostic, DiagnosticError
 from argo_compiler.il import Mission
 from argo_compiler.ros.bags import suffix_by_first_bytes
 from argo_compiler.ros.recognition import first_bytes_if_readable, is_bag_content
-from argo_compiler.script.documents.reading import decode_script
+from argo_compiler.script.documents.document import Document
 from argo_compiler.script.drafts.draft import (
     Draft,
     IncompleteDraft,
     LineDecision,
     LineState,
 )
+from argo_compiler.script.drafts.naming_nothing import lines_naming_nothing
 from argo_env.files.checked_lines import write_all
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_planner.service.core.change import mission_change
@@ -37,6 +38,7 @@ from argo_planner.use_cases.importing import (
     guess_source_kind,
     import_mission,
     load_draft,
+    script_in,
 )
 
 Result = TypeVar("Result")
@@ -60,6 +62,8 @@ class DraftReading:
     """errors of the mission as a whole"""
     steps: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
     """the steps of the mission by the line that asks for them, if no line is open"""
+    naming_nothing: frozenset[str] = frozenset()
+    """labels of the open lines in which nothing of a mission is mentioned"""
 
 
 @dataclass(frozen=True)
@@ -68,10 +72,15 @@ class ReadUpload:
 
     imported: ImportedMission | None
     """the mission; None: lines of the draft are left to decide on"""
-    script: str | None
-    """the text, if the upload is a script"""
+    script: str | Document | None
+    """what the file was read as, if the upload is a script"""
     reading: DraftReading | None = None
     """the draft; None unless lines are left"""
+
+    @property
+    def script_text(self) -> str | None:
+        """The text of the script; None if the upload is none."""
+        return self.script.text if isinstance(self.script, Document) else self.script
 
     def require_mission(self) -> ImportedMission:
         """Return the mission; raises IncompleteDraft if lines are left."""
@@ -121,17 +130,19 @@ class Imports:
     async def read_draft(
         self,
         name: str,
-        text: str,
+        script: str | Document,
         visitor: str,
         areas: tuple[int | None, int | None],
         decisions: tuple[LineDecision, ...],
     ) -> DraftReading:
         """Read the draft of a script with decisions; raises the errors of `import_upload`."""
+        document = script if isinstance(script, Document) else None
+        text = script.text if isinstance(script, Document) else script
 
         async def content() -> AsyncIterator[bytes]:
             yield text.encode(errors="replace")
 
-        arguments = (*areas, decisions)
+        arguments = (document, *areas, decisions)
         return await self._store_and_read(read_draft_file, name, content(), visitor, arguments)
 
     async def _store_and_read(
@@ -235,14 +246,13 @@ def import_file(
             upload = Upload(name, bag)
         else:
             upload = Upload(name, path.read_bytes())
-        script = _script_of(upload)
         try:
             imported = import_mission(upload, opened, start_area, end_area)
         except IncompleteDraft as error:
             reading = _read_steps(upload, opened, (start_area, end_area), error.draft)
-            return ReadUpload(None, script, reading)
+            return ReadUpload(None, _script_of(upload), reading)
         _require_plan_size(imported)
-        return ReadUpload(imported, script)
+        return ReadUpload(imported, _script_of(upload))
 
 
 def read_draft_file(
@@ -250,6 +260,7 @@ def read_draft_file(
     name: str,
     path: Path,
     limits: CallLimits,
+    document: Document | None,
     start_area: int | None,
     end_area: int | None,
     decisions: tuple[LineDecision, ...],
@@ -257,13 +268,15 @@ def read_draft_file(
 ) -> DraftReading:
     """Read the draft of a script in a file within limits, as the work of a process.
 
-    The arguments and errors are those of `import_file`. Errors of the mission as a whole are not
-    raised, but are problems of the reading.
+    The script is `document`, or the text of the file if that is None. The other arguments and the
+    errors are those of `import_file`. Errors of the mission as a whole are not raised, but are
+    problems of the reading.
     """
     opened = open_site(site)
     set_niceness(niceness() + _LOWER_PRIORITY)
     with limited(limits):
-        upload = Upload(name, path.read_bytes(), decisions)
+        content = path.read_bytes() if document is None else document
+        upload = Upload(name, content, decisions)
         draft = load_draft(upload, opened.catalog, start_area, end_area)
         return _read_steps(upload, opened, (start_area, end_area), draft)
 
@@ -276,7 +289,8 @@ def _read_steps(
     Of a draft whose lines are only to be confirmed, the steps are those once they are.
     """
     if any(line.state is LineState.OPEN for line in draft.lines):
-        return DraftReading(draft)
+        idle = frozenset(line.label for line in lines_naming_nothing(draft, site.catalog))
+        return DraftReading(draft, naming_nothing=idle)
     confirmed = draft
     if draft.left:
         confirmed = load_draft(upload, site.catalog, *areas, decisions=draft.confirm())
@@ -302,10 +316,8 @@ def _steps_of(imported: ImportedMission, site: OpenedSite) -> dict[int, tuple[st
     return dict(found)
 
 
-def _script_of(upload: Upload) -> str | None:
-    if not isinstance(upload.content, bytes) or guess_source_kind(upload) is not SourceKind.SCRIPT:
-        return None
-    return decode_script(upload.content, upload.name)
+def _script_of(upload: Upload) -> str | Document | None:
+    return script_in(upload) if guess_source_kind(upload) is SourceKind.SCRIPT else None
 
 
 def _require_plan_size(imported: ImportedMission) -> None:

@@ -11,6 +11,7 @@ from pathlib import Path
 from argo_compiler.base.errors import ArgoError, NotFound, Unavailable
 from argo_compiler.base.model import Model
 from argo_compiler.files.atomic_write import write_atomically
+from argo_compiler.script.documents.document import Document
 from argo_compiler.script.drafts.draft import LineDecision
 from argo_env.files.checked_files import checked_json
 from argo_env.files.folders import make_private_folder
@@ -35,6 +36,9 @@ class DraftRecord(Model):
     source_name: str
     """name of the script's file"""
     text: str
+    """of the script"""
+    document: Document | None = None
+    """the document that the text is of; None: it is the text of a file"""
     start_area: int | None = None
     end_area: int | None = None
     decisions: tuple[LineDecision, ...] = ()

@@ -167,7 +167,7 @@ async def import_a_mission(
     start_area: Annotated[int | None, Query(ge=-1000, le=1000)] = None,
     end_area: Annotated[int | None, Query(ge=-1000, le=1000)] = None,
 ) -> Response:
-    """Create a mission from the body: a script, a mission in JSON, a ROS bag or an isar mission.
+    """Create a mission from the body: a script, a document, JSON, a ROS bag or an isar mission.
 
     202 if lines of a script are left to decide on: then a draft is created instead.
     """
@@ -182,7 +182,8 @@ async def import_a_mission(
         location = f"/api/drafts/{state.id}"
         return json_response(state, 202, revision=state.revision, location=location)
     imported = read.require_mission()
-    return await create_plan(service, name, imported.mission, imported.diagnostics, read.script)
+    notes = imported.diagnostics
+    return await create_plan(service, name, imported.mission, notes, read.script_text)
 
 
 @router.get("/missions/{id}", operation_id="read_mission", response_model=PlanState)

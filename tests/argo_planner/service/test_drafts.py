@@ -8,6 +8,7 @@ import pytest
 from argo_compiler.base.errors import Unavailable
 from argo_planner.service.drafts import drafts
 from argo_planner.service.storage.draft_folder import DraftFolder
+from tests.argo_compiler.script.documents_made import pdf_table, workbook
 from tests.argo_planner.service.served import SECRETS, AccessRole, Served, served
 from tests.argo_planner.service.test_http import problem
 
@@ -239,3 +240,59 @@ def test_the_imported_script_is_that_of_the_present_mission(service: Served) -> 
     assert service.command(id, 3, kind="undo").status_code == 200
     assert service.client.get(at).json() == {"revision": 0, "text": ""}
     problem(service.client.get(f"/api/missions/{'0' * 12}/imported-script"), 404, "not-found")
+
+
+ROWS = [
+    ["CP", "Instrument", "Floor", "Normal", "Unit", "Reading", "Remarks"],
+    ["1", "Pressure gauge 1", "1", "3 - 5", "bar", "", ""],
+    ["5", "Valve R12", "2", "closed", "", "", "behind the pump"],
+    ["", "Photograph the pump", "", "", "", "", ""],
+    ["", "Handrails secure", "", "", "", "", ""],
+]
+
+
+def upload_file(service: Served, name: str, content: bytes) -> dict:
+    answer = service.client.post("/api/imports", params={"filename": name}, content=content)
+    assert answer.status_code == 202, answer.text
+    return answer.json()
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "place"),
+    [
+        ("round.xlsx", lambda: workbook(ROWS), "A3:G3"),
+        ("round.pdf", lambda: pdf_table(ROWS), "page 1, row 2"),
+        ("round.csv", lambda: "\n".join(map(",".join, ROWS)).encode(), "line 3"),
+    ],
+)
+def test_a_document_is_decided_on_line_by_line(service: Served, name, content, place) -> None:
+    """Its lines have their places, and a message about an open line stands at that line only."""
+    draft = upload_file(service, name, content())
+    asked = next(line for line in draft["lines"] if line["place"] == place)
+    assert asked["choices"][1] == ["Check checkpoint 5."]
+    assert not [one for one in draft["diagnostics"] if one["severity"] == "error" and one["span"]]
+    others = [line["label"] for line in draft["lines"] if line["names_nothing"]]
+    assert len(others) == 2
+    acts = [{"kind": "choose", "label": asked["label"], "number": 2}]
+    acts += [{"kind": "set_aside", "labels": others}, {"kind": "areas", "start_area": 1}]
+    draft = decide(service, draft, *acts)
+    assert draft["is_complete"]
+    mission = complete(service, draft)
+    text = service.client.get(f"/api/missions/{mission['id']}/imported-script").json()["text"]
+    tasks = service.mission(mission["id"])["tasks"]
+    sources = [task["source"]["line"] for task in tasks if task["source"]]
+    assert "Pressure gauge 1" in text.splitlines()[sources[0] - 1]
+    assert "Valve R12" in text.splitlines()[sources[1] - 1]
+
+
+def test_a_document_is_decided_on_after_a_restart(tmp_path: Path, site) -> None:
+    with served(tmp_path, site) as service:
+        draft = upload_file(service, "round.xlsx", workbook(ROWS))
+    with served(tmp_path, site) as service:
+        again = service.client.get(f"/api/drafts/{draft['id']}").json()
+        assert again == draft
+        places = [line["place"] for line in again["lines"]]
+        draft = decide(
+            service, again, {"kind": "set_aside", "labels": [again["lines"][-1]["label"]]}
+        )
+        assert [line["place"] for line in draft["lines"]] == places

@@ -5,6 +5,7 @@ import re
 import pytest
 from playwright.sync_api import expect
 
+from tests.argo_compiler.script.documents_made import pdf, pdf_table, word, workbook
 from tests.argo_planner.service.served import ALL, Served
 from tests.e2e.page.person import Person, Proxy
 from tests.e2e.page.test_access import require_accessible
@@ -26,6 +27,31 @@ def upload(service: Served, script: str = SCRIPT) -> str:
     assert answer.status_code == 202, answer.text
     id: str = answer.json()["id"]
     return id
+
+
+ROWS = [
+    ["CP", "Instrument", "Floor", "Normal", "Unit", "Reading", "Remarks"],
+    ["1", "Pressure gauge 1", "1", "3 - 7", "bar", "", ""],
+    ["5", "Valve R12", "2", "closed", "", "", "behind the pump"],
+]
+"""a sheet with a row that is asked about"""
+
+
+def word_table(document) -> None:
+    table = document.add_table(rows=0, cols=len(ROWS[0]))
+    for row in ROWS:
+        for cell, text in zip(table.add_row().cells, row, strict=True):
+            cell.text = text
+
+
+def scan(canvas) -> None:
+    canvas.drawInlineImage("docs/images/planner-draft.png", 0, 0, 400, 300)
+
+
+def choose_file(person: Person, name: str, content: bytes) -> None:
+    """Choose a file in the list of missions."""
+    file = {"name": name, "mimeType": "application/octet-stream", "buffer": content}
+    person.page.locator("argo-import input[type=file]").set_input_files(file)
 
 
 def line(person: Person, label: int | str) -> object:
@@ -158,8 +184,111 @@ def test_a_change_by_somebody_else_is_not_overwritten(service: Served, draft: Pe
     at = f"/api/drafts/{id}/acts"
     assert service.client.post(at, json=acts, headers={"if-match": "*"}).status_code == 200
     draft.key("c")
-    expect(draft.page.locator("argo-notices")).to_contain_text("changed the draft in the meantime")
+    expect(draft.page.locator("argo-notices")).to_contain_text("Somebody else was faster")
+    expect(draft.page.locator("argo-notices")).to_contain_text("Line 3: confirm")
     expect_state(draft, 3, "set aside")
+
+
+def test_two_people_see_the_decisions_of_each_other(
+    service: Served, draft: Person, browsers
+) -> None:
+    """While they do nothing; the line on which one works stays where it is."""
+    bert = browsers.person(f"http://{service.address}/?token={ALL}", "bert", locale="de-DE")
+    bert.open(draft.page.url.partition("#")[2])
+    expect(line(bert, 3)).to_be_focused()
+    bert.key("n", "n", "n", "e")
+    bert.type("Photo")
+    draft.key("c")
+    expect_state(bert, 3, "understood")
+    expect(bert.page.locator("argo-notices")).to_contain_text("über Zeile 3 entschieden")
+    expect(bert.page.locator("argo-draft form input")).to_be_focused()
+    expect(bert.page.locator("argo-draft form input")).to_have_value("Photo")
+    bert.key("Escape", "x")
+    expect_state(draft, 6, "set aside")
+    draft.key("c", "1")
+    expect(draft.page.locator("#plan")).to_be_enabled()
+    draft.key("Control+Enter")
+    expect(draft.page.get_by_role("treeitem")).to_have_count(5)
+    expect(bert.page.locator("argo-home")).to_be_visible()
+    expect(bert.page.locator("argo-notices")).to_contain_text("eine Mission gemacht")
+
+
+def test_lines_that_name_nothing_are_listed_and_set_aside_together(service, shared_person) -> None:
+    ann = shared_person
+    named = "Photograph the pump\nCheck the zorg 7\nWave to the camera\nDo not hurry\n"
+    script = f"Start in starting area 1.\n{named}Check checkpoint 5.\n"
+    ann.go(f"/drafts/{upload(service, script)}")
+    button = ann.page.locator("#set-aside-idle")
+    expect(button).to_have_text(re.compile("Set aside 2 that name nothing"))
+    expect(line(ann, 2)).to_be_focused()
+    ann.key("Shift+X")
+    listed = ann.page.locator("argo-draft dialog li")
+    expect(listed).to_have_text(["Line 2: Photograph the pump", "Line 4: Wave to the camera"])
+    ann.key("Escape")
+    expect(listed).to_have_count(0)
+    expect(line(ann, 2)).to_be_focused()
+    expect_state(ann, 2, "open")
+    ann.key("Shift+X")
+    expect(ann.page.get_by_role("button", name="Set 2 lines aside")).to_be_focused()
+    ann.key("Enter")
+    expect_state(ann, 2, "set aside")
+    expect_state(ann, 4, "set aside")
+    expect_state(ann, 3, "open")
+    expect(line(ann, 3)).to_be_focused()
+    expect(button).to_have_count(0)
+    expect_saved(ann)
+    ann.key("Control+z")
+    expect_state(ann, 2, "open")
+    expect_state(ann, 4, "open")
+
+
+@pytest.mark.parametrize(
+    ("name", "make", "place"),
+    [
+        ("round.xlsx", lambda: workbook(ROWS), "A3:G3"),
+        ("round.docx", lambda: word(word_table), "table 1, row 3"),
+        ("round.pdf", lambda: pdf_table(ROWS), "page 1, row 2"),
+        ("round.csv", lambda: "\n".join(map(",".join, ROWS)).encode(), "line 3"),
+    ],
+)
+def test_documents_become_missions(shared_person: Person, name: str, make, place: str) -> None:
+    """Their lines show the cells or pages that they are from."""
+    ann = shared_person
+    choose_file(ann, name, make())
+    row = ann.page.locator("argo-draft .line.open")
+    expect(row).to_be_focused()
+    expect(row.locator(".place")).to_have_text(place)
+    expect(row.get_by_role("button").nth(1)).to_have_text(re.compile("Check checkpoint 5."))
+    ann.key("2")
+    expect_saved(ann)
+    ann.page.locator("#start-area").select_option("1")
+    expect(ann.page.locator("#plan")).to_be_enabled()
+    ann.key("Control+Enter")
+    expect(ann.page.get_by_role("treeitem")).to_have_count(3)
+
+
+@pytest.mark.parametrize(
+    ("name", "make", "words"),
+    [
+        ("photo.png", lambda: b"\x89PNG\r\n\x1a\n" + bytes(range(256)), "a picture"),
+        ("scan.pdf", lambda: pdf(scan), "without text"),
+        ("half.docx", lambda: word(word_table)[:700], "damaged"),
+        ("half.xlsx", lambda: workbook(ROWS)[:-300], "damaged"),
+        ("blank.xlsx", lambda: workbook([]), "without text"),
+        ("old.doc", lambda: b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600), "old Office"),
+        ("empty.txt", lambda: b" \n", "is empty"),
+        ("large.txt", lambda: b"Check checkpoint 4.\n" * 1_700_000, "larger than"),
+    ],
+)
+def test_a_wrong_file_gets_one_message(shared_person: Person, name: str, make, words: str) -> None:
+    ann = shared_person
+    choose_file(ann, name, make())
+    notice = ann.page.locator("argo-notices article.bad")
+    expect(notice).to_contain_text(words)
+    expect(notice).to_have_count(1)
+    expect(notice).to_contain_text(name)
+    ann.click(notice.get_by_role("button"))
+    expect(ann.page.locator("argo-home")).to_be_visible()
 
 
 @pytest.mark.long

@@ -36,6 +36,12 @@ class Language:
         score = sum([(word in two.words) - (word in one.words) for word in said])
         return _language(two, "german", "english") if score > 0 else _language(one, "english")
 
+    @classmethod
+    def all(cls, places: Iterable[str]) -> tuple["Language", "Language"]:
+        """The languages, English first."""
+        one, two = _lexicons(tuple(sorted(places)))
+        return _language(one, "english"), _language(two, "german", "english")
+
 
 @lru_cache(maxsize=16)
 def _language(lexicon: Lexicon, name: str, besides: str | None = None) -> Language:

@@ -10,6 +10,7 @@ import { isLeft, type LineAct, nextLeft, type ShownLine } from "../model/draft-l
 import { mayPlan } from "../state/session";
 import { world } from "../state/world";
 import { language, t } from "../texts";
+import { placeBefore } from "../texts/place";
 import { options, valueOf } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, query, state } from "../ui/element";
 import { icon } from "../ui/icons";
@@ -20,6 +21,8 @@ import {
   chooseAreas,
   completeDraft,
   decide,
+  followOthers,
+  namingNothing,
   openedDraft,
   sendingActs,
   shownLines,
@@ -98,6 +101,30 @@ export class DraftView extends PageElement {
         padding: 2px 0;
         overflow-wrap: anywhere;
       }
+      dialog {
+        width: min(620px, calc(100vw - 24px));
+        max-height: calc(100dvh - 24px);
+        padding: 14px;
+        border: 1px solid var(--line);
+        border-radius: 10px;
+        background: var(--raised);
+        color: var(--text);
+      }
+      dialog form {
+        display: grid;
+        gap: 10px;
+      }
+      dialog ul {
+        max-height: 50dvh;
+        overflow: auto;
+        padding: 4px 8px;
+        border: 1px solid var(--line);
+        border-radius: var(--round);
+      }
+      dialog li {
+        padding: 2px 0;
+        overflow-wrap: anywhere;
+      }
       .areas {
         display: flex;
         flex-wrap: wrap;
@@ -135,6 +162,8 @@ export class DraftView extends PageElement {
   @state() private editing: { readonly label: string; readonly text: string } | null = null;
   @state() private announced = "";
   @state() private completing = false;
+  /** The lines that name nothing, while they are listed to be set aside; null: they are not. */
+  @state() private listed: readonly ShownLine[] | null = null;
   @query("#plan") private readonly planButton!: HTMLButtonElement | null;
   private shownId: string | null = null;
   /** Where the focus goes after the next drawing. */
@@ -153,7 +182,21 @@ export class DraftView extends PageElement {
     });
   }
 
+  private endFollowing: (() => void) | null = null;
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    this.endFollowing = followOthers();
+  }
+
+  override disconnectedCallback(): void {
+    this.endFollowing?.();
+    super.disconnectedCallback();
+  }
+
   override updated(): void {
+    const dialog = this.renderRoot.querySelector("dialog");
+    if (dialog?.open === false) dialog.showModal();
     const goal = this.focusNext;
     this.focusNext = null;
     if (goal === "row") this.focusRow();
@@ -208,6 +251,7 @@ export class DraftView extends PageElement {
         )}
       </div>
       <p class="unseen" role="status" aria-live="polite">${this.announced}</p>
+      ${this.idleDialog()}
     </main>`;
   }
 
@@ -235,6 +279,11 @@ export class DraftView extends PageElement {
               ${icon("check", 16)} ${texts.confirmAll(confirming)}
             </button>`
           : nothing}
+        ${may && namingNothing.value.length > 1
+          ? html`<button id="set-aside-idle" title="Shift+X" @click=${this.listIdle}>
+              ${icon("minus", 16)} ${texts.setAsideIdle(namingNothing.value.length)}
+            </button>`
+          : nothing}
         ${left > 0
           ? html`<button id="next" title="n" @click=${() => this.goToLeft(1)}>${icon("down", 16)} <span class="long">${texts.next}</span></button>`
           : nothing}
@@ -254,6 +303,45 @@ export class DraftView extends PageElement {
         </button>
       </div>`;
   }
+
+  /** List the lines that name nothing, before they are set aside. */
+  private idleDialog() {
+    const lines = this.listed;
+    if (lines === null) return nothing;
+    const texts = t().draft;
+    return html`<dialog aria-labelledby="idle-title" @close=${this.closeIdle}>
+      <form @submit=${this.setAsideIdle}>
+        <h2 id="idle-title">${texts.idleTitle(lines.length)}</h2>
+        <p>${texts.idleExplained}</p>
+        <ul tabindex="0" aria-label=${texts.lines}>
+          ${lines.map((line) => html`<li><span class="dim">${line.place || texts.line(line.label)}:</span> ${line.text}</li>`)}
+        </ul>
+        <div class="row">
+          <button class="main" autofocus>${texts.idleApply(lines.length)}</button>
+          <button type="button" @click=${this.closeIdle}>${texts.cancel}</button>
+        </div>
+      </form>
+    </dialog>`;
+  }
+
+  private readonly listIdle = (): void => {
+    if (mayPlan() && namingNothing.value.length > 0) this.listed = namingNothing.value;
+  };
+
+  private readonly closeIdle = (): void => {
+    if (this.listed === null) return;
+    this.listed = null;
+    this.focusNext = "row";
+  };
+
+  /** Set aside the lines that were listed, as far as they are still open. */
+  private readonly setAsideIdle = (event: SubmitEvent): void => {
+    event.preventDefault();
+    const shown = new Set(this.listed?.map((line) => line.label));
+    const lines = namingNothing.value.filter((line) => shown.has(line.label));
+    this.listed = null;
+    this.actOnMany(lines, "set_aside", t().draft.manySetAside(lines.length));
+  };
 
   /** Render the choice of areas that the script leaves open. */
   private areas(draft: DraftState, may: boolean) {
@@ -289,10 +377,10 @@ export class DraftView extends PageElement {
     if (errors.length === 0) return nothing;
     return html`<section class="told bad" role="alert" aria-label=${t().draft.messages}>
       <ul lang="en">
-        ${errors.slice(0, 20).map((one) => {
-          const place = one.span ? `${t().frame.line(one.span.line)}: ` : "";
-          return html`<li>${place}${one.message}${one.hint ? html`<br /><span class="dim">${one.hint}</span>` : nothing}</li>`;
-        })}
+        ${errors.slice(0, 20).map(
+          (one) =>
+            html`<li>${placeBefore(one)}${one.message}${one.hint ? html`<br /><span class="dim">${one.hint}</span>` : nothing}</li>`,
+        )}
       </ul>
     </section>`;
   }
@@ -356,13 +444,18 @@ export class DraftView extends PageElement {
 
   private readonly confirmAll = (): void => {
     const proposed = shownLines.value.filter((line) => line.state === "proposed");
-    if (!mayPlan() || proposed.length === 0) return;
-    decide(proposed.map(({ label, sentences }) => ({ kind: "confirm", label, sentences })));
-    this.announce(t().draft.allConfirmed(proposed.length));
+    this.actOnMany(proposed, "confirm", t().draft.allConfirmed(proposed.length));
+  };
+
+  /** Carry out one kind of act on several lines, and go to the next line that is left. */
+  private actOnMany(lines: readonly ShownLine[], kind: "confirm" | "set_aside", told: string): void {
+    if (!mayPlan() || lines.length === 0) return;
+    decide(lines.map(({ label, sentences }) => ({ kind, label, sentences: kind === "confirm" ? sentences : [] })));
+    this.announce(told);
     const next = nextLeft(shownLines.value, this.active - 1);
     if (next >= 0) this.active = next;
     this.focusNext = next >= 0 ? "row" : "plan";
-  };
+  }
 
   private readonly undoLast = (): void => {
     const label = mayPlan() ? undoLast() : null;
@@ -438,6 +531,7 @@ export class DraftView extends PageElement {
     } else if (event.key === "n" || event.key === "N") this.goToLeft(event.key === "n" ? 1 : -1);
     else if (line === undefined || !mayPlan()) return false;
     else if (event.key === "C") this.confirmAll();
+    else if (event.key === "X") this.listIdle();
     else if (event.key === "c") this.handlers.confirm(line);
     else if (event.key === "x" || event.key === "Delete") this.handlers.setAside(line);
     else if (event.key === "e" || event.key === "F2") this.handlers.edit(line);

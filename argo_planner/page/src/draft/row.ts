@@ -62,6 +62,11 @@ export const draftRowStyles = css`
     font: 13px/1.5 ui-monospace, "DejaVu Sans Mono", monospace;
     white-space: pre-wrap;
   }
+  .place {
+    display: block;
+    font-size: 12px;
+    color: var(--dim);
+  }
   .line.aside .source {
     color: var(--dim);
   }
@@ -198,11 +203,14 @@ export function draftRow(line: ShownLine, shown: RowState, on: RowHandlers) {
   >
     <div role="gridcell" class="words">
       <span class="number" aria-hidden="true">${line.label}</span>
-      <span class="source"
-        >${splitUnused(line.text, aside || line.act === "said" ? [] : line.unused).map((part) =>
-          part.unused ? html`<mark title=${texts.unusedMark}>${part.text}</mark>` : part.text,
-        )}</span
-      >
+      <div>
+        ${line.place ? html`<span class="place">${line.place}</span>` : nothing}
+        <span class="source"
+          >${splitUnused(line.text, aside || line.act === "said" ? [] : line.unused).map((part) =>
+            part.unused ? html`<mark title=${texts.unusedMark}>${part.text}</mark>` : part.text,
+          )}</span
+        >
+      </div>
     </div>
     <div role="gridcell" class="becomes">
       <div class=${isLeft(line) ? "" : "settled"}>${badge(line)} ${isLeft(line) ? nothing : meaning(line)}</div>
@@ -216,7 +224,7 @@ export function draftRow(line: ShownLine, shown: RowState, on: RowHandlers) {
 /** Return what a screen reader says of a row: number, state, and what the line becomes. */
 function rowLabel(line: ShownLine): string {
   const texts = t().draft;
-  const parts = [texts.line(line.label), texts.state[line.state], line.text];
+  const parts = [texts.line(line.label), ...(line.place ? [line.place] : []), texts.state[line.state], line.text];
   if (line.sentences.length > 0) parts.push(`${texts.becomes}: ${line.sentences.join(" ")}`);
   if (line.unused.length > 0 && line.state === "proposed") parts.push(texts.unused(line.unused));
   if (line.reason) parts.push(line.reason);

@@ -5,12 +5,14 @@ import { batch, computed, signal } from "@preact/signals-core";
 
 import { client, delay, Refusal, responseData, Unreached } from "../api/client";
 import type { DraftAct, DraftState } from "../api/types";
-import { isLeft, type LineAct, stillApplies, toRequest, withActs } from "../model/draft-lines";
+import { decidedByOthers, isDone, isLeft, type LineAct, stillApplies, toRequest, withActs } from "../model/draft-lines";
 import { showError, showNotice } from "../state/notices";
 import { storeSetting, storedSetting } from "../state/session";
 import { t } from "../texts";
 
 const RETRY_MS = 1_000;
+/** ms between two looks whether somebody else has changed the draft */
+const LOOK_MS = 3_000;
 /** acts in one request */
 const MOST_ACTS = 500;
 
@@ -25,6 +27,8 @@ const history = signal<readonly (readonly string[])[]>([]);
 export const shownLines = computed(() => withActs(openedDraft.value?.lines ?? [], pendingActs.value));
 export const toConfirm = computed(() => shownLines.value.filter((line) => line.state === "proposed").length);
 export const toAnswer = computed(() => shownLines.value.filter((line) => line.state === "open").length);
+/** The open lines that can only be set aside, and mention nothing of a mission. */
+export const namingNothing = computed(() => shownLines.value.filter((line) => line.names_nothing && line.state === "open" && !line.sending));
 export const canUndo = computed(() => history.value.length > 0);
 export const actsSaved = computed(() => pendingActs.value.length === 0 && !sendingActs.value);
 
@@ -32,13 +36,57 @@ export const actsSaved = computed(() => pendingActs.value.length === 0 && !sendi
 export async function openDraft(id: string, isWanted: () => boolean): Promise<void> {
   const found = await responseData(client.GET("/api/drafts/{id}", { params: { path: { id } } }));
   if (!isWanted()) return;
-  const kept = storedActs(id);
+  const { revision, acts } = storedActs(id);
   batch(() => {
     history.value = [];
     openedDraft.value = found;
-    pendingActs.value = kept.filter((act) => stillApplies(act, lineOf(found, act.label)));
+    pendingActs.value = acts.filter((act) => lineOf(found, act.label) !== undefined);
   });
+  // Lines that are decided on differently since then have been decided on by somebody else.
+  const changed = revision === found.revision ? [] : found.lines.filter((line) => line.act);
+  dropConflicting(found, decidedByOthers(changed.map((line) => ({ ...line, act: null })), changed, acts));
   void send();
+}
+
+/** Look regularly whether somebody else has changed the open draft, and also once when the window gets the focus. */
+export function followOthers(): () => void {
+  const look = () => void lookForChanges();
+  const timer = setInterval(look, LOOK_MS);
+  addEventListener("focus", look);
+  return () => {
+    clearInterval(timer);
+    removeEventListener("focus", look);
+  };
+}
+
+let looking = false;
+const hasOwnActs = () => !actsSaved.value;
+
+async function lookForChanges(): Promise<void> {
+  const id = openedDraft.value?.id;
+  if (id === undefined || looking || hasOwnActs() || document.hidden) return;
+  looking = true;
+  try {
+    const { drafts } = await responseData(client.GET("/api/drafts"));
+    const draft = openedDraft.value;
+    if (draft?.id !== id || hasOwnActs()) return; // the answer to an own act tells
+    const now = drafts.find((one) => one.id === id);
+    if (now === undefined) leaveGoneDraft(id);
+    else if (now.revision > draft.revision) await readAgain(id);
+  } catch (error) {
+    if (!(error instanceof Unreached || error instanceof Refusal)) throw error; // it is looked again
+  } finally {
+    looking = false;
+  }
+}
+
+/** Leave a draft that somebody else has made a mission, or deleted. */
+function leaveGoneDraft(id: string): void {
+  if (openedDraft.value?.id !== id) return;
+  storeSetting(storageName(id), "");
+  closeDraft();
+  showNotice("warn", t().draft.gone);
+  location.hash = "";
 }
 
 export function closeDraft(): void {
@@ -97,6 +145,7 @@ export async function completeDraft(): Promise<string | null> {
     return made.id;
   } catch (error) {
     if (isStale(error)) await readAgain(draft.id);
+    else if (isGone(error)) leaveGoneDraft(draft.id);
     else showError(error);
     return null;
   }
@@ -122,10 +171,10 @@ async function send(): Promise<void> {
           showNotice("warn", t().draft.notSent);
           await delay(RETRY_MS);
         } else if (isStale(error)) await readAgain(draft.id);
+        else if (isGone(error)) leaveGoneDraft(draft.id);
         else {
           drop(draft.id, acts);
           showError(error);
-          if (error instanceof Refusal && error.problem.code === "not-found") return;
         }
       }
     }
@@ -180,15 +229,46 @@ function keepEqual(before: DraftState["lines"], after: DraftState["lines"]): Dra
 /** Read a draft that somebody else has changed. */
 async function readAgain(id: string): Promise<void> {
   try {
-    take(await responseData(client.GET("/api/drafts/{id}", { params: { path: { id } } })), []);
-    showNotice("warn", t().draft.changedByOthers);
+    const found = await responseData(client.GET("/api/drafts/{id}", { params: { path: { id } } }));
+    const before = openedDraft.value;
+    if (before?.id !== id) return;
+    const others = decidedByOthers(before.lines, found.lines, pendingActs.value);
+    const lost = dropConflicting(found, others);
+    take(found, []);
+    const further = [...others].filter((label) => !lost.has(label));
+    if (further.length > 0) showNotice("info", t().draft.decidedByOthers(further));
   } catch (error) {
     if (error instanceof Unreached) await delay(RETRY_MS);
+    else if (isGone(error)) leaveGoneDraft(id);
     else {
       drop(id, pendingActs.value);
       showError(error);
     }
   }
+}
+
+/** Drop the pending acts that are carried out already, and those on lines that somebody else has decided on: their
+ * decision counts, and a notice tells what this person had decided. Returns the labels of the latter. */
+function dropConflicting(found: DraftState, others: ReadonlySet<string>): ReadonlySet<string> {
+  const last = new Map(pendingActs.value.map((act) => [act.label, act]));
+  const lost = [...last.values()].filter((act) => others.has(act.label));
+  const done = [...last.values()].filter((act) => {
+    const line = lineOf(found, act.label);
+    return line !== undefined && isDone(act, line);
+  });
+  const dropped = new Set([...others, ...done.map((act) => act.label)]);
+  batch(() => {
+    pendingActs.value = pendingActs.value.filter((act) => !dropped.has(act.label));
+    history.value = history.value
+      .map((labels) => labels.filter((label) => !others.has(label)))
+      .filter((labels) => labels.length > 0);
+  });
+  storeActs();
+  if (lost.length > 0)
+    showNotice("warn", t().draft.notTaken, {
+      details: lost.slice(0, 8).map((act) => t().draft.wasMeant(act.label, t().draft.kind[act.kind], act.sentences.join(" "))),
+    });
+  return new Set(lost.map((act) => act.label));
 }
 
 function drop(id: string, acts: readonly LineAct[]): void {
@@ -202,18 +282,30 @@ function lineOf(draft: DraftState, label: string) {
 }
 
 const isStale = (error: unknown) => error instanceof Refusal && error.problem.code === "stale-revision";
+const isGone = (error: unknown) => error instanceof Refusal && error.problem.code === "not-found";
 
-function storeActs(): void {
-  const id = openedDraft.value?.id;
-  if (id !== undefined) storeSetting(storageName(id), pendingActs.value.length > 0 ? JSON.stringify(pendingActs.value) : "");
+/** Pending acts in the browser, with the revision of the draft that the person saw. */
+interface StoredActs {
+  readonly revision: number;
+  readonly acts: readonly LineAct[];
 }
 
-function storedActs(id: string): readonly LineAct[] {
+function storeActs(): void {
+  const draft = openedDraft.value;
+  if (draft === null) return;
+  const stored: StoredActs = { revision: draft.revision, acts: pendingActs.value };
+  storeSetting(storageName(draft.id), stored.acts.length > 0 ? JSON.stringify(stored) : "");
+}
+
+function storedActs(id: string): StoredActs {
+  const none = { revision: 0, acts: [] };
   try {
-    const known: unknown = JSON.parse(storedSetting(storageName(id)) || "[]");
-    return Array.isArray(known) ? known.filter(isAct) : [];
+    const known: unknown = JSON.parse(storedSetting(storageName(id)) || "null");
+    if (typeof known !== "object" || known === null || !("revision" in known) || !("acts" in known)) return none;
+    const { revision, acts } = known;
+    return typeof revision === "number" && Array.isArray(acts) ? { revision, acts: acts.filter(isAct) } : none;
   } catch {
-    return [];
+    return none;
   }
 }
 

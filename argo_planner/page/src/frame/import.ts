@@ -6,6 +6,7 @@ import { showNotice, showError } from "../state/notices";
 import { mayPlan } from "../state/session";
 import { world } from "../state/world";
 import { t } from "../texts";
+import { placeBefore } from "../texts/place";
 import { choice } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
 
@@ -149,10 +150,7 @@ export class MissionImport extends PageElement {
   private tellImport(name: string, error: unknown): void {
     if (!(error instanceof Refusal)) return showError(error);
     const found = error.problem.diagnostics.filter((one) => one.severity === "error");
-    const details = found.map((one) => {
-      const place = one.span ? `${t().frame.line(one.span.line)}: ` : "";
-      return `${place}${one.message}${one.hint ? ` – ${one.hint}` : ""}`;
-    });
+    const details = found.map((one) => `${placeBefore(one)}${one.message}${one.hint ? ` – ${one.hint}` : ""}`);
     const text = found.length > 0 ? t().frame.cantImport(name) : error.message;
     showNotice("bad", text, { details: details.slice(0, 6) });
   }

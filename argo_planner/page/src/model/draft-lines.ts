@@ -31,12 +31,12 @@ export function withActs(lines: readonly DraftedLine[], acts: readonly LineAct[]
 }
 
 /** the lines that are shown without an act, so that unchanged ones stay the same objects */
-const plain = new WeakMap<DraftedLine, ShownLine>();
+const withoutAct = new WeakMap<DraftedLine, ShownLine>();
 
 function shownLine(line: DraftedLine, act: LineAct | undefined): ShownLine {
   if (act === undefined) {
-    const known = plain.get(line) ?? { ...line, sending: false, reading: false };
-    plain.set(line, known);
+    const known = withoutAct.get(line) ?? { ...line, sending: false, reading: false };
+    withoutAct.set(line, known);
     return known;
   }
   const decided = { ...line, reason: "", hint: "", sentences: act.sentences, sending: true, reading: false };
@@ -53,6 +53,40 @@ export function stillApplies(act: LineAct, line: DraftedLine | undefined): boole
   if (act.kind === "confirm") return line.state === "proposed" && same(line.sentences, act.sentences);
   if (act.kind === "choose") return same(line.choices[(act.number ?? 0) - 1], act.sentences);
   return true;
+}
+
+/** Return whether a line is as an act makes it. */
+export function isDone(act: LineAct, line: DraftedLine): boolean {
+  const made = line.act ?? null;
+  if (act.kind === "undo") return made === null;
+  if (act.kind === "set_aside" || (act.kind === "choose" && act.sentences.length === 0)) return made === "set aside";
+  return made === (act.kind === "confirm" ? "confirmed" : "said") && same(line.sentences, act.sentences.map(plain));
+}
+
+/** Return the labels of the lines whose decisions differ from those before, and are not those of pending acts: somebody
+ * else has decided on them. */
+export function decidedByOthers(
+  before: readonly DraftedLine[],
+  after: readonly DraftedLine[],
+  pending: readonly LineAct[],
+): ReadonlySet<string> {
+  const known = new Map(before.map((line) => [line.label, line]));
+  const found = after.filter((line) => {
+    const old = known.get(line.label);
+    if (old === undefined || sameDecision(old, line)) return false;
+    return !pending.some((act) => act.label === line.label && isDone(act, line)); // its answer was lost
+  });
+  return new Set(found.map((line) => line.label));
+}
+
+function sameDecision(one: DraftedLine, other: DraftedLine): boolean {
+  const [before, after] = [one.act ?? null, other.act ?? null];
+  return before === after && (after === null || same(one.sentences, other.sentences));
+}
+
+/** Return a text with single blanks, as the service stores it. */
+function plain(text: string): string {
+  return text.trim().split(/\s+/).join(" ");
 }
 
 function same(one: readonly string[] | undefined, other: readonly string[]): boolean {

@@ -32,6 +32,11 @@ export const draft = both(
     cancel: "Cancel",
     emptyText: "Write a sentence, or set the line aside.",
     confirmAll: (count: number) => `Confirm all ${count} proposed`,
+    setAsideIdle: (count: number) => `Set aside ${count} that name nothing`,
+    idleTitle: (count: number) => `Set these ${count} lines aside?`,
+    idleExplained: "They can only be set aside, and name no checkpoint, place, time or order. Read them first: what they ask for is not done.",
+    idleApply: (count: number) => `Set ${count} lines aside`,
+    manySetAside: (count: number) => `${count} lines are set aside.`,
     next: "Next line that is left",
     undoLast: "Undo the last decision",
     plan: "Plan the mission",
@@ -54,7 +59,13 @@ export const draft = both(
     left: (count: number) => (count === 0 ? "Nothing is left." : `${count} left.`),
     becameOther: (labels: readonly string[]) =>
       `Please look again at line ${labels.slice(0, 8).join(", ")}${labels.length > 8 ? " …" : ""}: another decision has changed what it may become.`,
-    changedByOthers: "Somebody has changed the draft in the meantime. Please check your last decisions.",
+    decidedByOthers: (labels: readonly string[]) =>
+      `Somebody else has decided on line ${labels.slice(0, 8).join(", ")}${labels.length > 8 ? " …" : ""}.`,
+    notTaken: "Somebody else was faster, and that decision counts. Yours was not taken; decide again if you mean it:",
+    wasMeant: (label: string, kind: string, sentences: string) =>
+      `Line ${label}: ${kind}${sentences === "" ? "" : ` “${sentences}”`}`,
+    kind: { confirm: "confirm", set_aside: "set aside", say: "say", choose: "choose", undo: "undo" },
+    gone: "Somebody else has made this draft a mission, or deleted it.",
     notSent: "The service doesn't respond. Your decisions are sent as soon as it is available again.",
     // list of drafts
     drafts: "Drafts to decide on",
@@ -98,6 +109,12 @@ export const draft = both(
     cancel: "Abbrechen",
     emptyText: "Schreiben Sie einen Satz, oder legen Sie die Zeile beiseite.",
     confirmAll: (count: number) => `Alle ${count} Vorschläge bestätigen`,
+    setAsideIdle: (count: number) => `${count} ohne Angaben beiseitelegen`,
+    idleTitle: (count: number) => `Diese ${count} Zeilen beiseitelegen?`,
+    idleExplained:
+      "Sie können nur beiseitegelegt werden und nennen keinen Kontrollpunkt, keinen Ort, keine Zeit und keine Reihenfolge. Lesen Sie sie vorher: Was sie verlangen, geschieht nicht.",
+    idleApply: (count: number) => `${count} Zeilen beiseitelegen`,
+    manySetAside: (count: number) => `${count} Zeilen sind beiseitegelegt.`,
     next: "Nächste offene Zeile",
     undoLast: "Letzte Entscheidung rückgängig machen",
     plan: "Mission planen",
@@ -119,7 +136,13 @@ export const draft = both(
     left: (count: number) => (count === 0 ? "Nichts ist mehr offen." : `Noch ${count}.`),
     becameOther: (labels: readonly string[]) =>
       `Bitte sehen Sie Zeile ${labels.slice(0, 8).join(", ")}${labels.length > 8 ? " …" : ""} noch einmal an: Eine andere Entscheidung hat geändert, was daraus werden kann.`,
-    changedByOthers: "Jemand hat den Entwurf inzwischen geändert. Bitte prüfen Sie Ihre letzten Entscheidungen.",
+    decidedByOthers: (labels: readonly string[]) =>
+      `Jemand anderes hat über Zeile ${labels.slice(0, 8).join(", ")}${labels.length > 8 ? " …" : ""} entschieden.`,
+    notTaken: "Jemand anderes war schneller, und diese Entscheidung gilt. Ihre wurde nicht übernommen; entscheiden Sie erneut, wenn Sie dabei bleiben:",
+    wasMeant: (label: string, kind: string, sentences: string) =>
+      `Zeile ${label}: ${kind}${sentences === "" ? "" : ` „${sentences}“`}`,
+    kind: { confirm: "bestätigen", set_aside: "beiseitelegen", say: "anders sagen", choose: "wählen", undo: "rückgängig machen" },
+    gone: "Jemand anderes hat aus diesem Entwurf eine Mission gemacht oder ihn gelöscht.",
     notSent: "Der Dienst antwortet nicht. Ihre Entscheidungen werden gesendet, sobald er wieder erreichbar ist.",
     drafts: "Entwürfe, über die zu entscheiden ist",
     begun: "Geändert",

@@ -1,13 +1,23 @@
 import { describe, expect, it } from "vitest";
 
 import type { DraftedLine } from "../../src/api/types";
-import { type LineAct, nextLeft, splitUnused, stillApplies, toRequest, withActs } from "../../src/model/draft-lines";
+import {
+  decidedByOthers,
+  isDone,
+  type LineAct,
+  nextLeft,
+  splitUnused,
+  stillApplies,
+  toRequest,
+  withActs,
+} from "../../src/model/draft-lines";
 
 function line(label: string, state: DraftedLine["state"], more: Partial<DraftedLine> = {}): DraftedLine {
   return {
     label,
     line: Number(label),
     last_line: Number(label),
+    place: "",
     text: "I need R25, please",
     state,
     sentences: [],
@@ -16,6 +26,7 @@ function line(label: string, state: DraftedLine["state"], more: Partial<DraftedL
     reason: "",
     hint: "",
     choices: [],
+    names_nothing: false,
     act: null,
     ...more,
   };
@@ -66,6 +77,34 @@ describe("acts that wait for an answer", () => {
       { kind: "undo", labels: ["2"] },
       { kind: "confirm", labels: ["2"] },
     ]);
+  });
+});
+
+describe("decisions of somebody else", () => {
+  const aside = { ...open, state: "set aside", act: "set aside" } as const;
+  const confirmed = { ...proposed, state: "understood", act: "confirmed" } as const;
+
+  it("are those that no own act has made", () => {
+    expect([...decidedByOthers([proposed, open], [confirmed, aside], [])]).toEqual(["2", "3"]);
+    expect([...decidedByOthers([proposed, open], [confirmed, aside], [confirm])]).toEqual(["3"]);
+    expect([...decidedByOthers([confirmed, open], [confirmed, open], [])]).toEqual([]);
+    expect([...decidedByOthers([confirmed], [proposed], [])]).toEqual(["2"]);
+  });
+
+  it("are none of one's own whose answer was lost before the next act", () => {
+    const undo: LineAct = { kind: "undo", label: "2", sentences: [] };
+    expect([...decidedByOthers([proposed], [confirmed], [confirm, undo])]).toEqual([]);
+    expect(isDone(undo, confirmed)).toBe(false);
+  });
+
+  it("differ from the same act", () => {
+    const say: LineAct = { kind: "say", label: "3", sentences: ["  Check   R7. "] };
+    expect(isDone(say, { ...open, act: "said", sentences: ["Check R7."] })).toBe(true);
+    expect(isDone(say, { ...open, act: "said", sentences: ["Check R8."] })).toBe(false);
+    expect(isDone({ kind: "set_aside", label: "3", sentences: [] }, aside)).toBe(true);
+    expect(isDone({ kind: "choose", label: "3", number: 2, sentences: [] }, aside)).toBe(true);
+    expect(isDone(confirm, confirmed)).toBe(true);
+    expect(isDone(confirm, proposed)).toBe(false);
   });
 });
 

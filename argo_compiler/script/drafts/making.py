@@ -44,6 +44,8 @@ _UNREAD = frozenset(
     ]
 )
 """codes of errors of a piece that the grammar does not take; others are questions"""
+_EMPTY = "script.empty-step"
+"""code of the error that there is nothing to repeat, which lines with other errors may have"""
 BY_ASSISTANT = "suggested by an assistant"
 """reason of a line that an assistant has suggested sentences for"""
 
@@ -380,4 +382,5 @@ def _errors_by_piece(reading: _Reading) -> dict[int, Diagnostic]:
         at = bisect_right(starts, offset) - 1
         inside = (i for i in range(at, max(-1, at - 20), -1) if pieces[i].text.last >= offset)
         found.setdefault(starts[next(inside, max(at, 0))], diagnostic)
-    return found
+    others = {at: error for at, error in found.items() if error.code != _EMPTY}
+    return others or found

@@ -155,8 +155,8 @@ class Asides:
     def is_title(self, text: ScriptText) -> bool:
         """Whether a line may be the title of a script, or the heading of a part of it."""
         words = text.content.lower().rstrip(":").split()
-        if ".." in text.content:
-            return False  # `for i in 1..3`
+        if ".." in text.content or self.turns(text) or self._counts_rounds(text):
+            return False  # `for i in 1..3`, `Floor 3, bottom to top`, `Rounds: 3`
         if text.content.endswith(":") and {*words} <= _phrases_of(self.prose.around_reactions):
             return True  # `To be obeyed all the time:`
         short = len(words) <= _LONGEST_TITLE
@@ -168,6 +168,11 @@ class Asides:
         if stated or ";" in text.content:
             return False  # `Round for three robots; yours is the second part`
         return not self.names_tasks(text) or self._is_headline(text)
+
+    def _counts_rounds(self, text: ScriptText) -> bool:
+        head, colon, _ = text.content.partition(":")
+        phrases = self.prose.form["rounds_count"]
+        return bool(colon) and cue_pattern("rounds", phrases).fullmatch(head.strip()) is not None
 
     def _is_headline(self, text: ScriptText) -> bool:
         """Return True if a text that names a checkpoint or a floor is only a headline.
@@ -381,10 +386,15 @@ class Asides:
         """Return True if a heading may say that others do what is listed below it, or nobody:
         `Petra will do these:`, `Off limits`, `Isolated`."""
         told = pattern(r"\b<keeping_away>\b").search(heading.content) is not None
+        told = told or self.turns(heading)
         usual = _phrases_of(self.prose.around_reactions)
         unknown = (w for w in self.understanding.words(heading) if w.type == "WORD")
         states = (_said(heading, word) for word in unknown)
         return told or any(s not in usual and _PARTICIPLE.fullmatch(s) for s in states)
+
+    def turns(self, heading: ScriptText) -> bool:
+        """Return True if the lines below may be meant in another order: `from bottom to top`."""
+        return pattern(r"\b<turning>\b").search(heading.content) is not None
 
     def corrects(self, remark: ScriptText) -> bool:
         """Whether a remark may take something back, or say when or how it is done."""

@@ -69,7 +69,7 @@ class FormRow:
     """the whole line"""
     cells: tuple[Cell, ...]
     box: str | None = None
-    """what stands in the box before it: a blank, `x`, `-`; None: there is no box"""
+    """what stands in the box before it, such as `x`; None: there is no box"""
     is_heading: bool = False
     """whether it has the headings of the columns"""
     labelled: bool = False
@@ -89,12 +89,9 @@ _BOXES = re.compile(r"[□☐]|\[\s+\]")
 _QUOTED = re.compile(r'"[^"]*"')
 _MARK = r"\s*(?:[-*•]\s+|[0-9]{1,3}\s*[.):]?\s+)?"
 """a bullet, or the number of a row"""
-_BOX = re.compile(
-    rf"{_MARK}(?:\[(?P<square>[ xX*✓v~-]?)\]|\((?P<round>[ xX*✓]?)\)|(?P<sign>[□☐☑☒✓✔✗✘]))\s*"
-)
-_TICKED = {"☑": "x", "☒": "x", "✓": "x", "✔": "x", "✗": "-", "✘": "-", "□": " ", "☐": " "}
-_OPEN_BOX = re.compile(rf"{_MARK}(?:\[\s?\]|\(\s?\)|[□☐])")
-_OF_FORMS = re.compile(r"[\[□☐☑☒✓✔✗✘_…]|~~|\.{4}|\([ xX*✓]?\)")
+_BOX = re.compile(rf"{_MARK}(\[[ xX*✓v~-]?\]|\(\s?[xX✓✔]?\s?\)|[□☐☑☒✓✔✗✘])\s*")
+_OPEN_BOX = re.compile(rf"{_MARK}(?:\[\s?\]|[□☐]|\(\s*\))")
+_OF_FORMS = re.compile(r"[\[□☐☑☒✓✔✗✘_…]|~~|\.{4}|\(\s?[xX]?\s?\)")
 """a line without such signs has no box and no blank, and nothing of it is struck"""
 _CUTTING = re.compile(r"[|\t;,…]|\.{3}|\s\s")
 """a line without such signs has one cell"""
@@ -369,7 +366,7 @@ def _row(line: ScriptText, cells: Sequence[Cell], cut: str) -> FormRow:
     box = _BOX.match(line.content)
     mark: str | None = None
     if box is not None:
-        mark = _TICKED.get(box["sign"] or "") or (box["square"] or box["round"] or " ").lower()
+        mark = box[1].strip("[]()□☐ ").lower()
         first = cells[0].text
         inner = _BOX.match(first.content)
         rest = first[inner.end() :].strip() if inner is not None else first

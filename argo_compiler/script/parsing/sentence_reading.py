@@ -322,7 +322,8 @@ class SentenceReader:
         """Keeps a title, and reads what stands behind it."""
         self.begun = True
         listing = not first or title.head.content.endswith(":") or bool(item.items)
-        if self.asides.sets_aside(title.head) or (listing and self.asides.keeps_away(title.head)):
+        excludes = self.asides.sets_aside(title.head) or self.asides.turns(title.head)
+        if excludes or (listing and self.asides.keeps_away(title.head)):
             self._ask_of_heading(title.head)
         elif first:
             doubtful = not self.asides.is_title(title.head) or self.asides.names_tasks(title.head)

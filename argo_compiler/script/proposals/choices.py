@@ -62,7 +62,8 @@ def choices_of(
     made: dict[Sentences, None] = dict.fromkeys(filter(None, likeliest))
     if len(text.content) > _LONGEST_LOOKED_AT:
         return (*made, ())
-    text = _with_areas(composer.understanding.rewritten(text), composer)
+    text = composer.understanding.rewritten(composer.understanding.figures(text))
+    text = _with_areas(text, composer)
     found = mentions_in(text, composer.understanding)
     open_text = OpenText(text, found, composer, (*composer.known.memory.so_far,))
     for way in _WAYS if len(text.content) <= _LONGEST else (_by_mentions,):
@@ -244,8 +245,8 @@ _WAYS: tuple[Callable[[OpenText], Iterator[Sentences]], ...] = (
     _by_dashes,
     by_edits,
     by_cases,
-    by_parts,
     by_rounds,
+    by_parts,
     _by_order,
     _by_acts,
     _by_mentions,

@@ -49,13 +49,16 @@ def timed(text: ScriptText, understanding: Understanding) -> Timed | None:
         rf"(?:{cue_pattern('by_then', cues['by_then']).pattern})\s*$", re.IGNORECASE
     )
     until = before.search(text.content[:start])
+    behind = re.compile(rf"\s*(?:{cue_pattern('latest', cues['latest']).pattern})", re.IGNORECASE)
+    latest = behind.match(text.content, end)  # `08:00 at the latest`
     at = re.compile(rf"(?:{cue_pattern('at_time', cues['at_time']).pattern})\s*$", re.IGNORECASE)
     said = until or at.search(text.content[:start])
+    end = latest.end() if latest is not None else end
     rest = text.without(said.start() if said is not None else start, end).strip()
     left = len(rest.content) - len(rest.content.lstrip(_SIGNS))
     rest = rest[left : max(left, len(rest.content.rstrip(_SIGNS)))]
     minute = int(found[0]["hour"]) * 60 + int(found[0]["minute"])
-    return Timed(rest, minute, until is not None) if rest.content else None
+    return Timed(rest, minute, (until or latest) is not None) if rest.content else None
 
 
 def find_plan(texts: Iterable[ScriptText], understanding: Understanding) -> ClockPlan | None:

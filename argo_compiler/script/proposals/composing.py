@@ -14,19 +14,22 @@ from argo_compiler.script.proposals.evidence import evidence
 from argo_compiler.script.proposals.frames import Sentences, sentences_of
 from argo_compiler.script.proposals.known import Known, is_number
 from argo_compiler.script.proposals.mentions import (
+    Mention,
     Mentions,
     mentions_in,
 )
 from argo_compiler.script.proposals.paraphrasing import reads, rephrased, sentence
-from argo_compiler.script.sentences.tree.nouns import (
-    Nouns,
-)
+from argo_compiler.script.sentences.tree.nouns import Kind, Nouns, TheOne
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.prose import cue_pattern
 
 _EVENTS = ("EVENT", "BATTERY", "FAILS", "OCCURS")
 """what a text mentions before a colon, if what is to be done then stands behind it"""
 _MOST_EVENT_WORDS = 7
+RETURNING = ("home", "HOME", "DOCK", "END", "ABORT", "WAIT", "PAUSE")
+"""kinds of mentions by which a mission ends, or waits"""
+_OF_ANY = ("KIND", "VALUE", "STEP")
+"""types of words that name any reading, where nothing else names one"""
 _COMMA = re.compile(r"\s*[,;:]\s+|\s+-\s+")
 _PLAIN = frozenset(
     [
@@ -115,6 +118,8 @@ class Composer:
             return Proposal()  # `R9 as well?`
         if said := self.known.disagreement(found.of("checkpoints")):
             return Proposal(doubt=said)
+        if self._may_be_case(rephrased(text, self.understanding).text):
+            return Proposal()
         before = self.known.state()
         made = self._composed(text, found)
         if made is None or made.unused:
@@ -174,10 +179,32 @@ class Composer:
         head, colon, rest = text.content.partition(":")
         found = mentions_in(text[: len(head)], self.understanding)
         short = len(head.split()) <= _MOST_EVENT_WORDS
-        if not (colon and rest.strip() and short and found.has(*_EVENTS)) or found.unknown:
+        fails = self.is_failure(text[: len(head)])
+        occurs = fails or (found.has(*_EVENTS) and not found.unknown)
+        if not (colon and rest.strip() and short and occurs):
             return text
-        said = self.understanding.language.prose.say["event"].format(head.strip(), rest.strip())
-        return text.replaced(said)
+        say = self.understanding.language.prose.say
+        if fails:
+            return text.replaced(say["fails"].format(rest.strip()))
+        return text.replaced(say["event"].format(head.strip(), rest.strip()))
+
+    def _may_be_case(self, text: ScriptText) -> bool:
+        """Return True if a return may be one in a case that nobody knows: `Heavy rain: go home`."""
+        head, colon, _ = text.content.partition(":")
+        found = mentions_in(text, self.understanding)
+        named = any(m.start < len(head) for m in found.mentions if not _is_any(m))
+        unknown = any(word.start < len(head) for word in found.unknown)
+        rest = [m for m in found.mentions if m.start >= len(head)]
+        returns = found.has(*RETURNING) and all(m.kind != "checkpoints" for m in rest)
+        return bool(colon) and unknown and not named and returns
+
+    def is_failure(self, text: ScriptText) -> bool:
+        """Return True for a failure of any reading: `gauge unreadable`, `Reading fails`."""
+        words = self.understanding.words(text)
+        if len(words) != 2 or words[0].type not in _OF_ANY:
+            return False
+        generic = words[0].type != "KIND" or words[0].value[0] in (Kind.CHECKPOINT, Kind.GAUGE)
+        return generic and (words[1].type == "FAILS" or words[1].value == "unreadable")
 
     def _alike(self, text: ScriptText) -> ScriptText:
         """Return a condition that ends in `likewise` with the orders of the one before it."""
@@ -287,3 +314,8 @@ class Composer:
         if begins is None or not found.unknown or found.occasion:
             return False
         return all(mention.start > found.unknown[0].start for mention in found.mentions)
+
+
+def _is_any(mention: Mention) -> bool:
+    """Return True for `checkpoint` or `gauge` alone, which may be any."""
+    return bool(mention.nouns) and all(isinstance(noun, TheOne) for noun in mention.nouns)

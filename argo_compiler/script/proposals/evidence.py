@@ -229,7 +229,9 @@ def _has_no_field(text: ScriptText, found: Mentions, language: Language) -> bool
     if cue_pattern("legend", language.prose.form["legend"]).search(text.content) is not None:
         return False
     value = text.content[label.end() :] if label is not None else ""
-    short = 0 < len(value.split()) <= _MOST_OF_VALUE and not _ENDS.search(value)
+    form = language.prose.form
+    counts = cue_pattern("rounds", form["rounds_count"]).search(text.content) is not None
+    short = 0 < len(value.split()) <= _MOST_OF_VALUE and not (counts or _ENDS.search(value))
     return short and found.only(*OF_FORMS - {"MEASURE", "BE_MEASURED", "question"})
 
 

@@ -211,7 +211,7 @@ def _check(found: Mentions, known: Known) -> Sentences | None:
     if found.has("first") and known.memory.so_far:
         return None
     with suppress(RefusedError):
-        checkpoints = _placed(named, found.of("place"), known)
+        checkpoints = placed(named, found.of("place"), known)
         if checkpoints is None or (found.has("BOTH") and len(checkpoints) != _BOTH):
             return None
         return _checks(named, checkpoints, found, known)
@@ -243,7 +243,7 @@ def _checks(
     return tuple(f"Check checkpoint {c.id} {times} times." for c in checkpoints)
 
 
-def _placed(
+def placed(
     named: Sequence[Mention], places: Sequence[Mention], known: Known
 ) -> list[CheckpointInfo] | None:
     """Return the checkpoints, each of which is on the floor named beside it; None if one is
@@ -253,7 +253,7 @@ def _placed(
         return None
     if len(floors) == 1 and len(named) == 1 and isinstance(named[0].value, Nouns):
         nouns = named[0].value
-        if all(map(_has_no_floor, nouns.nouns)):
+        if all(map(has_no_floor, nouns.nouns)):
             resolver = known.resolver()
             return resolver.all(resolver.on(floor_names(floors[0]), nouns))
     checkpoints = known.checkpoints(named)
@@ -273,7 +273,7 @@ def _announces(named: Mention) -> bool:
     )
 
 
-def _has_no_floor(noun: Noun) -> bool:
+def has_no_floor(noun: Noun) -> bool:
     """Return True for `all gauges` or `the gauge`, if no floor is named."""
     return isinstance(noun, AllOf | TheOne) and not noun.floors
 

@@ -39,6 +39,8 @@ class Known:
         """the checkpoints that are to be left out"""
         self.listed: Kind | None = None
         """the kind of the points in the rows below a heading: `PRESSURE GAUGES (bar)`"""
+        self.section: Mention | None = None
+        """the floor of the rows below a heading that names no more than that"""
         self.items: dict[str, int] = {}
         """the checkpoints of numbered items and rows, by their numbers"""
         self.warnings: list[str] = []

@@ -65,6 +65,8 @@ _TIMES = frozenset(["AT_LEAST", "BETWEEN", "FROM", "EARLIEST", "NUMBER", "DURATI
 """types of words with which a time between two limits may begin"""
 _BETWEEN = ("AND_", "JOINT", "TO", "DASH", "BUT", "LATEST")
 """how types of words begin that stand between two limits"""
+_WHOLE = (("limit", ("MOST_TIME",)), ("forbidding", ("EVENT", "STATE")))
+"""cues that are none within words of these types"""
 _FIGURE = re.compile(r"[0-9]+(?:[.,][0-9]+)?")
 _LONGEST = 24
 """words of a noun phrase"""
@@ -72,7 +74,7 @@ _APART = frozenset(
     [
         *("subject", "stating", "asking", "clause", "answer", "wondering", "people", "of_others"),
         *("needless", "likewise", "retracting", "too_high", "too_low", "in_case"),
-        *("by_then", "at_time", "failing", "trying"),
+        *("by_then", "at_time", "latest", "failing", "trying"),
     ]
 )
 """cues that are no mentions, but part a text or tell statements"""
@@ -139,8 +141,9 @@ def mentions_in(text: ScriptText, understanding: Understanding) -> Mentions:
     named = [m for m in phrases.values() if m.kind != "pronoun"]
     named += [Mention(w.type, w.start, w.end) for w in words if w.type == "IF_TIME"]
     cues = [cue for cue in _cues(text.content, understanding) if not _overlaps(cue, named)]
-    limits = [Mention(w.type, w.start, w.end) for w in words if w.type == "MOST_TIME"]
-    cues = [cue for cue in cues if cue.kind != "limit" or not _overlaps(cue, limits)]
+    for kind, types in _WHOLE:  # `max 30 min`, `no radio`, `not readable`
+        whole = [Mention(w.type, w.start, w.end) for w in words if w.type in types]
+        cues = [cue for cue in cues if cue.kind != kind or not _overlaps(cue, whole)]
     found = [cue for cue in cues if cue.kind not in _IDLE]
     if is_question(text, understanding.language.lexicon):
         end = len(text.content)

@@ -61,6 +61,8 @@ class OpenText:
     def return_words(self) -> str:
         """The words that send the robot back, to the area that the text names if it names one."""
         area = next((a for a in self.areas if self.composer.known.catalog.area(a)), None)
+        if area is None and self.found.has("same_area"):
+            area = self.composer.known.start_area
         where = "" if area is None else f" in starting area {area}"
         return f"return to the docking station{where}"
 

@@ -91,6 +91,6 @@ def _parts(phrase: str) -> list[str]:
 
 @cache
 def _pattern(phrase: str) -> re.Pattern[str]:
-    escaped = re.escape(phrase).replace(r"\ ", r"\s+")
+    escaped = re.escape(phrase).replace(r"\ ,", r"\s*,").replace(r"\ ", r"\s+")
     slotted = re.sub(r"<([a-z])>", lambda found: f"(?P<{found[1]}>{_PART[found[1]]})", escaped)
     return re.compile(rf"(?<![\w-]){slotted}(?![\w-])", re.IGNORECASE)

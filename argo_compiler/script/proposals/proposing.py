@@ -27,7 +27,8 @@ from argo_compiler.script.proposals.frames import Sentences, floor_names
 from argo_compiler.script.proposals.known import Known
 from argo_compiler.script.proposals.mentions import OF_FORMS, Mention, Mentions, mentions_in
 from argo_compiler.script.proposals.neighbours import Neighbours
-from argo_compiler.script.proposals.rows import propose_row
+from argo_compiler.script.proposals.round_fields import propose_rounds
+from argo_compiler.script.proposals.rows import only_floors, propose_row
 from argo_compiler.script.sentences.tree.nouns import AllOf, Noun, TheOne
 from argo_compiler.script.sentences.tree.orders import Measure, Sentence
 from argo_compiler.script.sentences.tree.script import ScriptStep
@@ -76,6 +77,9 @@ class _Proposer:
         texts = (self._whole(p) for p in script.pieces if p.text.first in unread)
         self.neighbours = Neighbours(script, composer)
         self.plan = None if self.neighbours.is_log else find_plan(texts, composer.understanding)
+        self.rounds = propose_rounds(
+            (p for p in script.pieces if p.text.first in unread), script.rows, self.understanding
+        )
         self.found: dict[int, Proposal] = {}
 
     def all(self) -> dict[int, Proposal]:
@@ -93,6 +97,7 @@ class _Proposer:
         for i, piece in enumerate(self.script.pieces):
             start = piece.text.first
             self.neighbours.note_heading(piece)
+            self._note_section(piece)
             if start not in self.script.rows:
                 self.composer.known.listed = None
             named = measured.get(start, [])
@@ -163,6 +168,17 @@ class _Proposer:
         (self.composer.known.listed,) = kinds
         return True
 
+    def _note_section(self, piece: Piece) -> None:
+        """Note the floor that a heading names for the rows below it; another heading ends that."""
+        row = self.script.rows.get(piece.text.first)
+        texts = [piece.text] if row is None else [cell.text for cell in row.cells]
+        found = [mentions_in(text, self.understanding) for text in texts]
+        floors = [one.mentions[0] for one in found if only_floors(one) and not one.unknown]
+        if row is None and (piece.text.first in self.unread or piece.text.first in self.unclear):
+            floors = []  # it is asked about
+        if row is None or row.is_heading or (floors and not any(map(_names, found))):
+            self.composer.known.section = floors[0] if len(floors) == 1 else None
+
     def _note_item(self, piece: Piece, proposal: Proposal) -> None:
         """Note which checkpoint a numbered row is about."""
         row = self.script.rows.get(piece.text.first)
@@ -179,6 +195,8 @@ class _Proposer:
 
     def _proposal(self, piece: Piece, i: int) -> Proposal:
         whole = self._whole(piece)
+        if piece.text.first in self.rounds:
+            return self.rounds[piece.text.first]
         if reason := self.neighbours.reason(i, whole):
             return Proposal(aside=reason)
         at_time = self._at_time(whole)
@@ -243,6 +261,10 @@ class _Proposer:
         for mention in named:
             with suppress(RefusedError):
                 self.composer.known.measured(self.composer.known.checkpoints([mention]))
+
+
+def _names(found: Mentions) -> bool:
+    return found.has("checkpoints")
 
 
 def _is_kind(noun: Noun) -> TypeGuard[AllOf | TheOne]:

@@ -7,16 +7,18 @@ it is understood; one with words that say more is proposed; ticks, dashes and `N
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
 
 from argo_compiler.base.catalog import CheckpointInfo, CheckpointKind
 from argo_compiler.script.documents.signs import CLOCK
 from argo_compiler.script.documents.source import RefusedError, ScriptText, join
 from argo_compiler.script.documents.tags import count_tag, tag_of
 from argo_compiler.script.layout.forms import SHEET_HEADINGS, Cell, CellRole, FormRow
-from argo_compiler.script.proposals.composing import Composer, Proposal
+from argo_compiler.script.proposals.composing import RETURNING, Composer, Proposal
 from argo_compiler.script.proposals.evidence import is_name
-from argo_compiler.script.proposals.known import is_number
+from argo_compiler.script.proposals.frames import Sentences, has_no_floor, placed
+from argo_compiler.script.proposals.known import Known, is_number
 from argo_compiler.script.proposals.mentions import (
     OF_FORMS,
     Mention,
@@ -24,9 +26,12 @@ from argo_compiler.script.proposals.mentions import (
     checkpoint_words,
     mentions_in,
 )
-from argo_compiler.script.proposals.paraphrasing import ORDERS, reads, sentence
+from argo_compiler.script.proposals.paraphrasing import ORDERS, reads, rephrased, sentence
+from argo_compiler.script.sentences.tree.nouns import AllOf, Nouns, TheOne
 from argo_compiler.script.sentences.tree.places import FloorName
+from argo_compiler.script.sentences.understanding import COMPARING
 from argo_compiler.script.sentences.words.lexicon import expand
+from argo_compiler.script.sentences.words.numbers import Figure
 from argo_compiler.script.sentences.words.prose import cue_pattern
 
 _FILL = re.compile(r"_{2,}|\.{3,}|…+|[□☐]|\[\s*\]|\(\s*y\s*/\s*n\s*\)|/", re.IGNORECASE)
@@ -57,9 +62,16 @@ _ALL_UNITS = frozenset().union(*_UNITS.values())
 _POSITIONS = ("half", "open", "closed")
 _OPEN, _CLOSED = 70.0, 20.0
 """degrees from which a valve's normal position counts as open, and up to which as closed"""
+_ALIKE = str.maketrans("il|058", "111osb")
+"""signs that text recognition takes for others"""
 _TICKED_BOX = re.compile(r"[☑☒✓✔✗✘]|\[[xX*✓✔]\]")
 _CHECKPOINT = re.compile(r"(?:#|(?:CP|KP|C)[-_ ]?)?0*([1-9][0-9]{0,4})", re.IGNORECASE)
 """in a column of checkpoints"""
+_CHANGING = (
+    *("DURATION", "MOST_TIME", "SPAN", "TIMES", "EVENT", "UNTIL", "EXCEPT", "IF", "UNLESS"),
+    *("WITHIN", "BEFORE", "AFTER", "later", "again", "MORE", "EVERY", "WAIT", "PAUSE", "ELSE"),
+)
+"""kinds of mentions that change how, when or whether the checkpoint of a row is read"""
 _TICKED = "this row is ticked, or marked as done: it may be left out"
 
 
@@ -83,6 +95,16 @@ class _Row:
     """what is done if the reading is not normal"""
     sentences: tuple[str, ...] = ()
     """what a cell says of how and when the checkpoint is read"""
+    times: int | None = None
+    """how often a remark may say that it is read"""
+    span: ScriptText | None = None
+    """how long after another row it is read"""
+    unclear: str = ""
+    """a cell with a kind alone, which is not what another row names"""
+    window: str = ""
+    """what a range may mean if it is one of minutes"""
+    free: bool = False
+    """whether it names all of a kind on a floor, whose order is free"""
 
 
 def propose_row(row: FormRow, composer: Composer, first: bool = False) -> Proposal:
@@ -96,6 +118,9 @@ def propose_row(row: FormRow, composer: Composer, first: bool = False) -> Propos
         return Proposal(aside=SHEET_HEADINGS)
     if not row.doubt and _is_idle_field(row, composer):
         return Proposal(aside="a field that a mission does not have")
+    of_case = _case(row, composer)
+    if of_case is not None:
+        return of_case
     found = _Row()
     tagged = any(_HASH.fullmatch(cell.text.content) for cell in row.cells)
     for cell in row.cells:
@@ -107,7 +132,11 @@ def propose_row(row: FormRow, composer: Composer, first: bool = False) -> Propos
             found.described += found.unused[before:]
     ids = {c.id: c for c in found.named}
     if not ids:
-        return _without_checkpoint(row, composer, first)
+        doubt = f"it is not clear which `{found.unclear}` is meant"
+        unclear = Proposal(choices=((),), doubt=doubt)
+        made = unclear if found.unclear else _without_checkpoint(row, composer, first)
+        scanned = _scanned(row.place.content, composer.known) if made.is_open else ()
+        return replace(made, choices=(*scanned, *made.choices)) if scanned else made
     if found.described and len(ids) == 1:
         found.unused = [word for word in found.unused if word not in found.described]
     _compare(row.cells, next(iter(ids.values())), found, composer)
@@ -122,9 +151,17 @@ def propose_row(row: FormRow, composer: Composer, first: bool = False) -> Propos
         return Proposal(choices=((check,), ()), doubt=doubt)
     if found.doubts:
         single = [(f"Check checkpoint {id}.",) for id in ids] if len(ids) > 1 else []
-        return Proposal(choices=((spare,), (check,), *single), doubt=found.doubts[0])
+        manners = [found.window] if found.window else []
+        manners += [f" {found.times} times"] if found.times and len(ids) == 1 else []
+        timed: list[Sentences] = [(f"Check {words}{manner}.",) for manner in manners]
+        if found.span is not None and len(ids) == 1:
+            timed = [*_after_row(found.span, next(iter(ids)), composer), *timed]
+        return Proposal(choices=(*timed, (spare,), (check,), *single), doubt=found.doubts[0])
     if found.left_out:
         return Proposal((spare,), tuple(found.unused))
+    if len(ids) > 1 and found.free:
+        composer.known.measured(list(ids.values()))
+        return Proposal((f"Check {words} in any order.",), tuple(found.unused))
     if len(ids) > 1 and len(row.cells) > 1 and not (found.together and found.manner):
         return Proposal(choices=((check,), ()), doubt="this row names several checkpoints")
     composer.known.measured(list(ids.values()))
@@ -132,7 +169,7 @@ def propose_row(row: FormRow, composer: Composer, first: bool = False) -> Propos
     if found.reaction is not None:
         case = composer.understanding.language.prose.say["if_abnormal"]
         said = case.format(next(iter(ids)), found.reaction.content)
-        text = found.reaction.replaced(said)
+        text = rephrased(found.reaction.replaced(said), composer.understanding).text
         inner = Proposal((sentence(text),))
         if len(ids) > 1 or not reads(text, composer.understanding):
             inner = composer.propose(text) if len(ids) == 1 else Proposal()
@@ -146,8 +183,33 @@ def propose_row(row: FormRow, composer: Composer, first: bool = False) -> Propos
     return Proposal((check,), unused, differences=tuple(found.differences), certain=not unused)
 
 
-def _only_floors(found: Mentions) -> bool:
-    return all(m.kind == "place" and isinstance(m.value, tuple) for m in found.mentions)
+def _case(row: FormRow, composer: Composer) -> Proposal | None:
+    """Return what is done in the case that the first of two cells has: `R7 over 50° | go home`;
+    None for another row."""
+    if len(row.cells) != 2 or row.box is not None or row.doubt or _FILL.search(row.place.content):
+        return None
+    case, done = (cell.text for cell in row.cells)
+    if composer.is_failure(case):
+        return composer.propose(join([case, done], ": "))
+    types = COMPARING & {*composer.understanding.types(case)}
+    orders = mentions_in(done, composer.understanding).has("checkpoints", *RETURNING)
+    form = composer.understanding.language.prose.form
+    limited = types != {"STATE"} and _without_fill(done.content, form)
+    named = mentions_in(case, composer.understanding).of("checkpoints")
+    if not (types and named and (orders or limited)):
+        return None
+    with suppress(RefusedError):
+        if tuple(composer.known.checkpoints(named)) != composer.known.memory.last:
+            return Proposal()  # it is not clear when that is done
+    text = composer.understanding.rewritten(join([case, done], " -> "))
+    whole = reads(text, composer.understanding)
+    return Proposal((sentence(text),)) if whole else composer.propose(text)
+
+
+def only_floors(found: Mentions) -> bool:
+    """Return True if a text mentions floors, and nothing else."""
+    floors = [m for m in found.mentions if m.kind == "place" and isinstance(m.value, tuple)]
+    return bool(floors) and len(floors) == len(found.mentions)
 
 
 def _filled_below(row: FormRow) -> str:
@@ -205,13 +267,13 @@ def _without_checkpoint(row: FormRow, composer: Composer, first: bool) -> Propos
     if plain and blank and not _needed(row.place, composer):
         return Proposal(aside="a field that a person fills in")
     found = mentions_in(row.place, composer.understanding)
-    if plain and not found.unknown and found.mentions and _only_floors(found):
+    if plain and not found.unknown and only_floors(found):
         return Proposal(aside="a heading")
     if row.computed:
         return Proposal(aside="a result that the sheet computes")
     if plain and len(row.cells) == 2 and _needed(row.place, composer):
         # `Robot starts from | starting area 2`, `Gas detected | return to the dock`
-        for joint in (" ", ": "):
+        for joint in (" ", ": ") if _needed(row.cells[0].text, composer) else (": ",):
             inner = composer.propose(join([cell.text for cell in row.cells], joint))
             if inner.sentences:
                 return inner
@@ -223,15 +285,34 @@ def _without_checkpoint(row: FormRow, composer: Composer, first: bool) -> Propos
         return Proposal(aside="a field that a mission does not have")
     roles = (CellRole.NAME, CellRole.ACTION, CellRole.OTHER)
     said = [cell.text for cell in row.cells if cell.role in roles]
+    dropped: tuple[str, ...] = ()
     if len(said) > 1 and ((first and _is_title(said[0], composer)) or _is_label(row, composer)):
-        said = said[1:]
+        dropped, said = (said[0].content,), said[1:]
+        if mentions_in(said[0], composer.understanding).has(*RETURNING):
+            return Proposal(choices=((sentence(said[0]),), ()))  # `Heavy rain | go home`
     if plain and len(said) == 1 and said[0].content:
         orders = mentions_in(said[0], composer.understanding).has(*ORDERS)
         if orders and reads(said[0], composer.understanding):
-            return Proposal((sentence(said[0]),), certain=True)
+            return Proposal((sentence(said[0]),), dropped, certain=not dropped)
         inner = composer.propose(said[0])
+        inner = replace(
+            inner, unused=(*dropped, *inner.unused), certain=inner.certain and not dropped
+        )
         return inner if inner.sentences or len(row.cells) == 1 else Proposal(choices=((),))
     return Proposal(choices=((),))
+
+
+def _scanned(content: str, known: Known) -> tuple[Sentences, ...]:
+    """Return what a row may be whose words text recognition has cut: `Va lve Rl2`."""
+    squeezed = _squeezed(content)
+    names = {c.id: _squeezed(c.name) for c in known.catalog.checkpoints}
+    found = [id for id, name in names.items() if name in squeezed]
+    longest = [a for a in found if not any(names[a] in names[b] for b in found if a != b)]
+    return tuple((f"Check checkpoint {id}.",) for id in longest)
+
+
+def _squeezed(content: str) -> str:
+    return "".join(content.lower().split()).translate(_ALIKE)
 
 
 def _has_unit(row: FormRow, composer: Composer) -> bool:
@@ -326,9 +407,7 @@ def _read_sheet_cell(cell: Cell, found: _Row, composer: Composer) -> bool:
             if window is None:
                 found.doubts.append(f"`{text}` is not understood as minutes")
             else:
-                low, high = (float(window[k].replace(",", ".")) for k in ("low", "high"))
-                latest = f" not later than {high:g} minutes after the start"
-                found.manner = f" between minute {low:g} and minute {high:g}" if low else latest
+                found.manner = _window(window)
             return True
         case CellRole.CHECKPOINT if number := _CHECKPOINT.fullmatch(text):
             found.named += [c for c in composer.known.catalog.checkpoints if c.id == int(number[1])]
@@ -349,6 +428,21 @@ def _read_sheet_cell(cell: Cell, found: _Row, composer: Composer) -> bool:
     return False
 
 
+def _may_be_time(found: re.Match[str], composer: Composer) -> bool:
+    """Return True if no word beside a range, and no unit, shows that it is a normal range."""
+    prose = composer.understanding.language.prose
+    said = f"{found.string[: found.start()]} {found.string[found.end() :]}".strip(" ().:,")
+    known = prose.role(said) == "normal" or _is_normal(said, prose.form)
+    return not known and (found["unit"] or "").lower() not in _ALL_UNITS
+
+
+def _window(minutes: re.Match[str]) -> str:
+    """Return what a range of minutes means: when a checkpoint is read."""
+    low, high = (float(minutes[k].replace(",", ".")) for k in ("low", "high"))
+    latest = f" not later than {high:g} minutes after the start"
+    return f" between minute {low:g} and minute {high:g}" if low else latest
+
+
 def _is_answer(text: str, composer: Composer) -> bool:
     """Return True if a cell has no more than `yes`, `no` or a cross."""
     prose = composer.understanding.language.prose
@@ -363,12 +457,18 @@ def _is_normal(text: str, form: Mapping[str, str]) -> bool:
 
 
 def _read_remark(text: ScriptText, found: _Row, composer: Composer) -> bool:
+    found.times = _times(mentions_in(text, composer.understanding))
     if not _read_doubts(text.content, found, composer):
         if _asks(text, composer):
             found.doubts.append(f"`{text.content}` can change what is done here")
         else:
             found.unused.append(text.content)
     return True
+
+
+def _times(found: Mentions) -> int | None:
+    counts = [m.value for m in found.of("TIMES")]
+    return counts[0].whole if len(counts) == 1 and isinstance(counts[0], Figure) else None
 
 
 def _read_doubts(content: str, found: _Row, composer: Composer) -> bool:
@@ -426,9 +526,15 @@ def _read_cell(text: ScriptText, found: _Row, composer: Composer) -> None:
     found.together = bool(named) and not found.named
     if said := composer.known.disagreement(named):
         found.doubts.append(said)
+    section = composer.known.section
     for mention in named:
+        kinds = [noun for noun in mention.nouns if has_no_floor(noun)]
         with suppress(RefusedError):
-            checkpoints = composer.known.checkpoints([mention])
+            checkpoints = _of_floor(mention, section, composer.known)
+            if any(isinstance(noun, TheOne) for noun in kinds) and len(checkpoints) != 1:
+                found.unclear = content
+            found.free = not found.named and (section is not None or not kinds)
+            found.free &= any(isinstance(noun, AllOf) for noun in mention.nouns)
             if len(checkpoints) == 1 and is_number(mention):
                 checkpoints = list(composer.known.of_list(checkpoints[0]))
                 if len(checkpoints) > 1:
@@ -440,14 +546,51 @@ def _read_cell(text: ScriptText, found: _Row, composer: Composer) -> None:
         found.doubts.append(f"it is not clear which checkpoint `{said}` is")
     if not named and _NUMBER.fullmatch(content):
         return
+    ranged = _RANGE.search(content)
+    if not named and mentions.has("SPAN"):
+        found.span = text
+    elif not named and ranged is not None and _may_be_time(ranged, composer):
+        found.window = _window(ranged)  # `T 10 to 15`, where no heading says what that is
+        found.doubts.append(f"`{content}` can be a time, or a normal range")
+        return
     found.unused += _unused(content, mentions, form)
-    others = mentions.of("DURATION", "TIMES", "EVENT", "UNTIL", "EXCEPT", "IF", "UNLESS")
+    others = mentions.of(*_CHANGING)
     made = composer.propose(text).sentences if others and named else ()
     asked = content.rstrip().endswith("?") and bool(others) and others[0].start == 0
     if made and not found.sentences:
         found.sentences = made
     elif others and not asked:  # `Is valve R25 open?`
-        found.doubts.append(f"`{content[others[0].start : others[0].end]}` is not understood here")
+        found.times = _times(mentions)
+        said = content[others[0].start : others[0].end] or content
+        found.doubts.append(f"`{said}` is not understood here")
+
+
+def _after_row(text: ScriptText, id: int, composer: Composer) -> Iterator[Sentences]:
+    """Yield what `10 to 15 min after step 1` says of a checkpoint, if step 1 was read last."""
+    items, said = composer.known.items, text
+    mentions = mentions_in(text, composer.understanding).mentions
+    for step, number in reversed(list(pairwise(mentions))):
+        other = items.get(text.content[number.start : number.end])
+        if step.kind == "STEP" and other is not None:
+            said = said.replace(step.start, number.end, f"#{other}")
+    with composer.known.unchanged():
+        made = composer.propose(text.replaced(f"#{id} {said.content}")).sentences
+    yield from (made,) if made else ()
+
+
+def _of_floor(mention: Mention, section: Mention | None, known: Known) -> Sequence[CheckpointInfo]:
+    """Return the checkpoints that a part of a row names; `all valves`, and `the valve` if it is the
+    only one, are those on the floor of the heading above. What another row names is not meant."""
+    nouns = mention.value
+    assert isinstance(nouns, Nouns)
+    if not any(map(has_no_floor, nouns.nouns)):
+        return known.checkpoints([mention])
+    if section is None:
+        alone = any(isinstance(noun, TheOne) for noun in nouns.nouns)
+        return [] if alone else known.checkpoints([mention])
+    every = (AllOf(span=n.span, kind=n.kind) if isinstance(n, TheOne) else n for n in nouns.nouns)
+    there = replace(mention, value=replace(nouns, nouns=tuple(every)))
+    return placed([there], [section], known) or []
 
 
 def _unused(content: str, mentions: Mentions, form: Mapping[str, str]) -> Iterator[str]:

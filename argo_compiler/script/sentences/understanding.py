@@ -39,7 +39,7 @@ _SIGN = re.compile(r"[^\w\s.,;:&()\[\]=+'-]")
 """a sign that by itself is a word"""
 _QUOTED = re.compile(r'"(?:[^"\\]|\\.)*"')
 _ARROW = re.compile(r"\s*(?:-+>|=+>|→|➔|»)\s*")
-_COMPARING = frozenset(
+COMPARING = frozenset(
     [*("LESS", "GREATER", "AT_LEAST", "AT_MOST", "OR_MORE", "OR_LESS", "STATE", "OUTSIDE", "FAILS")]
 )
 """types of words before an arrow that make a condition of what stands there"""
@@ -202,7 +202,7 @@ class Understanding:
             return text
         say = self.language.prose.say
         before = {*self.types(text[: arrows[0].start()])}
-        if before & _COMPARING and "MEASURE" not in before:
+        if before & COMPARING and "MEASURE" not in before:
             text = text.replace(*arrows[0].span(), ", ")
             if not before & {"IF", "UNLESS", "ELSE"}:
                 text = text.replace(0, 1, f"{say['if']} {text.content[0]}")

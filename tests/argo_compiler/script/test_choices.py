@@ -98,7 +98,10 @@ BEFORE = "Check pressure gauge 3 and valve R12.\n"
             "Return to the docking station in starting area 1.",
         ),
         # failures
-        ("gauge illegible: try again twice, carry on", "If a reading fails, try again twice."),
+        (
+            "gauge illegible - hmm, try again twice, carry on",
+            "If a reading fails, try again twice.",
+        ),
         (
             "No reading - 2 more tries and after that, hmm, dock",
             "If a reading fails, try again twice. If it still fails, return to the docking "
@@ -153,10 +156,10 @@ def test_the_text_of_an_open_line_is_no_choice(catalog: Catalog) -> None:
 
 
 def test_a_choice_that_does_not_fit_leaves_the_others(catalog: Catalog) -> None:
-    text = f"{BEFORE}If that one is more than 30 deg, stop there and go to the dock in area 1."
+    text = f"{BEFORE}If that one is more than 30 deg, halt there and go to the dock in area 1."
     draft = draft_of(text, catalog)
     line = draft.lines[-1]
-    wrong = next(i for i, one in enumerate(line.choices, start=1) if "stop there" in one[0])
+    wrong = next(i for i, one in enumerate(line.choices, start=1) if "halt there" in one[0])
     again = draft_of(text, catalog, draft.choose(line.label, wrong)).lines[-1]
     assert again.state is LineState.OPEN
     assert again.choices == (*line.choices[: wrong - 1], *line.choices[wrong:])

@@ -190,9 +190,16 @@ def expand(text: str) -> tuple[str, ...]:
         # Literal text, what may be there, and what is one of several, one after the other.
         parts = _GROUP.split(phrase)
         choices = [
-            [part] if k % 3 == 0 else ["", part] if k % 3 == 1 else part.split("/")
+            [part] if k % 3 == 0 else ["", *_optional(part)] if k % 3 == 1 else part.split("/")
             for k, part in enumerate(parts)
             if part is not None
         ]
         found += dict.fromkeys(" ".join("".join(form).split()) for form in product(*choices))
     return tuple(found)
+
+
+def _optional(part: str) -> tuple[str, ...]:
+    """Return the phrases of what may be there: one of several, or with one of several in it."""
+    if "[" in part:
+        return expand(part)
+    return expand(f"[{part}]") if "/" in part else (part,)

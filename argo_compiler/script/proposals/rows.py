@@ -30,9 +30,11 @@ from argo_compiler.script.proposals.paraphrasing import ORDERS, reads, rephrased
 from argo_compiler.script.sentences.tree.nouns import AllOf, Nouns, TheOne
 from argo_compiler.script.sentences.tree.places import FloorName
 from argo_compiler.script.sentences.understanding import COMPARING
+from argo_compiler.script.sentences.words.lexer import all_words
 from argo_compiler.script.sentences.words.lexicon import expand
 from argo_compiler.script.sentences.words.numbers import Figure
 from argo_compiler.script.sentences.words.prose import cue_pattern
+from argo_compiler.script.sentences.words.without_effect import TOLD
 
 _FILL = re.compile(r"_{2,}|\.{3,}|…+|[□☐]|\[\s*\]|\(\s*y\s*/\s*n\s*\)|/", re.IGNORECASE)
 _UNIT_BEHIND = re.compile(
@@ -64,6 +66,8 @@ _OPEN, _CLOSED = 70.0, 20.0
 """degrees from which a valve's normal position counts as open, and up to which as closed"""
 _ALIKE = str.maketrans("il|058", "111osb")
 """signs that text recognition takes for others"""
+_IDLE_CELL = re.compile(r"[-–—_. \d,/%]*|[A-Za-z]?\d*[a-z]?[.):]?")
+"""nothing, a dash, a blank to fill in, points, or the number of an item: `B2`, `3.`"""
 _TICKED_BOX = re.compile(r"[☑☒✓✔✗✘]|\[[xX*✓✔]\]")
 _CHECKPOINT = re.compile(r"(?:#|(?:CP|KP|C)[-_ ]?)?0*([1-9][0-9]{0,4})", re.IGNORECASE)
 """in a column of checkpoints"""
@@ -290,6 +294,13 @@ def _without_checkpoint(row: FormRow, composer: Composer, first: bool) -> Propos
         dropped, said = (said[0].content,), said[1:]
         if mentions_in(said[0], composer.understanding).has(*RETURNING):
             return Proposal(choices=((sentence(said[0]),), ()))  # `Heavy rain | go home`
+    beside = [cell.text for cell in row.cells if cell.role not in roles]
+    beside = [text for text in beside if not _IDLE_CELL.fullmatch(text.content)]
+    asking = [text for text in beside if _asks(text, composer)]
+    if plain and len(said) == 1 and said[0].content and asking:
+        doubt = f"`{asking[0].content}` can change what is done here"
+        return Proposal(choices=((sentence(said[0]),), ()), doubt=doubt)
+    dropped += tuple(text.content for text in beside)
     if plain and len(said) == 1 and said[0].content:
         orders = mentions_in(said[0], composer.understanding).has(*ORDERS)
         if orders and reads(said[0], composer.understanding):
@@ -511,6 +522,13 @@ def _without_fill(text: str, form: Mapping[str, str]) -> str:
     return rest.strip(" :.,-()%")
 
 
+def _told(text: ScriptText, composer: Composer) -> list[str]:
+    """Return the words of a cell that are told to have no effect where sentences have them: `on
+    Monday`, `tomorrow`."""
+    words = all_words(text.content, composer.understanding.language.lexicon)
+    return [text.content[word.start : word.end] for word in words if word.type in TOLD]
+
+
 def _read_cell(text: ScriptText, found: _Row, composer: Composer) -> None:
     """Read a cell by what it contains."""
     form = composer.understanding.language.prose.form
@@ -553,7 +571,8 @@ def _read_cell(text: ScriptText, found: _Row, composer: Composer) -> None:
         found.window = _window(ranged)  # `T 10 to 15`, where no heading says what that is
         found.doubts.append(f"`{content}` can be a time, or a normal range")
         return
-    found.unused += _unused(content, mentions, form)
+    unused = [*_unused(content, mentions, form)]
+    found.unused += unused or _told(text, composer) or mentions.idle
     others = mentions.of(*_CHANGING)
     made = composer.propose(text).sentences if others and named else ()
     asked = content.rstrip().endswith("?") and bool(others) and others[0].start == 0

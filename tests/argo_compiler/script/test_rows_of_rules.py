@@ -287,3 +287,17 @@ def test_a_remark_that_counts_readings_is_offered_as_such(catalog: Catalog) -> N
 @pytest.mark.parametrize("title", ["Floor 3, bottom to top", "Tanks (left column first)"])
 def test_a_title_that_turns_the_order_is_asked_about(title: str, catalog: Catalog) -> None:
     assert draft_of(f"{title}\nCheck #1.\nCheck #4.", catalog).lines[0].state is OPEN
+
+
+@pytest.mark.parametrize(
+    "heading", ["No", "Expected", "Points", "Remark", "Reading", "Time", "Initials", "Lamp"]
+)
+@pytest.mark.parametrize(
+    "cell",
+    ["if time", "not today", "after 10 min", "only if open", "skip", "tomorrow", "on Monday"],
+)
+def test_no_cell_beside_a_target_is_passed_over(heading: str, cell: str, catalog: Catalog) -> None:
+    for target in ("valve R25", "dock", "wait 3 min"):
+        rows = f"| 1 | valve R12 | |\n| 2 | {target} | {cell} |"
+        line = draft_of(f"| Step | Target | {heading} |\n|---|---|---|\n{rows}", catalog).lines[-1]
+        assert line.is_left, (target, line.sentences)

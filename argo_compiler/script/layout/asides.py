@@ -155,7 +155,9 @@ class Asides:
     def is_title(self, text: ScriptText) -> bool:
         """Whether a line may be the title of a script, or the heading of a part of it."""
         words = text.content.lower().rstrip(":").split()
-        if ".." in text.content or self.turns(text) or self._counts_rounds(text):
+        if self._lists_kind(text) or self._counts_rounds(text):
+            return False
+        if ".." in text.content or self.turns(text):
             return False  # `for i in 1..3`, `Floor 3, bottom to top`, `Rounds: 3`
         if text.content.endswith(":") and {*words} <= _phrases_of(self.prose.around_reactions):
             return True  # `To be obeyed all the time:`
@@ -168,6 +170,12 @@ class Asides:
         if stated or ";" in text.content:
             return False  # `Round for three robots; yours is the second part`
         return not self.names_tasks(text) or self._is_headline(text)
+
+    def _lists_kind(self, text: ScriptText) -> bool:
+        """Return True for `Gauges: all on floor 1`, and for a count: `Number of valves: 3`."""
+        head, _, rest = text.content.partition(":")
+        kinds = self.understanding.types(text[: len(head)])[-1:] == ("KIND",)
+        return kinds and bool(rest.strip())
 
     def _counts_rounds(self, text: ScriptText) -> bool:
         head, colon, _ = text.content.partition(":")

@@ -18,6 +18,8 @@ from argo_compiler.script.sentences.words.prose import Prose
 COLUMN_HEADINGS = "column headings"
 """what the line of a table's headings is taken for"""
 _NUMBER = re.compile(r"[0-9]{1,6}")
+_TIMES = frozenset(["BEFORE", "AFTER", "UNTIL", "IF_TIME", "DAY"])
+"""words of these types in a cell say when something is done"""
 _NOT_APPLICABLE = frozenset(["n/a", "na", "n.a.", "entfällt", "entf."])
 _MOST_COLUMNS = 12
 _MOST_ROWS = 10_000
@@ -222,7 +224,8 @@ class _Rows:
         self.diagnostics.error("ambiguous-cell", message, cell.span(), hint)
 
     def _note(self, aside: ScriptText) -> None:
-        if self.asides.corrects(aside) or self.asides.bids(aside):
+        times = _TIMES.isdisjoint(self.asides.understanding.types(aside))
+        if not times or self.asides.corrects(aside) or self.asides.bids(aside):
             ask_of_remark(aside, self.diagnostics)
             return
         if aside.content.lower() in _NOT_APPLICABLE:

@@ -24,6 +24,9 @@ _BETWEEN_COMMAS = re.compile(r"(?:^|(?<=,))[^,]*")
 MAX_SENTENCE = 10_000
 """characters in a sentence of many lines; a longer one is refused unread"""
 
+_SPARING = frozenset(["EXCEPT", "SPARE", "DELETE"])
+"""words of these types in a remark may leave something out"""
+
 
 @dataclass(frozen=True)
 class _Title:
@@ -75,7 +78,7 @@ class SentenceReader:
             reading = self.understanding.read(inner)
             if not isinstance(reading, StumbleError):
                 return [self._node(inner, reading)]
-        if self.asides.overturns(inner):
+        if self.asides.overturns(inner) or not _SPARING.isdisjoint(types):
             ask_of_remark(text, self.diagnostics)
         elif self.asides.bids(inner):
             message = f"`{text.content}` is taken for a remark: the command in it has no effect"

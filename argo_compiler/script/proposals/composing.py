@@ -58,6 +58,10 @@ _UNSURE = (
 """mentions beside which a proposal has to be confirmed"""
 _LIKE_CHECKS = re.compile(r"(?:Check|Order:|Maximum|Start|Return|End)")
 _HOMEWARDS = re.compile(r"Return |End of the mission|Abort")
+_LIST = re.compile(r"\s*#?\w*\d(?:(?:\s*[,;/&+]\s*|\s+(?:and|und)\s+|\s+)#?\w*\d)*\W*")
+"""names with figures, one after the other: `R25, R12`, `4 and 5`"""
+_BACK_TO_ITEM = re.compile(r"\s[a-z]\)?\W*$")
+"""a letter at the end of a text may be the item to go back to"""
 _CUT_FIGURES = re.compile(r"(?<=\d)[ \t]+(?=\d)")
 _MOST_CLAUSES = 14
 
@@ -108,6 +112,13 @@ class Composer:
     def propose(self, text: ScriptText) -> Proposal:
         """Return what a sentence or a line proposes."""
         text = self.understanding.rewritten(text)
+        head, colon, names = text.content.partition(":")
+        types = {*self.understanding.types(text[: len(head)])} if colon else set()
+        listed = types in ({"KIND"}, {"VALUE"}) and _LIST.fullmatch(names) is not None
+        if listed and types == {"KIND"}:  # `Valves: R25, R12`
+            text = text.without(len(head), len(head) + 1)
+        elif listed or (types == {"KIND"} and names.strip(" _.")):
+            return Proposal()  # `Levels: 4, 5`, `Gauges: see list`
         found = mentions_in(text, self.understanding)
         reason = evidence(text, found, self.understanding.language)
         if reason:
@@ -221,7 +232,7 @@ class Composer:
     def _composed(self, text: ScriptText, found: Mentions) -> Proposal | None:
         if not found.mentions or self._depends(text, found) or self._removes(text, found):
             return None
-        if self._numbers_robot(text, found):
+        if self._numbers_robot(text, found) or _BACK_TO_ITEM.search(text.content):
             return None
         self.known.warnings.clear()
         sentences = sentences_of(found, self.known)

@@ -26,6 +26,7 @@ _MOST_WORDS = 6
 """of a heading in capitals"""
 _BLANK_LABELS = re.compile(r"(?!.*\d\.\.)(?:[^\W\d][\w .-]{0,20}:[\s_.]*)+")
 _COUNTER = re.compile(r"\W*[^\W\d]+(?: [^\W\d]+\.?)?:? [0-9]+ ?(?:of|von|/) ?[0-9]+\W*")
+_NUMBERS = re.compile(r"\s*#?\d+(?:\s*(?:,|;|/|&|\+|and|und)\s*#?\d+)+\s*")
 _LABEL = re.compile(r"[^\W\d][\w ./'-]{1,40}?\s*:\s+(?=\S)")
 _MOST_OF_VALUE = 6
 """words of the value of a field"""
@@ -226,6 +227,8 @@ def _has_no_field(text: ScriptText, found: Mentions, language: Language) -> bool
     """`Status: OPEN`: a label that no field has, and a value, which name nothing of a mission; no
     legend: `Black dot: chosen`."""
     label = _LABEL.match(text.content)
+    if label is not None and _NUMBERS.fullmatch(text.content, label.end()) is not None:
+        return False  # `Levels: 4, 5`
     if cue_pattern("legend", language.prose.form["legend"]).search(text.content) is not None:
         return False
     value = text.content[label.end() :] if label is not None else ""

@@ -5,12 +5,12 @@ from bisect import bisect_right
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from itertools import chain
+from itertools import chain, takewhile
 from typing import TypeGuard
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.script.documents.source import Diagnostics, RefusedError, ScriptText
-from argo_compiler.script.layout.forms import CellRole
+from argo_compiler.script.layout.forms import CellRole, FormRow
 from argo_compiler.script.parsing.script import Piece, Script
 from argo_compiler.script.proposals.choices import choices_of
 from argo_compiler.script.proposals.clock import (
@@ -34,6 +34,7 @@ from argo_compiler.script.sentences.tree.orders import Measure, Sentence
 from argo_compiler.script.sentences.tree.script import ScriptStep
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.language import Language
+from argo_compiler.script.sentences.words.loading import pattern
 
 MAX_PROPOSED = 2000
 """pieces of a script; no more are looked at"""
@@ -203,12 +204,27 @@ class _Proposer:
         if at_time is not None:
             return at_time
         row = self.script.rows.get(piece.text.first)
+        if row is not None and row.is_heading and (order := self._column_of_order(row, i)):
+            return Proposal(choices=((),), doubt=f"`{order}` can give another order of the rows")
         if row is not None:
             return propose_row(row, self.composer, first=i == 0)
         made = self.composer.propose(piece.text)
         if made.aside and self._empties_heading(i):
             return Proposal(doubt="this may be of the line above")
         return made
+
+    def _column_of_order(self, heading: FormRow, i: int) -> str:
+        """Return the heading of a column whose numbers give the rows below another order."""
+        below = (self.script.rows.get(p.text.first) for p in self.script.pieces[i + 1 :])
+        rows = [row.cells for row in takewhile(lambda row: row is not None, below) if row]
+        for k, cell in enumerate(heading.cells):
+            named = pattern(r"\b<ordering>\b").search(cell.text.content)
+            numbers = [row[k].text.content for row in rows if len(row) == len(heading.cells)]
+            if named and len(numbers) > 1 and all(map(str.isdecimal, numbers)):
+                order = [int(number) for number in numbers]
+                if order != sorted(order):
+                    return cell.text.content
+        return ""
 
     def _empties_heading(self, i: int) -> bool:
         """Return True for a line below a kind that stands alone: `Gauges` over `none today`."""

@@ -33,6 +33,8 @@ START = "Start in starting area 1. Check #1"
         f"{START}.\nIn any order:\n- #4\n- #5",
         f"{START}.\nOptional:\n- #4\n- #5",
         f"{START}.\nIf there is time:\n- #4\n- #5",
+        f"{START}.\nNote: leave out checkpoint 1.",
+        f"{START}.\n#1-#4\nNote: without the valve",
     ],
 )
 def test_it_is_asked_about(text: str, catalog: Catalog) -> None:
@@ -45,7 +47,6 @@ def test_it_is_asked_about(text: str, catalog: Catalog) -> None:
     [
         "Note: check checkpoint 5",
         "Hint: go home afterwards.",
-        "Note: leave out checkpoint 1.",
         "NB: the robot must not be faster than 0.3 m/s",
     ],
 )

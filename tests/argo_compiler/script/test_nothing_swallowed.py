@@ -82,6 +82,19 @@ def conditions(text: str, catalog: Catalog) -> list[tuple[str | None, ConditionT
         ("Check #1.\nSpecial: in heavy rain return to the dock", ""),
         ("Check #1.\nEND OF LIST", ""),
         ("Prüfe #1.\nEnde der Liste", ""),
+        # kinds with lists behind a colon
+        ("Check #1.\nLevels: 4, 5", "no field `Levels`"),
+        ("Check #1.\nGauges: see list", "no field `Gauges`"),
+        ("Level gauges: all on floor 1\nCheck #1.", "no field `Level gauges`"),
+        ("Number of checkpoints: 3\nCheckpoints: 14, 15", "no field `Number of checkpoints`"),
+        # items to go back to, ticks and strokes
+        ("a) R12\nb) R7\nc) go back to a)", ""),
+        ("1. valve R25\n2. valve R12 (crossed out)", "a change, or a remark"),
+        ("#17\n#18 – durchgestrichen", "a change, or a remark"),
+        ("As ticked.\n#13 #14 #15", ""),
+        ("Nr   CP   Remark\n1    13   after the 14th of May\n2    15", "a change, or a remark"),
+        ("Seq.\tCheckpoint\tFloor\n20\t1\t1\n10\t19\t6", "another order of the rows"),
+        ("nr;checkpoint;position in the order\n1;R31;2\n2;R7;1", "another order of the rows"),
         # the same reading, or one more
         ("Check #7. Read it.", "or one more"),
         ("1. #7 and #8\n2. Read them.", "or one more"),
@@ -160,6 +173,19 @@ def test_a_first_line_that_may_change_the_plan_is_no_title(title: str, catalog: 
     ],
 )
 def test_what_is_read(text: str, checkpoints: list[str], catalog: Catalog) -> None:
+    assert measured(text, catalog) == checkpoints
+
+
+@pytest.mark.parametrize(
+    ("text", "checkpoints"),
+    [
+        ("Valves: R25, R12\nPressure gauges: 4, 5", ["4", "5", "9", "8"]),
+        ("Ventile: R25, R12\nManometer: 4 und 5", ["4", "5", "9", "8"]),
+    ],
+)
+def test_a_kind_before_a_colon_is_that_of_the_list(
+    text: str, checkpoints: list[str], catalog: Catalog
+) -> None:
     assert measured(text, catalog) == checkpoints
 
 

@@ -10,7 +10,6 @@ No action fails and no reaction starts. The robot may be anywhere on its way whe
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 from argo_compiler.analysis.results import Analysis, Bounds
 from argo_compiler.analysis.travel import Leg, NoPath, RobotPose, Travel
@@ -19,6 +18,7 @@ from argo_compiler.analysis.verification_layout import MissionLayout
 from argo_compiler.analysis.verification_walk import Proved
 from argo_compiler.analysis.witness import Invariant, LeastSpent, LeastWitness
 from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.records import dataclass
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.il import Mission, OnFailure, Task

@@ -1,7 +1,6 @@
 """Least and greatest duration and energy of a mission, with the paths that attain them."""
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 
 from argo_compiler.analysis.completion_times import TimeAndEnergyAtEnd, task_end_bounds
@@ -11,6 +10,7 @@ from argo_compiler.analysis.reachability import Reachability
 from argo_compiler.analysis.results import Bound, Bounds, Stretch
 from argo_compiler.analysis.rounds import GroupExit
 from argo_compiler.analysis.step_costs import StepCosts
+from argo_compiler.base.records import dataclass
 
 _MOST_CUTS = 200_000  # pairs of a task and a time-out that may cancel it
 _MOST_STRETCHES = 200  # parts of a path that are returned, from its start and from its end each

@@ -1,9 +1,9 @@
 """Completion times of the tasks, and the energy used until then, on all paths without failures."""
 
 import math
-from dataclasses import dataclass
 
 from argo_compiler.analysis.path_lengths import LevelGraph, PathLengths, is_group_entry
+from argo_compiler.base.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)

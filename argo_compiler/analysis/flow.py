@@ -6,9 +6,10 @@ another one, and the moment when its time is up, whatever was under way. The las
 the mission.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.hfsm.model import MISSION, Hfsm, Leaf, StateTransition
 from argo_compiler.il import Action, Condition, Mission, Stop, WaitRule
 

@@ -1,7 +1,6 @@
 """Loops that some readings keep going for ever, as no task in them measures the checkpoint."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from argo_compiler.analysis.reachability import (
     ReachabilitySearch,
@@ -11,6 +10,7 @@ from argo_compiler.analysis.reachability import (
 from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.value_regions import Scale
 from argo_compiler.analysis.witness import KeptReading, Trap
+from argo_compiler.base.records import dataclass
 
 _MOST_STEPS = 50_000  # greatest number of steps of the search
 

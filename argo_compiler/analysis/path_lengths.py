@@ -11,7 +11,7 @@ level.
 import heapq
 import math
 from collections.abc import Generator, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import NamedTuple, TypeGuard, cast
 
 from argo_compiler.analysis.flow import NOWHERE, Flow
@@ -28,6 +28,7 @@ from argo_compiler.analysis.step_costs import (
     StepCosts,
 )
 from argo_compiler.base.graphs import components, is_loop
+from argo_compiler.base.records import dataclass
 
 MOST_STEPS = 400_000
 """greatest number of steps of the computation"""

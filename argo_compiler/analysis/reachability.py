@@ -14,11 +14,11 @@ which may happen at any time. Such values are not narrowed.
 import heapq
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
 
 from argo_compiler.analysis.flow import Flow, LeafFlow
 from argo_compiler.analysis.value_regions import Fields, Scale, make_scale, union_of_bits
 from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.records import dataclass
 from argo_compiler.il import Condition, ConditionType
 
 TRACKED_BITS = 800_000_000

@@ -5,10 +5,10 @@ All costs count from the moment at which the group is entered, unless they are t
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 
 from argo_compiler.analysis.flow import GroupFlow
 from argo_compiler.analysis.step_costs import NOTHING, Cost, QuantityRange, Source
+from argo_compiler.base.records import dataclass
 
 _TOLERANCE = 1e-9  # share of a round, as sums of floats are not exact
 _MOST_COUNTED = 1e12  # rounds; a greater number counts as infinite

@@ -3,12 +3,12 @@
 import math
 from collections import deque
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
 from argo_compiler.analysis.flow import Flow
 from argo_compiler.analysis.reachability import Reachability
 from argo_compiler.analysis.travel import Leg, NoPath, RobotPose, Travel
 from argo_compiler.base.graphs import components
+from argo_compiler.base.records import dataclass
 from argo_compiler.il import Mission, Task
 
 BEGIN = "begin"

@@ -1,7 +1,7 @@
 """Shared inputs of all diagnostics, computed once for a mission."""
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 from argo_compiler.analysis.bounds import MissionBounds, compute_bounds, has_too_many_cancellations
@@ -20,6 +20,7 @@ from argo_compiler.base.graphs import (
     shortest_path_predecessors,
 )
 from argo_compiler.base.listing import brief_quoted_list
+from argo_compiler.base.records import dataclass
 from argo_compiler.diagnostics import Diagnostic, Severity, diagnostic_of
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.il import Afterwards, EventKind, Mission, Response, Task

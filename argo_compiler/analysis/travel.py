@@ -1,9 +1,9 @@
 """Interface through which the analysis gets travel times and energy of a robot on a site."""
 
 from collections.abc import Hashable
-from dataclasses import dataclass
 from typing import Protocol
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.il import Mission, Task
 
 RobotPose = Hashable

@@ -9,11 +9,11 @@ objects are packed into one long integer, so that a single `|` joins the states 
 
 from bisect import bisect_left
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 
 from argo_compiler.base.catalog import Interval
 from argo_compiler.base.listing import listed
+from argo_compiler.base.records import dataclass
 from argo_compiler.il import Condition, ConditionType
 
 

@@ -5,12 +5,12 @@ The code shares nothing with the bit sets of the analysis but the format of the 
 
 from bisect import bisect_left
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
 from argo_compiler.analysis.verification_layout import END, ProgramPoint
 from argo_compiler.analysis.witness import KeptReading
+from argo_compiler.base.records import dataclass
 from argo_compiler.il import Condition, ConditionType
 
 Ranges = tuple[float, float, float, float]

@@ -8,7 +8,7 @@ cancelled actions that may still arrive.
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from argo_compiler.analysis.verification_layout import END, MissionLayout, ProgramPoint
 from argo_compiler.analysis.verification_states import (
@@ -17,6 +17,7 @@ from argo_compiler.analysis.verification_states import (
     Ranges,
     compared_bounds,
 )
+from argo_compiler.base.records import dataclass
 from argo_compiler.il import Action, Condition, ConditionType, Mission, OnFailure, Task
 
 Step = tuple[ProgramPoint, int, int]

@@ -7,7 +7,6 @@ Its name is known without an import; the object is imported when it is used for 
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Generic, TypeVar
 
@@ -15,6 +14,7 @@ from argo_compiler.base.errors import ArgoError, Conflict, NotFound, Unavailable
 from argo_compiler.base.extras import PROJECT
 from argo_compiler.base.model import Model
 from argo_compiler.base.nearest_name import nearest_name
+from argo_compiler.base.records import dataclass
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint

@@ -1,7 +1,6 @@
 """Part of a mission that a check is about."""
 
-from dataclasses import dataclass
-
+from argo_compiler.base.records import dataclass
 from argo_compiler.diagnostics import Diagnostic, Span, diagnostic_of
 
 

@@ -1,8 +1,8 @@
 """Checks of conditions: their fields, and whether they can be satisfied."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.checks.checked_item import CheckedItem
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Condition, ConditionType, Group, Task

@@ -8,7 +8,8 @@ identified by its position from 0.
 
 import json
 import re
-from dataclasses import dataclass
+
+from argo_compiler.base.records import dataclass
 
 _STEP = re.compile(r"\[(\d+)\]|\['((?:[^'\\]|\\.)*)'\]|\.?([^.\[\]']+)", re.S)
 _CONTROL = re.compile(r"[\x00-\x1f'\\]")

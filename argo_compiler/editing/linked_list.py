@@ -6,8 +6,10 @@ pass over the list.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Generic, Self, TypeVar
+
+from argo_compiler.base.records import dataclass
 
 
 @dataclass(eq=False, slots=True)

@@ -4,9 +4,10 @@ import json
 import re
 from bisect import bisect_right
 from collections.abc import Collection, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import NamedTuple
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.diagnostics import Span
 
 LONG_NUMBER = "it has a number with thousands of digits"

@@ -2,10 +2,10 @@
 
 import json
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.diagnostics import (
     MAX_EXCERPT,
     Diagnostic,

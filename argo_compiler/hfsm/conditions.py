@@ -1,9 +1,9 @@
 """Readings of checkpoints, the evaluation of conditions on them, and conditions as text."""
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from typing import NamedTuple
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.hfsm.kinds import ReadingKind
 from argo_compiler.il import Condition, ConditionType, EventKind, Reaction, WaitRule
 

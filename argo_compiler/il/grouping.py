@@ -1,9 +1,9 @@
 """Groups of a mission as nested ranges of its task list."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from argo_compiler.base.memoization import cache_last_results_by_identity
+from argo_compiler.base.records import dataclass
 from argo_compiler.il.mission import Group, Mission
 
 

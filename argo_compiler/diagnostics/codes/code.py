@@ -1,7 +1,8 @@
 """Severity and explanation of a diagnostic code."""
 
-from dataclasses import dataclass
 from enum import StrEnum
+
+from argo_compiler.base.records import dataclass
 
 
 class Severity(StrEnum):

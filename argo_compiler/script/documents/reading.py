@@ -4,7 +4,7 @@ import io
 import re
 import zipfile
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 from unicodedata import normalize
@@ -12,6 +12,7 @@ from unicodedata import normalize
 from argo_compiler.base.errors import ArgoError, Invalid, Unavailable
 from argo_compiler.base.extras import install_line
 from argo_compiler.base.limited_process import LimitExceeded, call_limited, limits_for_size
+from argo_compiler.base.records import dataclass
 from argo_compiler.files.loading import decode_text, read_bytes, require_size
 from argo_compiler.script.documents.document import Document
 from argo_compiler.script.documents.separated import SUFFIXES as SEPARATED

@@ -16,10 +16,11 @@ these, and what an assistant has `suggested`, with the words that it stands for:
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from argo_compiler.base.errors import Invalid
 from argo_compiler.base.model import Model
+from argo_compiler.base.records import dataclass
 from argo_compiler.script.assistant.suggestion import LineSuggestion, SuggestedSentence
 from argo_compiler.script.drafts.draft import (
     Act,

@@ -8,9 +8,9 @@ down to the label do not end the sentence, and the text beside the label does no
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from itertools import islice
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.script.documents.source import ScriptText, join
 from argo_compiler.script.layout.fields import ScriptFields
 from argo_compiler.script.sentences.understanding import Understanding

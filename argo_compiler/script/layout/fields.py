@@ -6,11 +6,12 @@ mission as a whole what fields say as well: `In any order, please.`
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import pairwise
 from typing import Any, NamedTuple
 
 from argo_compiler.base.listing import listed
+from argo_compiler.base.records import dataclass
 from argo_compiler.il import Mode, Order
 from argo_compiler.script.documents.source import Diagnostics, ScriptText
 from argo_compiler.script.sentences.building.part import RulePart, seconds

@@ -8,9 +8,10 @@ and each cell has a role, by the heading of its column or by what it contains.
 import re
 from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.script.documents.signs import BLANK, RULE
 from argo_compiler.script.documents.source import ScriptText, Source, join
 from argo_compiler.script.sentences.words.prose import Prose, cue_pattern

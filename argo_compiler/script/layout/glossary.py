@@ -8,15 +8,16 @@ the number of its unit: `20-PI-1034A`, `PI 1034 A`, `PI_1034A`. A tag with two m
 import re
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.script.documents.source import Diagnostics, ScriptText, Source, join
 from argo_compiler.script.documents.tags import TAGS, tag_from, tag_of
 from argo_compiler.script.sentences.grammar.parser import StumbleError
 from argo_compiler.script.sentences.tree.nouns import Kind
 from argo_compiler.script.sentences.understanding import Understanding
-from argo_compiler.script.sentences.words.prose import cue_pattern
+from argo_compiler.script.sentences.words.prose import PhrasePattern, cue_pattern
 
 LEGEND = "a part of a legend or of a list of tags"
 EXPLANATION = "an explanation of what a name stands for"
@@ -184,7 +185,7 @@ def _lines(
             yield number, text if explains else None
 
 
-def _explaining_lines(source: Source, heading: re.Pattern[str]) -> frozenset[int]:
+def _explaining_lines(source: Source, heading: PhrasePattern) -> frozenset[int]:
     """Return the numbers of the lines of a document that only explain: those of a sheet whose name
     or first line is such as `Legend`, and those of a table below such a heading."""
     document = source.document

@@ -6,8 +6,9 @@ where its last sentence and the line below make sense as one, they are one.
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.script.documents.source import ScriptText, join
 from argo_compiler.script.layout.asides import Asides
 from argo_compiler.script.layout.fields import ScriptFields

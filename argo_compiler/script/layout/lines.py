@@ -4,9 +4,9 @@ sentences in them end: not behind `approx.`, in `Nr. R25` or in `2. Stock`."""
 import re
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.script.documents.source import ScriptText, Source, join, quotes
 from argo_compiler.script.sentences.words.loading import pattern
 

@@ -7,10 +7,11 @@ valves`, `Check these pressure gauges:` over `- 1` and `- 3`.
 import re
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cache
 from itertools import islice
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.script.documents.source import ScriptText, join
 from argo_compiler.script.layout.items import LineItem
 from argo_compiler.script.layout.lines import LineMark, sentences

@@ -6,8 +6,9 @@ the sentence that says the same: `3. checkpoint #2 (liquid level gauge 1) with p
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.script.documents.signs import RULE, is_to_fill
 from argo_compiler.script.documents.source import Diagnostics, ScriptText, Source, quotes
 from argo_compiler.script.layout.asides import Asides, ask_of_remark

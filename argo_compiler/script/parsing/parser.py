@@ -2,11 +2,12 @@
 
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import lru_cache
 from types import MappingProxyType
 
 from argo_compiler.base.garbage_collector import collector_held
+from argo_compiler.base.records import dataclass
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.script.documents.document import Document
 from argo_compiler.script.documents.healing import MOST_ERRORS, heal

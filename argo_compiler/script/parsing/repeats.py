@@ -7,10 +7,11 @@ Where that succeeds, nothing but the figures themselves can differ in what such 
 import re
 from bisect import bisect_left
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 from functools import cache, lru_cache
 from typing import Any
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.diagnostics import Span, span_at
 from argo_compiler.script.documents.source import ScriptText, quotes
 from argo_compiler.script.layout.lines import sentences

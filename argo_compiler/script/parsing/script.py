@@ -1,9 +1,10 @@
 """A script as a whole: its syntax tree, and the pieces of text that it was read from."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import NamedTuple
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.script.documents.source import ScriptText, Source
 from argo_compiler.script.layout.forms import FormRow

@@ -1,8 +1,9 @@
 """Reads the sentences of a script one after the other: which say what, and which have no effect."""
 
 import re
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.script.documents.source import Diagnostics, ScriptText, shortened
 from argo_compiler.script.layout.asides import Asides, ask_of_remark
 from argo_compiler.script.layout.fields import ScriptFields

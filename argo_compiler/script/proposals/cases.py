@@ -5,10 +5,11 @@ The case and what is done are put together anew from what the text mentions, wha
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 
 from argo_compiler.base.catalog import CheckpointInfo
+from argo_compiler.base.records import dataclass
 from argo_compiler.il import EventKind
 from argo_compiler.script.proposals.composing import normal_end
 from argo_compiler.script.proposals.frames import Sentences

@@ -2,8 +2,8 @@
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.script.documents.signs import CLOCK, DATE
 from argo_compiler.script.documents.source import ScriptText
 from argo_compiler.script.proposals.mentions import Mentions, mentions_in

@@ -6,9 +6,10 @@ sentence uses, the clause stays open, and what it may become are choices.
 
 import re
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from argo_compiler.base.catalog import CheckpointInfo
+from argo_compiler.base.records import dataclass
 from argo_compiler.script.documents.source import RefusedError, ScriptText
 from argo_compiler.script.proposals.evidence import evidence
 from argo_compiler.script.proposals.frames import Sentences, sentences_of

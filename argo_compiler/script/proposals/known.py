@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
-from copy import copy
 from dataclasses import replace
 from itertools import pairwise
 
@@ -26,6 +25,7 @@ class Known:
     def __init__(self, understanding: Understanding, catalog: Catalog) -> None:
         self.understanding = understanding
         self.catalog = catalog
+        self._lookup = Lookup(catalog, understanding.diagnostics, None, None)
         self.memory = Memory()
         self.last_named: CheckpointInfo | None = None
         """what a text named last, also if it left it out; None if that is no single one"""
@@ -50,13 +50,28 @@ class Known:
 
     def state(self) -> State:
         """Return what `reset` goes back to."""
-        memory = copy(self.memory)
-        memory.so_far = dict(memory.so_far)
-        return memory, self.last_named, {*self.excepted}, {*self.deleted}, {*self.spared}
+        return (
+            self.memory.copy(),
+            self.last_named,
+            {*self.excepted},
+            {*self.deleted},
+            {*self.spared},
+        )
 
     def reset(self, state: State) -> None:
         """Forget what was measured and left out since a state."""
         self.memory, self.last_named, self.excepted, self.deleted, self.spared = state
+
+    def fingerprint(self) -> tuple[object, ...]:
+        """Return a value that is the same as long as a text would be proposed the same."""
+        memory = self.memory
+        named = [[c.id for c in checkpoints] for checkpoints in (memory.last, memory.before)]
+        last = None if self.last_named is None else self.last_named.id
+        sets = (self.excepted, self.asked, self.deleted, self.spared)
+        return (
+            *(*map(tuple, named), tuple(memory.so_far), memory.known, last, self.listed),
+            *(*map(frozenset, sets), tuple(self.items.items())),
+        )
 
     @contextmanager
     def unchanged(self) -> Iterator[None]:
@@ -148,8 +163,7 @@ class Known:
     def resolver(self) -> NounResolver:
         """Return what looks nouns up; its messages go nowhere."""
         diagnostics = Diagnostics(self.understanding.diagnostics.source)
-        lookup = Lookup(self.catalog, diagnostics, None, None)
-        return NounResolver(lookup, diagnostics, self.memory)
+        return NounResolver(self._lookup.anew(diagnostics), diagnostics, self.memory)
 
 
 def is_number(mention: Mention) -> bool:

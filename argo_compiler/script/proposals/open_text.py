@@ -1,9 +1,9 @@
 """An open text, with what it mentions, for which choices are looked for."""
 
 from contextlib import suppress
-from dataclasses import dataclass
 
 from argo_compiler.base.catalog import CheckpointInfo
+from argo_compiler.base.records import dataclass
 from argo_compiler.script.documents.source import RefusedError, ScriptText
 from argo_compiler.script.proposals.composing import Composer
 from argo_compiler.script.proposals.frames import length_words

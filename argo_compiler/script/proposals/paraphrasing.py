@@ -5,9 +5,9 @@ whole then counts.
 """
 
 import re
-from dataclasses import dataclass
 from functools import cache
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.script.documents.source import ScriptText
 from argo_compiler.script.sentences.grammar.parser import StumbleError
 from argo_compiler.script.sentences.understanding import Understanding

@@ -7,10 +7,11 @@ it is understood; one with words that say more is proposed; ticks, dashes and `N
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from itertools import pairwise
 
 from argo_compiler.base.catalog import CheckpointInfo, CheckpointKind
+from argo_compiler.base.records import dataclass
 from argo_compiler.script.documents.signs import CLOCK
 from argo_compiler.script.documents.source import RefusedError, ScriptText, join
 from argo_compiler.script.documents.tags import count_tag, tag_of
@@ -615,8 +616,9 @@ def _of_floor(mention: Mention, section: Mention | None, known: Known) -> Sequen
 def _unused(content: str, mentions: Mentions, form: Mapping[str, str]) -> Iterator[str]:
     """Yield the words that say more than that a checkpoint is read, and in which state it should
     be."""
-    words = [cue_pattern(name, form[name]) for name in (*_POSITIONS, "furniture", "asking")]
-    used = [m.span() for pattern in (_FILL, *words) for m in pattern.finditer(content)]
+    used = [fill.span() for fill in _FILL.finditer(content)]
+    for name in (*_POSITIONS, "furniture", "asking"):
+        used += [word.span() for word in cue_pattern(name, form[name]).finditer(content)]
     for word in mentions.unknown:
         said = content[word.start : word.end]
         if not any(a < word.end and word.start < b for a, b in used):

@@ -1,12 +1,13 @@
 """What is done if something is so: after a value, after a failure, after an event."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import combinations, pairwise
 from typing import NoReturn
 
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.base.listing import listed
+from argo_compiler.base.records import dataclass
 from argo_compiler.il import Action, OnFailure
 from argo_compiler.il.exclusive_conditions import are_surely_exclusive
 from argo_compiler.script.documents.source import RefusedError

@@ -2,10 +2,11 @@
 
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any, NoReturn
 
 from argo_compiler.base.catalog import CheckpointInfo
+from argo_compiler.base.records import dataclass
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Action
 from argo_compiler.script.documents.source import Diagnostics, RefusedError

@@ -6,8 +6,9 @@ duration is put: before a condition that more than one way comes to, and at the 
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.il import Action, Condition, WaitRule
 from argo_compiler.script.resolve.program import (
     Ahead,

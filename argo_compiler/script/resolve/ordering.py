@@ -2,11 +2,12 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import partial
 from itertools import groupby, pairwise, product
 
 from argo_compiler.base.catalog import CheckpointInfo
+from argo_compiler.base.records import dataclass
 from argo_compiler.checks.precedence import check_precedence
 from argo_compiler.diagnostics import Severity, Span
 from argo_compiler.il import Action, Mission, Order

@@ -6,11 +6,12 @@ A program is mutable: orders add to it, change it and wrap parts of it into roun
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import StrEnum
 
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.base.model import Pose
+from argo_compiler.base.records import dataclass
 from argo_compiler.diagnostics import Span
 from argo_compiler.editing.linked_list import LinkedList, ListItem
 from argo_compiler.il import Action, Condition, JointState, OnFailure, TimeWindow, WaitRule

@@ -1,10 +1,10 @@
 """From `if a gas leak is detected, ...` to a reaction of the mission: what it does is put together
 from the orders for it."""
 
-from dataclasses import dataclass
 from typing import NamedTuple, NoReturn
 
 from argo_compiler.base.model import Pose
+from argo_compiler.base.records import dataclass
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Afterwards, EventKind, Reaction, Response
 from argo_compiler.script.documents.source import Diagnostics

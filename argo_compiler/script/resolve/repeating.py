@@ -6,9 +6,10 @@ one that is looked at after its last round.
 
 from collections.abc import Container, Iterable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import dropwhile, islice, takewhile
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.il import Action, WaitRule
 from argo_compiler.script.documents.source import RefusedError
 from argo_compiler.script.resolve.accepting import said

@@ -1,13 +1,13 @@
 """Start and end of a mission, from its header and its orders."""
 
 import math
-from dataclasses import dataclass
 from typing import NoReturn
 
 from argo_compiler.base.catalog import Area
 from argo_compiler.base.errors import Remedy, RemedyChoice
 from argo_compiler.base.listing import listed
 from argo_compiler.base.model import Pose
+from argo_compiler.base.records import dataclass
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import Action
 from argo_compiler.script.documents.source import Diagnostics

@@ -7,10 +7,10 @@ asked what is meant.
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import takewhile
 from typing import TypeGuard
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.script.documents.source import Diagnostics, ScriptText
 from argo_compiler.script.sentences.tree import orders
 from argo_compiler.script.sentences.tree.conditions import Test, TooLate

@@ -3,10 +3,11 @@
 import re
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.model import Pose
+from argo_compiler.base.records import dataclass
 from argo_compiler.diagnostics import Diagnostic, Severity, Span
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.il import Action, Group, Mission, Stop, Task, Transition, WaitRule

@@ -2,8 +2,8 @@
 where the mission goes on after it."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.il import Action, JointState, OnFailure, Task, TimeWindow, WaitRule
 from argo_compiler.script.write.conditions import (
     awaited,

@@ -5,9 +5,10 @@ is asked about, with both readings.
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise, product
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.il import EventKind
 from argo_compiler.script.sentences.building.part import Make, RulePart, Signed, amount, duration
 from argo_compiler.script.sentences.tree.conditions import (

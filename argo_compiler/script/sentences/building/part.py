@@ -2,10 +2,10 @@
 in it: what can be read in two ways is asked about."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from math import inf, isinf, isnan
 from typing import Any, TypeVar
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.diagnostics import Span
 from argo_compiler.il import MAX_TIME_S
 from argo_compiler.script.documents.source import Diagnostics, ScriptText

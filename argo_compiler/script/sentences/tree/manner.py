@@ -1,7 +1,6 @@
 """How, when and how often something is done."""
 
-from dataclasses import dataclass
-
+from argo_compiler.base.records import dataclass
 from argo_compiler.il import Afterwards, JointState, Order
 from argo_compiler.script.sentences.tree.conditions import Amount, SaidCondition
 from argo_compiler.script.sentences.tree.nouns import Nouns

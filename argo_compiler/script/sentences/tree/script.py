@@ -1,7 +1,6 @@
 """Steps and header of a script."""
 
-from dataclasses import dataclass
-
+from argo_compiler.base.records import dataclass
 from argo_compiler.il import Mode, Order
 from argo_compiler.script.sentences.tree.node import Node, node
 from argo_compiler.script.sentences.tree.orders import Fact, Sentence

@@ -5,8 +5,8 @@ limit. Lengths of time are put together from their parts: `1 hour and 30 minutes
 """
 
 import re
-from dataclasses import dataclass
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.script.sentences.words.numbers import Figure
 from argo_compiler.script.sentences.words.word import Word
 

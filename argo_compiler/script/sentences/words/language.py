@@ -2,10 +2,10 @@
 
 import re
 from collections.abc import Container, Iterable
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from itertools import islice
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.script.sentences.words import loading
 from argo_compiler.script.sentences.words.lexicon import Lexicon, folded
 from argo_compiler.script.sentences.words.prose import Prose

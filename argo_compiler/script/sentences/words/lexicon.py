@@ -2,11 +2,12 @@
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import lru_cache
 from itertools import product
 from typing import Any
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.script.sentences.words.without_effect import WITHOUT_EFFECT
 from argo_compiler.script.sentences.words.word import VERBS
 

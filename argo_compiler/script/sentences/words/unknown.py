@@ -6,10 +6,10 @@ quoted name with figures in it nothing is known.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from math import inf
 from typing import Any, NoReturn
 
+from argo_compiler.base.records import dataclass
 from argo_compiler.script.sentences.words.numbers import Figure
 
 Fill = Callable[[Sequence[str]], Any]

@@ -1,7 +1,8 @@
 """A word of a script, as the grammar sees it."""
 
-from dataclasses import dataclass
 from typing import Any
+
+from argo_compiler.base.records import dataclass
 
 VERBS = (
     *("MEASURE", "KEEP_MEASURING", "GO", "HOME", "START", "START_HERE", "PATROL", "WAIT", "PAUSE"),

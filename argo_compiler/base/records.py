@@ -1,7 +1,7 @@
 """Dataclasses that are made faster than Python's own, for modules that short commands import.
 
 Python compiles each method of a dataclass anew when its module is imported. For the 100 dataclasses
-that `argo check` imports this takes a tenth of its time.
+that `argo check` imports this takes 8 % of its time.
 """
 
 import dataclasses

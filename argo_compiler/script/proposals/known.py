@@ -16,6 +16,8 @@ from argo_compiler.script.sentences.understanding import Understanding
 
 _SIDE_BY_SIDE = 3
 """characters between number and name of one checkpoint: `#8 - pressure gauge 5`"""
+_NO_STATE = frozenset(["understanding", "catalog", "_lookup", "warnings"])
+"""attributes that do not change, or that each proposal begins anew"""
 State = tuple[Memory, CheckpointInfo | None, set[int], set[int], set[int]]
 
 
@@ -64,14 +66,8 @@ class Known:
 
     def fingerprint(self) -> tuple[object, ...]:
         """Return a value that is the same as long as a text would be proposed the same."""
-        memory = self.memory
-        named = [[c.id for c in checkpoints] for checkpoints in (memory.last, memory.before)]
-        last = None if self.last_named is None else self.last_named.id
-        sets = (self.excepted, self.asked, self.deleted, self.spared)
-        return (
-            *(*map(tuple, named), tuple(memory.so_far), memory.known, last, self.listed),
-            *(*map(frozenset, sets), tuple(self.items.items())),
-        )
+        state = (value for name, value in vars(self).items() if name not in _NO_STATE)
+        return tuple(map(_hashable, state))
 
     @contextmanager
     def unchanged(self) -> Iterator[None]:
@@ -164,6 +160,21 @@ class Known:
         """Return what looks nouns up; its messages go nowhere."""
         diagnostics = Diagnostics(self.understanding.diagnostics.source)
         return NounResolver(self._lookup.anew(diagnostics), diagnostics, self.memory)
+
+
+def _hashable(value: object) -> object:
+    """Return a value that is equal for equal parts of what is known."""
+    match value:
+        case Memory():
+            named = [tuple([c.id for c in some]) for some in (value.last, value.before)]
+            return (*named, tuple(value.so_far), value.known)
+        case CheckpointInfo():
+            return value.id
+        case set():
+            return frozenset(value)
+        case dict():
+            return tuple(value.items())
+    return value
 
 
 def is_number(mention: Mention) -> bool:

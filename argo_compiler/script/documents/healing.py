@@ -20,6 +20,7 @@ blanks are dropped.
 import re
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from types import MappingProxyType
 
 from argo_compiler.base.listing import listed
@@ -112,23 +113,26 @@ def _plain(line: ScriptText) -> ScriptText:
         for found in reversed(list(_EMPHASIS.finditer(line.content))):
             line = line.without(found.end(2), found.end()).without(*found.span(1))
     content = line.content
-    if not content.isascii() or "*" in content or "`" in content:
+    if "*" in content or "`" in content:
         mark = len(content) - len(content.lstrip())
         quoted = quotes("".join((_PLAIN.get(c, c) or " ")[0] for c in content))
-        signs = [
-            (sign, at)
-            for i, (c, at) in enumerate(zip(content, line.offsets, strict=True))
-            for sign in (
-                c
-                if c in "*`" and any(a < i < b for a, b in quoted)
-                else _sign(c, i == mark and content[i + 1 : i + 2] == " ")
-            )
+        said = [
+            c
+            if c in "*`" and any(a < i < b for a, b in quoted)
+            else _sign(c, i == mark and content[i + 1 : i + 2] == " ")
+            for i, c in enumerate(content)
         ]
-        line = ScriptText("".join(s for s, _ in signs), [at for _, at in signs], line.source)
+    elif not content.isascii():
+        said = [_sign(c) for c in content]
+    else:
+        return line[: len(content.rstrip())]
+    offsets = [at for sign, at in zip(said, line.offsets, strict=True) for _ in sign]
+    line = ScriptText("".join(said), offsets, line.source)
     return line[: len(line.content.rstrip())]
 
 
-def _sign(character: str, is_mark: bool) -> str:
+@lru_cache(maxsize=1024)
+def _sign(character: str, is_mark: bool = False) -> str:
     if character == "*":
         return "-" if is_mark else ""
     if character in _PLAIN:

@@ -4,7 +4,7 @@ import re
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 from typing import NoReturn, TypeVar
 from unicodedata import normalize
@@ -329,7 +329,12 @@ def _excerpt(line: str, span: Span) -> str:
     marked = span.column + span.length <= _BEGINNING
     if len(line) > MAX_LINE or (len(line) > MAX_EXCERPT and marked):
         line = f"{line[:_BEGINNING]} ..."
+    return _shown(line)
+
+
+@lru_cache(maxsize=64)
+def _shown(line: str) -> str:
+    """Return a line without control characters, which would reach the user's terminal."""
     if line.replace("\t", " ").isprintable():
         return line
-    # Control characters would reach the user's terminal.
     return "".join(c if c.isprintable() or c == "\t" else " " for c in line)

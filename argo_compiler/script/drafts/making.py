@@ -34,6 +34,7 @@ from argo_compiler.script.resolve.importing import resolve_script
 
 if TYPE_CHECKING:
     from argo_compiler.script.proposals.composing import Proposal
+    from argo_compiler.script.proposals.proposing import Made
 
 _OF_OPTIONS = frozenset(["script.area-choice", "script.area-conflict", "script.area-not-offered"])
 """codes of errors that another option resolves, and no change of the line"""
@@ -106,11 +107,12 @@ def import_script(
     unread = {at for at, error in errors.items() if error.code in _UNREAD and at not in said}
     unclear = {at for at in errors if at not in said}
     proposals: dict[int, Proposal] = {}
+    made: Made = {}
     script = reading.script
     if unread or unclear:  # not of a script that is understood whole, which is to start fast
         from argo_compiler.script.proposals.proposing import propose
 
-        proposals = propose(script, unread, unclear - unread, catalog, start_area)
+        proposals = propose(script, unread, unclear - unread, catalog, start_area, made)
     proposed = {at: p.sentences for at, p in proposals.items() if not p.is_open}
     suggested = _match(tuple(suggestions), reading.script.pieces)
     assisted = _assisted(reading.script, unread - proposed.keys(), suggested, catalog)
@@ -127,7 +129,7 @@ def import_script(
     if lacking:  # in error only with what was decided or proposed for this line or for others
         from argo_compiler.script.proposals.proposing import propose
 
-        others = propose(script, unread - lacking, unclear | lacking, catalog, start_area)
+        others = propose(script, unread - lacking, unclear | lacking, catalog, start_area, made)
         for at in lacking & others.keys():
             before = proposals.get(at, others[at])
             proposals[at] = replace(before, choices=others[at].choices)

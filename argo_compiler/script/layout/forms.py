@@ -7,7 +7,7 @@ and each cell has a role, by the heading of its column or by what it contains.
 
 import re
 from collections import defaultdict
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
@@ -163,14 +163,15 @@ def forms(
         heads = [_headings(found, prose) for _, found in lines]
         headless = not any(heads)
         columns = None if table is None else columns_of.get(table)
-        for (number, found), headings in zip(lines, heads, strict=True):
+        for i, ((number, found), headings) in enumerate(zip(lines, heads, strict=True)):
             line = source.line_text(number)
             doubt = _doubt_of(source, number)
             if RULE.fullmatch(line.content):
                 texts[number] = line[:0]
             elif headings is not None:
                 columns = columns_of[table] = headings
-                below = _below_times(found, (cells for n, cells in lines if n > number), cut)
+                ends = next((k for k in range(i + 1, len(heads)) if heads[k] is not None), None)
+                below = _below_times(found, [cells for _, cells in lines[i + 1 : ends]], cut)
                 rows[number] = FormRow(
                     line.strip(), tuple(found), is_heading=True, filled_below=below
                 )
@@ -214,14 +215,13 @@ def forms(
 
 
 def _below_times(
-    headings: Sequence[Cell], rows: Iterable[Sequence[Cell]], cut: str
+    headings: Sequence[Cell], rows: Sequence[Sequence[Cell]], cut: str
 ) -> tuple[ScriptText, ...]:
-    """Return the numbers in the columns of times of day."""
+    """Return the numbers in the columns of times of day, in the rows up to the next headings."""
     times = [i for i, cell in enumerate(headings) if _CLOCK.fullmatch(cell.text.content)]
     if cut == "  " or len(times) < 2:
         return ()
-    below = list(rows)
-    cells = [row[i].text for i in times for row in below if i < len(row)]
+    cells = [row[i].text for i in times for row in rows if i < len(row)]
     return tuple(text for text in cells if _READING.fullmatch(text.content))
 
 

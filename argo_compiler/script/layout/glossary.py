@@ -16,7 +16,7 @@ from argo_compiler.script.documents.tags import TAGS, tag_from, tag_of
 from argo_compiler.script.sentences.grammar.parser import StumbleError
 from argo_compiler.script.sentences.tree.nouns import Kind
 from argo_compiler.script.sentences.understanding import Understanding
-from argo_compiler.script.sentences.words.prose import cue_pattern
+from argo_compiler.script.sentences.words.prose import PhrasePattern, cue_pattern
 
 LEGEND = "a part of a legend or of a list of tags"
 EXPLANATION = "an explanation of what a name stands for"
@@ -184,7 +184,7 @@ def _lines(
             yield number, text if explains else None
 
 
-def _explaining_lines(source: Source, heading: re.Pattern[str]) -> frozenset[int]:
+def _explaining_lines(source: Source, heading: PhrasePattern) -> frozenset[int]:
     """Return the numbers of the lines of a document that only explain: those of a sheet whose name
     or first line is such as `Legend`, and those of a table below such a heading."""
     document = source.document

@@ -14,7 +14,7 @@ from argo_compiler.script.sentences.tree.places import DockLocation
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.language import Language
 from argo_compiler.script.sentences.words.loading import pattern
-from argo_compiler.script.sentences.words.prose import cue_pattern
+from argo_compiler.script.sentences.words.prose import PhrasePattern, cue_pattern
 
 STATEMENT = "a statement that names nothing of the mission"
 _SEPARATOR = re.compile(r"\W*([-=_*~])\1{2,}.*?\1{3,}\W*")
@@ -93,7 +93,7 @@ def row_evidence(text: ScriptText, understanding: Understanding, numbered: bool)
     return next((reason for reason, is_such in tests if is_such(text, found, language)), "")
 
 
-def _cue(name: str, language: Language) -> re.Pattern[str]:
+def _cue(name: str, language: Language) -> PhrasePattern:
     return cue_pattern(name, language.prose.cues[name])
 
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
-from copy import copy
 from dataclasses import replace
 from itertools import pairwise
 
@@ -17,6 +16,8 @@ from argo_compiler.script.sentences.understanding import Understanding
 
 _SIDE_BY_SIDE = 3
 """characters between number and name of one checkpoint: `#8 - pressure gauge 5`"""
+_NO_STATE = frozenset(["understanding", "catalog", "_lookup", "warnings"])
+"""attributes that do not change, or that each proposal begins anew"""
 State = tuple[Memory, CheckpointInfo | None, set[int], set[int], set[int]]
 
 
@@ -26,6 +27,7 @@ class Known:
     def __init__(self, understanding: Understanding, catalog: Catalog) -> None:
         self.understanding = understanding
         self.catalog = catalog
+        self._lookup = Lookup(catalog, understanding.diagnostics, None, None)
         self.memory = Memory()
         self.last_named: CheckpointInfo | None = None
         """what a text named last, also if it left it out; None if that is no single one"""
@@ -50,13 +52,22 @@ class Known:
 
     def state(self) -> State:
         """Return what `reset` goes back to."""
-        memory = copy(self.memory)
-        memory.so_far = dict(memory.so_far)
-        return memory, self.last_named, {*self.excepted}, {*self.deleted}, {*self.spared}
+        return (
+            self.memory.copy(),
+            self.last_named,
+            {*self.excepted},
+            {*self.deleted},
+            {*self.spared},
+        )
 
     def reset(self, state: State) -> None:
         """Forget what was measured and left out since a state."""
         self.memory, self.last_named, self.excepted, self.deleted, self.spared = state
+
+    def fingerprint(self) -> tuple[object, ...]:
+        """Return a value that is the same as long as a text would be proposed the same."""
+        state = (value for name, value in vars(self).items() if name not in _NO_STATE)
+        return tuple(map(_hashable, state))
 
     @contextmanager
     def unchanged(self) -> Iterator[None]:
@@ -148,8 +159,22 @@ class Known:
     def resolver(self) -> NounResolver:
         """Return what looks nouns up; its messages go nowhere."""
         diagnostics = Diagnostics(self.understanding.diagnostics.source)
-        lookup = Lookup(self.catalog, diagnostics, None, None)
-        return NounResolver(lookup, diagnostics, self.memory)
+        return NounResolver(self._lookup.anew(diagnostics), diagnostics, self.memory)
+
+
+def _hashable(value: object) -> object:
+    """Return a value that is equal for equal parts of what is known."""
+    match value:
+        case Memory():
+            named = [tuple([c.id for c in some]) for some in (value.last, value.before)]
+            return (*named, tuple(value.so_far), value.known)
+        case CheckpointInfo():
+            return value.id
+        case set():
+            return frozenset(value)
+        case dict():
+            return tuple(value.items())
+    return value
 
 
 def is_number(mention: Mention) -> bool:

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.script.documents.source import ScriptText
@@ -136,6 +137,12 @@ class Mentions:
 
 def mentions_in(text: ScriptText, understanding: Understanding) -> Mentions:
     """Return what a text has that means something, in the order of the text."""
+    offsets = text.offsets if isinstance(text.offsets, range) else tuple(text.offsets)
+    return _mentions_in(ScriptText(text.content, offsets, text.source), understanding)
+
+
+@lru_cache(maxsize=1024)  # a text is looked at for many reasons
+def _mentions_in(text: ScriptText, understanding: Understanding) -> Mentions:
     words = understanding.words(text)
     phrases = dict(_phrases(words, text, understanding))
     named = [m for m in phrases.values() if m.kind != "pronoun"]
@@ -277,12 +284,9 @@ def _kind_of(nouns: Nouns) -> str:
 
 def _cues(content: str, understanding: Understanding) -> Iterator[Mention]:
     """Yield the cues of a text; of two that overlap, the first and longest."""
-    prose = understanding.language.prose
-    if prose.cue.search(content.lower()) is None:
-        return  # to look for each by itself takes longer
     found: list[Mention] = []
     begins = len(content) - len(content.lstrip(' "(-'))
-    for name, phrases in prose.cues.items():
+    for name, phrases in understanding.language.prose.cues.items():
         if name in _APART:
             continue
         for match in cue_pattern(name, phrases).finditer(content):

@@ -1,6 +1,7 @@
 """Choices of a text by its parts: what those of them mean that mean something."""
 
 import re
+from bisect import bisect_left
 from collections.abc import Iterator
 from contextlib import suppress
 from itertools import pairwise
@@ -19,7 +20,7 @@ from argo_compiler.script.sentences.words.without_effect import MISPLACED
 _MOST_PARTS = 24
 _LONGEST_PART = 8
 """parts that are read as one"""
-_MOST_TAKEN_APART = 20_000
+MOST_TAKEN_APART = 20_000
 """characters of all texts of a script that are taken apart: of some hundreds of open lines"""
 _PASSED_OVER = ("WORD", "SIGN", "STRAY", "DONE", MISPLACED)
 """types of words that a text is read without"""
@@ -31,21 +32,34 @@ _CUT_WORDS = ("AND_", "JOINT", "NEXT", "COLON")
 def by_parts(of: OpenText) -> Iterator[Sentences]:
     """Yield what the parts of a text mean that mean something: the longest that make sense."""
     of.composer.taken_apart += len(of.text.content)
-    if of.composer.taken_apart > _MOST_TAKEN_APART:
+    if of.composer.taken_apart > MOST_TAKEN_APART:
         return
     starts = [0, *_cuts(of.text, of.composer), len(of.text.content)]
-    pieces = (of.text[start:end] for start, end in pairwise(starts))
+    pieces = [of.text[start:end] for start, end in pairwise(starts)]
     known = [bool(_bare(piece, of.composer).content) for piece in pieces]
+    telling = [i for i, piece in enumerate(pieces) if known[i] or not _is_unknown(piece, of)]
+    senseless: set[tuple[int, ...]] = set()
     made: list[str] = []
     i = 0
     while i < len(starts) - 1:
         for k in range(min(len(starts) - 1, i + _LONGEST_PART), i, -1):
-            part = _part(of.text[starts[i] : starts[k]], of.composer) if any(known[i:k]) else None
+            inner = telling[bisect_left(telling, i) : bisect_left(telling, k)]
+            ends = (*inner[:1], *inner[-1:])  # the words around these mean nothing
+            if not any(known[i:k]) or ends in senseless:
+                continue
+            part = _part(of.text[starts[ends[0]] : starts[ends[-1] + 1]], of.composer)
             if part is not None:
                 made += part
                 break
+            senseless.add(ends)
         i = k
     yield tuple(made)
+
+
+def _is_unknown(text: ScriptText, of: OpenText) -> bool:
+    """Return True for a part that consists of words that nobody knows."""
+    types = of.composer.understanding.types(text)
+    return bool(types) and {*types} <= {*_PASSED_OVER}
 
 
 def _cuts(text: ScriptText, composer: Composer) -> list[int]:

@@ -2,11 +2,11 @@
 
 import re
 from bisect import bisect_right
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from itertools import chain, takewhile
-from typing import TypeGuard
+from typing import Any, TypeGuard, TypeVar
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.script.documents.source import Diagnostics, RefusedError, ScriptText
@@ -27,6 +27,7 @@ from argo_compiler.script.proposals.frames import Sentences, floor_names
 from argo_compiler.script.proposals.known import Known
 from argo_compiler.script.proposals.mentions import OF_FORMS, Mention, Mentions, mentions_in
 from argo_compiler.script.proposals.neighbours import Neighbours
+from argo_compiler.script.proposals.parts import MOST_TAKEN_APART
 from argo_compiler.script.proposals.round_fields import propose_rounds
 from argo_compiler.script.proposals.rows import only_floors, propose_row
 from argo_compiler.script.sentences.tree.nouns import AllOf, Noun, TheOne
@@ -38,6 +39,10 @@ from argo_compiler.script.sentences.words.loading import pattern
 
 MAX_PROPOSED = 2000
 """pieces of a script; no more are looked at"""
+Made = dict[tuple[object, ...], tuple[Any, int]]
+"""what was made of pieces, by what was known then, and how many of their characters were taken
+apart"""
+_Result = TypeVar("_Result")
 _NUMBERED = re.compile(r"checkpoint ([0-9]+)")
 _RETURN = re.compile(r"Return to the docking station(?: in starting area ([0-9]+))?\.")
 
@@ -48,16 +53,19 @@ def propose(
     unclear: Collection[int],
     catalog: Catalog,
     start_area: int | None = None,
+    made: Made | None = None,
 ) -> dict[int, Proposal]:
     """Return what is proposed for the unread pieces, and the choices of those that are unclear; by
-    the offset at which a piece begins."""
+    the offset at which a piece begins. `made`: what was made of pieces of this script before, to
+    which it is added what is made now."""
     source = script.source
     places = [place.name for place in catalog.places]
     language = Language.of(script.source_text, places)
     understanding = Understanding(language, frozenset(), Diagnostics(source))
     known = Known(understanding, catalog)
     known.start_area = _start_area(script) or start_area
-    return _Proposer(script, unread, unclear, Composer(understanding, known)).all()
+    composer = Composer(understanding, known)
+    return _Proposer(script, unread, unclear, composer, {} if made is None else made).all()
 
 
 class _Proposer:
@@ -69,6 +77,7 @@ class _Proposer:
         unread: Collection[int],
         unclear: Collection[int],
         composer: Composer,
+        made: Made,
     ) -> None:
         self.script = script
         self.unread = unread
@@ -82,6 +91,8 @@ class _Proposer:
             (p for p in script.pieces if p.text.first in unread), script.rows, self.understanding
         )
         self.found: dict[int, Proposal] = {}
+        self.made = made
+        self.known: tuple[object, ...] = ()
 
     def all(self) -> dict[int, Proposal]:
         """Return the proposals of all pieces."""
@@ -117,7 +128,7 @@ class _Proposer:
                 proposal = Proposal(aside="left out, as another line says")
             in_row = start in self.script.rows
             if proposal is not None and proposal.is_open and (in_row or not any(proposal.choices)):
-                choices = choices_of(self._whole(piece), self.composer, proposal.choices)
+                choices = self._choices(piece, proposal.choices)
                 proposal = replace(proposal, choices=choices)
             if proposal is not None:
                 self.found[start] = proposal
@@ -207,8 +218,8 @@ class _Proposer:
         if row is not None and row.is_heading and (order := self._column_of_order(row, i)):
             return Proposal(choices=((),), doubt=f"`{order}` can give another order of the rows")
         if row is not None:
-            return propose_row(row, self.composer, first=i == 0)
-        made = self.composer.propose(piece.text)
+            return self._once(piece, (), lambda: propose_row(row, self.composer, first=i == 0))
+        made = self._once(piece, (), lambda: self.composer.propose(piece.text))
         if made.aside and self._empties_heading(i):
             return Proposal(doubt="this may be of the line above")
         return made
@@ -225,6 +236,30 @@ class _Proposer:
                 if order != sorted(order):
                     return cell.text.content
         return ""
+
+    def _choices(self, piece: Piece, likeliest: Sequence[Sentences]) -> tuple[Sentences, ...]:
+        whole, key = self._whole(piece), ("choices", *likeliest)
+        return self._once(piece, key, lambda: choices_of(whole, self.composer, likeliest))
+
+    def _once(self, piece: Piece, key: tuple[object, ...], make: Callable[[], _Result]) -> _Result:
+        """Return what is made of a piece. It is not made again where all that is known is the same,
+        and remained so."""
+        composer = self.composer
+        known = composer.known.fingerprint()
+        if known == self.known:
+            known = self.known  # one object for many pieces
+        self.known = known
+        taken_apart = composer.taken_apart
+        left = max(MOST_TAKEN_APART - taken_apart, -1)
+        before = self.made.get(whole := (piece.text.first, key, composer.before, left, known))
+        if before is not None:
+            result: _Result = before[0]
+            composer.taken_apart += before[1]
+            return result
+        result = make()
+        if composer.known.fingerprint() == known:
+            self.made[whole] = result, composer.taken_apart - taken_apart
+        return result
 
     def _empties_heading(self, i: int) -> bool:
         """Return True for a line below a kind that stands alone: `Gauges` over `none today`."""

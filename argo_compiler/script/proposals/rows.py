@@ -615,8 +615,9 @@ def _of_floor(mention: Mention, section: Mention | None, known: Known) -> Sequen
 def _unused(content: str, mentions: Mentions, form: Mapping[str, str]) -> Iterator[str]:
     """Yield the words that say more than that a checkpoint is read, and in which state it should
     be."""
-    words = [cue_pattern(name, form[name]) for name in (*_POSITIONS, "furniture", "asking")]
-    used = [m.span() for pattern in (_FILL, *words) for m in pattern.finditer(content)]
+    used = [fill.span() for fill in _FILL.finditer(content)]
+    for name in (*_POSITIONS, "furniture", "asking"):
+        used += [word.span() for word in cue_pattern(name, form[name]).finditer(content)]
     for word in mentions.unknown:
         said = content[word.start : word.end]
         if not any(a < word.end and word.start < b for a, b in used):

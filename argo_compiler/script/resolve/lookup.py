@@ -2,6 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Collection, Iterable
+from copy import copy
 from typing import Literal, NoReturn
 
 from argo_compiler.base.catalog import Area, Catalog, CheckpointInfo, CheckpointKind, Floor, Place
@@ -56,6 +57,14 @@ class Lookup:
         self._lowest: dict[int | NamedFloor, Span] = {}
         """where the ground floor is named, and where the first one is"""
         self._unsaid = _UNSAID_IN_PLACES | set(catalog.site.lower().split())
+
+    def anew(self, diagnostics: Diagnostics) -> "Lookup":
+        """Return a lookup in the same catalogue that reports to others, as if nothing had been
+        looked up so far."""
+        other = copy(self)
+        other.diagnostics = diagnostics
+        other._lowest = {}
+        return other
 
     def check_quantity(
         self, checkpoint: CheckpointInfo, quantity: Quantity | None, span: Span

@@ -42,6 +42,13 @@ class Memory:
         self.known = True
         """whether all that was ordered so far is understood"""
 
+    def copy(self) -> "Memory":
+        """Return a memory of the same, which forgets and remembers apart from this one."""
+        other = Memory()
+        other.last, other.before, other.known = self.last, self.before, self.known
+        other.so_far = dict(self.so_far)
+        return other
+
     def measured(self, checkpoints: Iterable[CheckpointInfo]) -> None:
         if found := tuple(checkpoints):
             self.before, self.last = self.last, found

@@ -28,6 +28,7 @@ class Grammar:
     parser: Lark
     _known: dict[tuple[str, ...], Branch | int] = field(default_factory=dict)
     """the tree, or the word at which the parser stumbles"""
+    _accepted: dict[tuple[str, ...], frozenset[str]] = field(default_factory=dict)
 
     _MOST = 4096
 
@@ -66,6 +67,14 @@ class Grammar:
 
     def accepted(self, words: tuple[str, ...]) -> frozenset[str]:
         """The types of words with which a sentence that begins with these may go on."""
+        found = self._accepted.get(words)
+        if found is None:
+            if len(self._accepted) >= self._MOST:
+                self._accepted.clear()
+            self._accepted[words] = found = self._accept(words)
+        return found
+
+    def _accept(self, words: tuple[str, ...]) -> frozenset[str]:
         parser = self.parser.parse_interactive("", "sentence")
         for at, type_ in enumerate(words):
             parser.feed_token(Token(type_, "", start_pos=at, end_pos=at + 1))

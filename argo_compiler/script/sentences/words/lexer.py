@@ -240,6 +240,7 @@ def _plain(
     return Word(kind, value, piece.start(), piece.end())
 
 
+@lru_cache(maxsize=4096)
 def _compound(said: str, lexicon: Lexicon) -> tuple[str, object]:
     """`zweihundertfünf` and `dreimal`; any other word is one that is not known."""
     head = folded(said)

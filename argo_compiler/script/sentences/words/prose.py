@@ -1,9 +1,10 @@
 """What stands around the sentences of a script: labels of fields, greetings, remarks, columns."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache, cached_property, lru_cache
+from typing import NamedTuple
 
 from argo_compiler.script.sentences.words.lexicon import Phrases, expand
 
@@ -83,11 +84,6 @@ class Prose:
         """A field's label with its colon; the group that matched is the field's name."""
         names = (f"(?P<{name}>{_key(text)})" for name, text in self.labels.items())
         return re.compile(rf"(?<![\w-])(?:{'|'.join(names)})\s*:", re.IGNORECASE)
-
-    @cached_property
-    def cue(self) -> re.Pattern[str]:
-        """The pattern of the phrases of all cues, in lower case."""
-        return re.compile(rf"(?<![\w-])(?:{either('|'.join(self.cues.values()))})")
 
     @cached_property
     def label_words(self) -> frozenset[str]:
@@ -172,58 +168,120 @@ def _key(text: str) -> str:
     return either(text).replace(r"\s+", r"[\s_]+")
 
 
-class Beginnings:
-    """Phrases with which a text may begin, in any case. A pattern of hundreds of phrases takes long
-    to make, so there is one for each first word, made when a text begins with it."""
+class PhrasePattern:
+    """Phrases in any case that stand in a text, and neither begin nor end within a word; of several
+    the longest. To be used as a pattern of `re`.
+
+    A pattern of hundreds of phrases takes long to make, and long to search for. So there is one for
+    each first word, made when a text has this word.
+    """
 
     def __init__(self, phrases: str) -> None:
-        self._said: dict[str, list[str]] = {}
-        for phrase in expand(phrases):
-            self._said.setdefault(_first_letters(phrase), []).append(phrase)
-        self._made: dict[tuple[str, bool], re.Pattern[str]] = {}
+        self._phrases = expand(phrases)
+        self._begun: dict[str, list[str]] = {}
+        for phrase in self._phrases:
+            self._begun.setdefault(_first_letters(phrase), []).append(phrase)
+        self._first = frozenset(self._begun)
+        self._made: dict[str, re.Pattern[str]] = {}
 
-    def search(self, text: str) -> bool:
-        """Return True if one of the phrases is somewhere in a text."""
-        return any(self.match(text, word.start()) for word in _WORD_START.finditer(text))
+    @cached_property
+    def whole(self) -> re.Pattern[str]:
+        """The pattern of all the phrases."""
+        return _pattern_of(self._phrases)
+
+    @property
+    def pattern(self) -> str:
+        """The text of the pattern of all the phrases."""
+        return self.whole.pattern
 
     def match(self, text: str, at: int = 0) -> re.Match[str] | None:
-        """Return the longest phrase that begins at a place of the text, and that does not end
-        within a word; None if there is none."""
-        first = _first_letters(text, at)
-        behind = at + len(first)
-        # A letter that is not ASCII may be one of a phrase's letters, in capitals.
-        key = first, text[behind : behind + 1].isascii()
-        if key[1] and first not in self._said:
-            return None
-        if key not in self._made:
-            begun = self._said if not key[1] else (first,)
-            said = [p for start in begun if start.startswith(first) for p in self._said[start]]
-            self._made[key] = _beginning(said)
-        return self._made[key].match(text, at)
+        """Return the phrase that begins at a place of a text; None if there is none."""
+        pattern = self._beginning(text, at)
+        return None if pattern is None else pattern.match(text, at)
+
+    def fullmatch(self, text: str) -> re.Match[str] | None:
+        """Return the phrase that is all of a text; None if it is none."""
+        pattern = self._beginning(text, 0)
+        return None if pattern is None else pattern.fullmatch(text)
+
+    def search(self, text: str, at: int = 0) -> re.Match[str] | None:
+        """Return the first phrase in a text, from a place on; None if there is none."""
+        return next(self.finditer(text, at), None)
+
+    def finditer(self, text: str, at: int = 0) -> Iterator[re.Match[str]]:
+        """Return the phrases in a text, from a place on."""
+        words = _words(text)
+        if words is None:
+            return self.whole.finditer(text, at)
+        return iter(()) if self._first.isdisjoint(words.letters) else self._found(text, words, at)
+
+    def sub(self, by: str, text: str) -> str:
+        """Return a text with another one in place of each phrase."""
+        return text if self.search(text) is None else self.whole.sub(by, text)
+
+    def _found(self, text: str, words: "_Words", end: int) -> Iterator[re.Match[str]]:
+        for place, letters in words.places:
+            if place >= end and letters in self._first:
+                found = self._begun_with(letters).match(text, place)
+                if found is not None:
+                    end = found.end()
+                    yield found
+
+    def _beginning(self, text: str, at: int) -> re.Pattern[str] | None:
+        if not text.isascii() and _ODD.search(text):
+            return self.whole
+        letters = _first_letters(text, at)
+        return self._begun_with(letters) if letters in self._first else None
+
+    def _begun_with(self, letters: str) -> re.Pattern[str]:
+        pattern = self._made.get(letters)
+        if pattern is None:
+            pattern = self._made[letters] = _pattern_of(self._begun[letters])
+        return pattern
 
 
-@cache
-def begins(phrases: str) -> Beginnings:
-    """What begins with one of the phrases."""
-    return Beginnings(phrases)
+class _Words(NamedTuple):
+    """Where words of a text, and signs, begin."""
+
+    places: tuple[tuple[int, str], ...]
+    """each with the letters of ASCII that it begins with, in lower case"""
+    letters: frozenset[str]
 
 
-_IN_BRACKETS = re.compile(r"\s*[(\[]\s*[^\W\d_][^()\[\]]*[)\]]$|\s*[(\[][%°][)\]]$")
-"""such as a unit, at the end of a heading"""
 _FIRST_LETTERS = re.compile("[A-Za-z]*")
-_WORD_START = re.compile(r"(?<![\w-])\w")
+_WORD = re.compile(r"(?<![\w-])(?:([A-Za-z]+)|\S)")
+_ODD = re.compile("[\u0130\u0131\u017f\u212a]")
+"""letters that are letters of ASCII in any case"""
+
+
+@lru_cache(maxsize=512)
+def _words(text: str) -> _Words | None:
+    """Return the words of a text; None if it has odd letters."""
+    if not text.isascii() and _ODD.search(text):
+        return None
+    places = tuple([(word.start(), (word[1] or "").lower()) for word in _WORD.finditer(text)])
+    return _Words(places, frozenset(letters for _, letters in places))
 
 
 def _first_letters(text: str, at: int = 0) -> str:
     found = _FIRST_LETTERS.match(text, at)
-    return found.group().lower() if found else ""
+    return found[0].lower() if found else ""
 
 
-def _beginning(phrases: list[str]) -> re.Pattern[str]:
-    return re.compile(rf"(?:{either('|'.join(phrases))})(?![\w-])", re.IGNORECASE)
+def _pattern_of(phrases: Iterable[str]) -> re.Pattern[str]:
+    return re.compile(rf"(?<![\w-])(?:{either('|'.join(phrases))})(?![\w-])", re.IGNORECASE)
 
 
 @cache
-def cue_pattern(name: str, phrases: str) -> re.Pattern[str]:
+def begins(phrases: str) -> PhrasePattern:
+    """Return the pattern of the phrases that a text lists."""
+    return PhrasePattern(phrases)
+
+
+def cue_pattern(_name: str, phrases: str) -> PhrasePattern:
     """Return the pattern of the phrases of a cue."""
-    return re.compile(rf"(?<![\w-])(?P<{name}>{either(phrases)})(?![\w-])", re.IGNORECASE)
+    return begins(phrases)
+
+
+_IN_BRACKETS = re.compile(r"\s*[(\[]\s*[^\W\d_][^()\[\]]*[)\]]$|\s*[(\[][%°][)\]]$")
+"""such as a unit, at the end of a heading"""

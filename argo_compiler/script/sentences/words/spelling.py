@@ -37,9 +37,14 @@ def _long(known: frozenset[str]) -> list[str]:
 
 def nearest(text: str, known: Iterable[str], limit: int = 3) -> tuple[str, ...]:
     """Up to `limit` known texts, the most similar first; none that is not similar at all."""
+    return _nearest(text, tuple(known), limit)
+
+
+@lru_cache(maxsize=4096)
+def _nearest(text: str, known: tuple[str, ...], limit: int) -> tuple[str, ...]:
     from rapidfuzz import fuzz, process
 
     found = process.extract(
-        text, list(known), scorer=fuzz.ratio, processor=str.lower, limit=limit, score_cutoff=60
+        text, known, scorer=fuzz.ratio, processor=str.lower, limit=limit, score_cutoff=60
     )
     return tuple(choice for choice, _, _ in found)

@@ -407,6 +407,9 @@ class Asides:
     def corrects(self, remark: ScriptText) -> bool:
         """Whether a remark may take something back, or say when or how it is done."""
         words = self.understanding.words(remark)
+        in_case = cue_pattern("in_case", self.prose.cues["in_case"]).match(remark.content)
+        if in_case is not None and ":" in remark.content:
+            return True  # `- bei Abweichung: Meldung`
         telling = any(word.type in _TELLING or _is_figure(remark, word) for word in words)
         return telling or self.overturns(remark) or _limits(remark, "set_aside", "correcting")
 

@@ -98,7 +98,10 @@ class SentenceReader:
             return self._unread("too-long", message, text, "write several sentences")
         text = self.understanding.figures(self.understanding.rewritten(text))
         if not self.understanding.types(text):
-            self.note(text, "a remark")
+            if text.content.endswith(":") and self.asides.sets_aside(text):
+                self._ask_of_heading(text)  # `Could:`
+            else:
+                self.note(text, "a remark")
             return []
         if self._is_stray(text, item):
             return self._ask_of_stray(text)

@@ -57,6 +57,7 @@ _UNSURE = (
 )
 """mentions beside which a proposal has to be confirmed"""
 _LIKE_CHECKS = re.compile(r"(?:Check|Order:|Maximum|Start|Return|End)")
+_NUMBERED = re.compile(r"checkpoint (\d+)")
 _HOMEWARDS = re.compile(r"Return |End of the mission|Abort")
 _LIST = re.compile(r"\s*#?\w*\d(?:(?:\s*[,;/&+]\s*|\s+(?:and|und)\s+|\s+)#?\w*\d)*\W*")
 """names with figures, one after the other: `R25, R12`, `4 and 5`"""
@@ -286,8 +287,9 @@ class Composer:
                 self.known.reset(before)
                 return None
             i = k
-        if unused and all(map(_HOMEWARDS.match, sentences)):
-            return None  # `Siren: back to the dock`
+        named = _NUMBERED.findall(" ".join(sentences))
+        if (unused and any(map(_HOMEWARDS.match, sentences))) or len({*named}) < len(named):
+            return None  # `Siren: back to the dock`, `all gauges, but level gauge 1 last`
         return Proposal(tuple(sentences), tuple(unused)) if sentences else None
 
     def within(self, text: ScriptText) -> ScriptText:

@@ -71,11 +71,14 @@ class OpenText:
         `subject`: the checkpoint that `again` means."""
         acts: list[str] = []
         spared = False
+        limited = mentions.has("limit", "WITHIN", "AT_MOST", "LATEST", "MOST_TIME")
         for mention in mentions.mentions:
             spared = mention.kind in _SPARING or (spared and mention.kind == "MEASURE")
             if mention.kind == "checkpoints" and not spared:
                 named = self.named_by(mention)
                 acts += [f"check {checkpoint_words(named)}"] if named else []
+            elif limited:
+                continue  # `home within 45 min`
             elif mention.kind == "DURATION" and (length := length_words(mention.value)):
                 acts.append(f"wait for {length}")
         checks = any(act.startswith("check") for act in acts)

@@ -53,6 +53,8 @@ _RANGE = re.compile(
 _PLAIN_RANGE = re.compile(r"[\d.,]+\s*(?:-|–|—|to|bis|\.\.)\s*[\d.,]+")
 _NUMBERED = re.compile(r"(?:(?:no|nr)\.?\s*|#\s*)?\d{1,6}", re.IGNORECASE)
 _NUMBER = re.compile(r"\d+(?:\.\d+)*\.?")
+_BARE = re.compile(r"\d+(?:[.,]\d+)?(?: ?[^\d\s]\S*)?|[A-Za-z]")
+"""a number, perhaps with a unit, or a letter"""
 _PLAIN = re.compile(r"\d+(?:[.,]\d+)?")
 _BAR = {"bar": 1.0, "kpa": 0.01, "mbar": 0.001, "psi": 0.0689476, "mpa": 10.0}
 _UNITS = {
@@ -71,11 +73,12 @@ _IDLE_CELL = re.compile(r"[-–—_. \d,/%]*|[A-Za-z]?\d*[a-z]?[.):]?")
 _TICKED_BOX = re.compile(r"[☑☒✓✔✗✘]|\[[xX*✓✔]\]")
 _CHECKPOINT = re.compile(r"(?:#|(?:CP|KP|C)[-_ ]?)?0*([1-9][0-9]{0,4})", re.IGNORECASE)
 """in a column of checkpoints"""
-_CHANGING = (
-    *("DURATION", "MOST_TIME", "SPAN", "TIMES", "EVENT", "UNTIL", "EXCEPT", "IF", "UNLESS"),
-    *("WITHIN", "BEFORE", "AFTER", "later", "again", "MORE", "EVERY", "WAIT", "PAUSE", "ELSE"),
-)
-"""kinds of mentions that change how, when or whether the checkpoint of a row is read"""
+_IDLE = OF_FORMS | {
+    *("checkpoints", "place", "UNIT", "LSQB", "RSQB", "LPAR_HOW", "first", "last", "everything"),
+    *("BOTH", "each", "FLOOR", "ORDINAL", "AREA", "FLOOR_NAME", "OUTSIDE", "EXACTLY", "leave_out"),
+    *("UNIT_S", "Y", "HASH", "OR", "OR_TEST", "HALF", "STRING", "GO", "start"),
+}
+"""kinds of mentions that do not change how, when or whether the checkpoint of a row is read"""
 _TICKED = "this row is ticked, or marked as done: it may be left out"
 
 
@@ -144,10 +147,16 @@ def propose_row(row: FormRow, composer: Composer, first: bool = False) -> Propos
     if found.described and len(ids) == 1:
         found.unused = [word for word in found.unused if word not in found.described]
     _compare(row.cells, next(iter(ids.values())), found, composer)
+    found.unused += _unexplained(row, ids)
     words = checkpoint_words(list(ids.values()))
     check, spare = f"Check {words}{found.manner}.", f"Do not check {words}."
     if row.doubt:
         return Proposal(choices=((spare,), (check,)), doubt=row.doubt)
+    if "~~" in row.place.content:
+        return Proposal(choices=((spare,), (check,)), doubt=_TICKED)
+    if len(ids) > 1 and "(" in row.place.content:  # `valve R31 (see #11)`
+        each = [(f"Check checkpoint {id}.",) for id in ids]
+        return Proposal(choices=(*each, (check,), ()), doubt="this row names several checkpoints")
     if (row.box is not None and row.box.strip()) or _TICKED_BOX.search(row.place.content):
         return Proposal(choices=((spare,), (check,)), doubt=_TICKED)
     if found.tag and _may_explain(row, found.tag):
@@ -573,9 +582,9 @@ def _read_cell(text: ScriptText, found: _Row, composer: Composer) -> None:
         return
     unused = [*_unused(content, mentions, form)]
     found.unused += unused or _told(text, composer) or mentions.idle
-    others = mentions.of(*_CHANGING)
+    others = [mention for mention in mentions.mentions if mention.kind not in _IDLE]
     made = composer.propose(text).sentences if others and named else ()
-    asked = content.rstrip().endswith("?") and bool(others) and others[0].start == 0
+    asked = content.rstrip().endswith("?")
     if made and not found.sentences:
         found.sentences = made
     elif others and not asked:  # `Is valve R25 open?`
@@ -622,6 +631,25 @@ def _unused(content: str, mentions: Mentions, form: Mapping[str, str]) -> Iterat
         said = content[word.start : word.end]
         if not any(a < word.end and word.start < b for a, b in used):
             yield said
+
+
+def _unexplained(row: FormRow, named: Mapping[int, CheckpointInfo]) -> Iterator[str]:
+    """Yield the numbers and letters of a row under headings that nobody knows, but for what the
+    site has: the number of the checkpoint, its floor, both ends of its normal range."""
+    known: set[str] = set()
+    said = {cell.text.content.strip() for cell in row.cells}
+    for one in named.values():
+        ends = {f"{one.nominal.low:g}", f"{one.nominal.high:g}"}
+        known |= {
+            str(one.id),
+            str(one.floor),
+            one.name.split()[-1],
+            *(ends if ends <= said else ()),
+        }
+    for cell in row.cells[1:]:
+        content = cell.text.content.strip()
+        if cell.role is CellRole.OTHER and _BARE.fullmatch(content) and content not in known:
+            yield content
 
 
 # ---- what the site knows of the checkpoint

@@ -215,8 +215,12 @@ class Manners:
             self.context.refuse_missing("no-task", message, order.span, hint)
         if isinstance(order, orders.Retry):
             self._retry(order, recent)
-        else:
-            self.furnish(order, recent)
+            return
+        if order.manner.time_limit is not None and len(recent) > 1:
+            message = "this time can be that of each of these tasks, or of the whole mission"
+            hint = "write `Maximum duration: 30 minutes`, or name the time at each task"
+            self.diagnostics.refuse("ambiguous-manner", message, order.span, hint)
+        self.furnish(order, recent)
 
     def _retry(self, order: orders.Retry, recent: Sequence[Do]) -> None:
         if order.again:

@@ -73,6 +73,10 @@ _THERE = Doubt(
     "can be the docking station, or the place named before",
     "name the place: `return to the docking station`",
 )
+_MAY_BE = Doubt(
+    "can mean that what follows is done in some cases only, or always",
+    "write `if there is time, ...`, or leave it out",
+)
 _LAST_OR_ALL = Doubt(
     "can mean that what comes behind the list is meant of its last item, or of all",
     "write two sentences",
@@ -148,6 +152,11 @@ def _doubts(words: Sequence[Word], content: str, ordered: bool) -> Iterator[tupl
                     yield i, _ALSO
             case "THITHER" if after[:2] == ["JOINT", "BACK"]:
                 yield i, _AND_BACK
+            case "LPAR" if _counts(after) and _ends_list(words[:i]):
+                yield i, _LAST_OR_ALL
+            case "BIDDING" | "SHOULD" if i == 0 and content[word.end : word.end + 1] == ":":
+                if not _is(shown, "requiring"):
+                    yield i, _MAY_BE
             case "SEQUENCE" if _is_within_list(words, i):
                 clause = takewhile(lambda type_: type_ not in VERBS, after)
                 parted = parts_list(words, i, without_empty(words[:i]))
@@ -175,6 +184,17 @@ def _is_within_list(words: Sequence[Word], i: int) -> bool:
     after = next((w.type for w in words[i + 1 :] if w.type not in WITHOUT_EFFECT), "")
     joined = before[-1:] == ["JOINT"] and bool({*before} & {"MEASURE", "BE_MEASURED"})
     return joined and after in _NAMED | {"ALL", "EVERY"}
+
+
+def _counts(types: Sequence[str]) -> bool:
+    """Return True for what stands in `(3x)`, `(twice)`."""
+    return [*types[:2]] == ["NUMBER", "X"] or [*types[:1]] in (["TIMES"], ["MORE"])
+
+
+def _ends_list(words: Sequence[Word]) -> bool:
+    """Return True for words that end with a list: `PG1, then PG2`."""
+    clause = [*takewhile(lambda word: word.type not in OPENINGS, reversed(words))]
+    return sum(word.type in _NAMED | {"IDENT", "NUMBER"} for word in clause) > 2
 
 
 def _next(words: Sequence[Word], i: int, content: str) -> str:
@@ -254,6 +274,10 @@ class PlacingCheck:
     def _placed(self, placed: Placed, sentence: Sentence) -> None:
         before, after = sentence.orders[: placed.orders], sentence.orders[placed.orders :]
         match placed.placing:
+            case Placing.THERE if _starts_and_ends(sentence):
+                message = "this would end the mission where it starts, before its tasks"
+                hint = "write `Start in starting area 1. End of the mission: starting area 1.`"
+                self.diagnostics.error("stray-clause", message, placed.span, hint)
             case Placing.THERE:
                 if any(_is_of_all(order) for order in _orders(sentence)):
                     message = "it is not clear where `there` is"
@@ -290,6 +314,13 @@ def _orders(sentence: Sentence) -> Iterator[ScriptOrder]:
     yield from sentence.orders
     for case in sentence.cases:
         yield from case.orders
+
+
+def _starts_and_ends(sentence: Sentence) -> bool:
+    """Return True for `Start in starting area 1 and finish there`."""
+    ends = (o for o in sentence.orders if isinstance(o, orders.Plain))
+    starts = any(isinstance(order, orders.Start) for order in sentence.orders)
+    return starts and any(order.word is orders.PlainWord.END for order in ends)
 
 
 def _is_of_all(order: ScriptOrder) -> bool:

@@ -204,7 +204,7 @@ def test_sentences_with_commas_are_no_columns(catalog: Catalog) -> None:
 def test_times_of_day_as_columns_are_asked_about(catalog: Catalog) -> None:
     rows = (("Gauge", "Normal", "06:00", "14:00"), ("Pressure gauge 1", "3 - 7", 4.1, None))
     draft = draft_of(workbook(rows), "log.xlsx", catalog)
-    (line,) = draft.left
+    line = draft.left[0]
     assert line.place == "A1:D1"
     assert "C2" in line.reason
 

@@ -87,6 +87,19 @@ def conditions(text: str, catalog: Catalog) -> list[tuple[str | None, ConditionT
         ("Check #1.\nGauges: see list", "no field `Gauges`"),
         ("Level gauges: all on floor 1\nCheck #1.", "no field `Level gauges`"),
         ("Number of checkpoints: 3\nCheckpoints: 14, 15", "no field `Number of checkpoints`"),
+        # a duty that may not be one, counts behind lists, limits of several tasks
+        ("Could: #5, #6, #7", "in some cases only, or always"),
+        ("Could:\n- #5\n- #6", "not tasks, or not always"),
+        ("PG1, then PG2 (3x)", "last item, or of all"),
+        ("Manometer 1, danach Manometer 2 (3x)", "last item, or of all"),
+        ("Check #1 and #4. At most 30 minutes.", "or of the whole mission"),
+        (
+            "Prüfe R7 und R31. Nicht länger als eine Stunde, und wenn ein Gasleck erkannt wird, "
+            "fahre heim.",
+            "or of the whole mission",
+        ),
+        ("Check R31 - in case of smoke: call the guard", ""),
+        ("Check #1.\nAll gauges on floor 2, but level gauge 2 last", "`last`"),
         # items to go back to, ticks and strokes
         ("a) R12\nb) R7\nc) go back to a)", ""),
         ("1. valve R25\n2. valve R12 (crossed out)", "a change, or a remark"),

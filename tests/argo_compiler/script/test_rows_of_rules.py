@@ -301,3 +301,36 @@ def test_no_cell_beside_a_target_is_passed_over(heading: str, cell: str, catalog
         rows = f"| 1 | valve R12 | |\n| 2 | {target} | {cell} |"
         line = draft_of(f"| Step | Target | {heading} |\n|---|---|---|\n{rows}", catalog).lines[-1]
         assert line.is_left, (target, line.sentences)
+
+
+@pytest.mark.parametrize(
+    ("heading", "cell"),
+    [
+        ("If exceeded", "return to dock"),
+        ("What then", "abort"),
+        ("Wenn zu hoch", "zurück zur Ladestation"),
+        ("Speed", "0.3 m/s"),
+        ("Retries", "2"),
+        ("Times", "7"),
+        ("Group", "A"),
+        ("Lamp", "charge"),
+    ],
+)
+def test_no_cell_of_a_checkpoint_is_passed_over(heading: str, cell: str, catalog: Catalog) -> None:
+    rows = f"No | Item | {heading}\n1 | pressure gauge 1 | {cell}\n2 | valve R12 | "
+    line = draft_of(f"Check #3.\n{rows}", catalog).lines[2]
+    assert line.is_left, line.sentences
+
+
+@pytest.mark.parametrize(
+    "row",
+    [
+        "- [ ] #9 pressure gauge 4 after #10",
+        "- [ ] #10 valve R31 (see #11)",
+        "- [ ] ~~#17 valve R40~~",
+        "- [ ] #13 pressure gauge 6, only if #3 is out of range",
+        "- [ ] #8 pressure gauge 5, then home",
+    ],
+)
+def test_a_row_of_a_checklist_is_read_whole_or_left(row: str, catalog: Catalog) -> None:
+    assert draft_of(f"Check #3.\n{row}\n- [ ] #6", catalog).lines[1].is_left

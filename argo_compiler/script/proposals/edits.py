@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 from argo_compiler.base.catalog import CheckpointInfo
+from argo_compiler.script.documents.signs import CLOCK
 from argo_compiler.script.proposals.frames import Sentences
 from argo_compiler.script.proposals.mentions import checkpoint_words
 from argo_compiler.script.proposals.open_text import OpenText
@@ -34,8 +35,9 @@ def by_edits(of: OpenText) -> Iterator[Sentences]:
     named = [c.id for mention in of.found.of("checkpoints") for c in of.named_by(mention)]
     items = [known.items.get(of.text.content[m.start : m.end]) for m in of.found.of("NUMBER")]
     ids = [*dict.fromkeys([*named, *(id for id in items if id is not None)])]
-    if not ids or not above or of.found.has("again", "MORE"):
-        return
+    timed = of.found.has("DURATION", "SPAN", "EARLIEST") or CLOCK.search(of.text.content)
+    if not ids or not above or timed or of.found.has("again", "MORE"):
+        return  # `not before 11:00`
     id, others = ids[0], [one for one in ids[1:] if one in above]
     verb = "Move" if id in above else "Add"
     yield from _beside(of, f"{verb} checkpoint {id}", [one for one in others if one != id])

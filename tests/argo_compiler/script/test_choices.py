@@ -177,3 +177,8 @@ def test_a_return_that_is_chosen_above_the_tasks_is_the_end(catalog: Catalog) ->
     text = "3.2 The whole thing ends docked where it began, Mia.\n1. Check #3.\n2. Check #5."
     choices = import_script(text, catalog).lines[0].choices
     assert ("End of the mission: docking station.",) in choices
+
+
+def test_a_time_before_which_nothing_is_done_moves_no_checkpoint(catalog: Catalog) -> None:
+    (*_, last) = draft_of(f"{BEFORE}hmm, R7 but not before 11:00, they are filling", catalog).lines
+    assert last.choices[0] == ("Check checkpoint 11.",)

@@ -110,9 +110,7 @@ def import_script(
     made: Made = {}
     script = reading.script
     if unread or unclear:  # not of a script that is understood whole, which is to start fast
-        from argo_compiler.script.proposals.proposing import propose
-
-        proposals = propose(script, unread, unclear - unread, catalog, start_area, made)
+        proposals = _propose(script, unread, unclear - unread, catalog, start_area, made)
     proposed = {at: p.sentences for at, p in proposals.items() if not p.is_open}
     suggested = _match(tuple(suggestions), reading.script.pieces)
     assisted = _assisted(reading.script, unread - proposed.keys(), suggested, catalog)
@@ -127,14 +125,11 @@ def import_script(
         errors = _errors_by_piece(reading)
     lacking = {at for at in errors if at not in proposals or not proposals[at].choices}
     if lacking:  # in error only with what was decided or proposed for this line or for others
-        from argo_compiler.script.proposals.proposing import propose
-
-        others = propose(script, unread - lacking, unclear | lacking, catalog, start_area, made)
+        others = _propose(script, unread - lacking, unclear | lacking, catalog, start_area, made)
         for at in lacking & others.keys():
             before = proposals.get(at, others[at])
             proposals[at] = replace(before, choices=others[at].choices)
-    if proposed or assisted:
-        proposals |= {at: one for at, one in assisted.items() if at not in refused}
+    proposals |= {at: one for at, one in assisted.items() if at not in refused}
     known = _Known(errors, acts, proposals, suggested, assisted, refused)
     lines = tuple(_lines(reading, known))
     left = any(line.is_left for line in lines)
@@ -147,6 +142,20 @@ def import_script(
         diagnostics=_all_diagnostics(reading, notes),
         text=reading.script.source_text,
     )
+
+
+def _propose(
+    script: Script,
+    unread: Collection[int],
+    unclear: Collection[int],
+    catalog: Catalog,
+    start_area: int | None,
+    made: "Made",
+) -> "dict[int, Proposal]":
+    """Return the proposals for pieces of a script; see `propose`, which is imported only here."""
+    from argo_compiler.script.proposals.proposing import propose
+
+    return propose(script, unread, unclear, catalog, start_area, made)
 
 
 def _all_diagnostics(reading: _Reading, notes: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:

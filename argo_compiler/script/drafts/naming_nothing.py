@@ -10,7 +10,7 @@ from argo_compiler.script.drafts.draft import Draft, DraftLine, LineState
 from argo_compiler.script.proposals.mentions import mentions_in
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.language import Language
-from argo_compiler.script.sentences.words.prose import cue_pattern
+from argo_compiler.script.sentences.words.prose import phrase_pattern
 from argo_compiler.script.sentences.words.spelling import candidates
 
 MOST_LINES = 1_000
@@ -80,6 +80,6 @@ def _unknown_words(content: str, language: Language) -> list[str] | None:
     if found.mentions or found.announces or found.joining & _POINTING:
         return None
     cues = ((name, said) for name, said in language.prose.cues.items() if name not in _IDLE_CUES)
-    if any(cue_pattern(name, said).search(content) is not None for name, said in cues):
+    if any(phrase_pattern(said).search(content) is not None for name, said in cues):
         return None
     return [content[word.start : word.end] for word in found.unknown]

@@ -15,7 +15,7 @@ from argo_compiler.script.sentences.grammar.parser import StumbleError
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.lexicon import expand
 from argo_compiler.script.sentences.words.loading import pattern
-from argo_compiler.script.sentences.words.prose import Prose, begins, cue_pattern, either
+from argo_compiler.script.sentences.words.prose import Prose, either, phrase_pattern
 from argo_compiler.script.sentences.words.word import VERBS, Word
 
 _MANNERS = frozenset(
@@ -106,21 +106,22 @@ class Asides:
     def opens(self, content: str) -> bool:
         """Whether a line begins as the first or last one of a letter does."""
         return bool(
-            begins(self.prose.greeting).match(content) or begins(self.prose.closing).match(content)
+            phrase_pattern(self.prose.greeting).match(content)
+            or phrase_pattern(self.prose.closing).match(content)
         )
 
     def retracts(self, content: str) -> bool:
         """Return True if a line takes back what stands above it: `sorry, not R25 but R12`."""
-        return begins(self.prose.cues["retracting"]).match(content) is not None
+        return phrase_pattern(self.prose.cues["retracting"]).match(content) is not None
 
     def greeting(self, text: ScriptText) -> int:
         """Where a greeting at the beginning of a text ends; 0 if there is none."""
-        found = begins(self.prose.greeting).match(text.content)
+        found = phrase_pattern(self.prose.greeting).match(text.content)
         return 0 if found is None else self._line_of_letter(text, found.end())
 
     def closing(self, text: ScriptText) -> bool:
         """Whether a text closes a letter."""
-        found = begins(self.prose.closing).match(text.content)
+        found = phrase_pattern(self.prose.closing).match(text.content)
         whole = len(text.content.strip())
         return found is not None and self._line_of_letter(text, found.end(), whole) == whole
 
@@ -136,14 +137,14 @@ class Asides:
 
     def is_small_talk(self, text: ScriptText) -> bool:
         """Whether a sentence is one of those that letters are made of, and no more."""
-        found = begins(self.prose.small_talk).match(text.content)
+        found = phrase_pattern(self.prose.small_talk).match(text.content)
         if found is None or self.names(text):
             return False
         return not self.asks(text[found.end() :].strip())
 
     def is_reason(self, text: ScriptText) -> bool:
         """Whether a part of a sentence says why: `because it was replaced`."""
-        return begins(self.prose.reason).match(text.content) is not None
+        return phrase_pattern(self.prose.reason).match(text.content) is not None
 
     def is_signature(self, text: ScriptText) -> bool:
         """Whether a line behind the end of a letter is a name, an address or the like."""
@@ -156,9 +157,9 @@ class Asides:
         """Whether a line may be the title of a script, or the heading of a part of it."""
         words = text.content.lower().rstrip(":").split()
         if self._lists_kind(text) or self._counts_rounds(text):
-            return False
+            return False  # `Gauges: all on floor 1`, `Rounds: 3`
         if ".." in text.content or self.turns(text):
-            return False  # `for i in 1..3`, `Floor 3, bottom to top`, `Rounds: 3`
+            return False  # `for i in 1..3`, `Floor 3, bottom to top`
         if text.content.endswith(":") and {*words} <= _phrases_of(self.prose.around_reactions):
             return True  # `To be obeyed all the time:`
         short = len(words) <= _LONGEST_TITLE
@@ -180,7 +181,7 @@ class Asides:
     def _counts_rounds(self, text: ScriptText) -> bool:
         head, colon, _ = text.content.partition(":")
         phrases = self.prose.form["rounds_count"]
-        return bool(colon) and cue_pattern("rounds", phrases).fullmatch(head.strip()) is not None
+        return bool(colon) and phrase_pattern(phrases).fullmatch(head.strip()) is not None
 
     def _is_headline(self, text: ScriptText) -> bool:
         """Return True if a text that names a checkpoint or a floor is only a headline.
@@ -196,7 +197,7 @@ class Asides:
             return False
         cues = self.prose.cues
         spoken = ("forbidding", "past", "leave_out", "stating", "correction")
-        return all(cue_pattern(name, cues[name]).search(content) is None for name in spoken)
+        return all(phrase_pattern(cues[name]).search(content) is None for name in spoken)
 
     def _of_checkpoint(self, text: ScriptText) -> bool:
         """Return True for `Leak test at pressure gauge 2` and `Inspection protocol #47`."""
@@ -244,7 +245,7 @@ class Asides:
 
     def is_explicit_title(self, text: ScriptText) -> bool:
         """Whether a title says itself that it is one: `Mission Protocol #2`."""
-        return begins(self.prose.explicit_title).match(text.content) is not None
+        return phrase_pattern(self.prose.explicit_title).match(text.content) is not None
 
     # ---- parts of sentences
 
@@ -282,10 +283,10 @@ class Asides:
         )
         if heading:
             yield behind_colon, [text[: colon + 1]]
-        occasion = begins(self.prose.occasion).match(content)
+        occasion = phrase_pattern(self.prose.occasion).match(content)
         if occasion is not None:
             yield from self._behind(text, occasion.end())
-        reason = begins(self.prose.reason)
+        reason = phrase_pattern(self.prose.reason)
         cuts = (cut for cut in _CUT.finditer(content) if reason.match(content, cut.end()))
         for cut in islice(cuts, _MOST_REASONS):
             comma = content.find(",", cut.end())
@@ -407,7 +408,7 @@ class Asides:
     def corrects(self, remark: ScriptText) -> bool:
         """Whether a remark may take something back, or say when or how it is done."""
         words = self.understanding.words(remark)
-        in_case = cue_pattern("in_case", self.prose.cues["in_case"]).match(remark.content)
+        in_case = phrase_pattern(self.prose.cues["in_case"]).match(remark.content)
         if in_case is not None and ":" in remark.content:
             return True  # `- bei Abweichung: Meldung`
         telling = any(word.type in _TELLING or _is_figure(remark, word) for word in words)

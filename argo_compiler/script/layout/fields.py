@@ -21,7 +21,7 @@ from argo_compiler.script.sentences.tree.script import AreaChosen, Areas, Script
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.lexer import unquoted
 from argo_compiler.script.sentences.words.lexicon import expand
-from argo_compiler.script.sentences.words.prose import begins
+from argo_compiler.script.sentences.words.prose import phrase_pattern
 from argo_compiler.script.sentences.words.spelling import candidates, nearest
 from argo_compiler.script.sentences.words.word import VERBS, Word
 
@@ -478,7 +478,7 @@ class ScriptFields:
 
     def leaves_open(self, text: ScriptText) -> bool:
         """Reads a sentence that leaves the docks open: `The docks are chosen on the day`."""
-        said = begins(self.prose.left_open).match(text.content)
+        said = phrase_pattern(self.prose.left_open).match(text.content)
         if said is None or self._may_ask(text[said.end() :]):
             return False
         self.header.areas_open = Text(span=text.span(), text=text.content)

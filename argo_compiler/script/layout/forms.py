@@ -13,7 +13,7 @@ from enum import StrEnum
 
 from argo_compiler.script.documents.signs import BLANK, RULE
 from argo_compiler.script.documents.source import ScriptText, Source, join
-from argo_compiler.script.sentences.words.prose import Prose, cue_pattern
+from argo_compiler.script.sentences.words.prose import Prose, phrase_pattern
 
 SHEET_HEADINGS = "the headings of columns"
 """what the line of a sheet's headings is set aside as"""
@@ -461,7 +461,7 @@ def _headings(cells: Sequence[Cell], prose: Prose) -> Columns | None:
 
     def role_of(cell: Cell) -> CellRole:
         heading = cell.text.content
-        if cue_pattern("history", prose.form["history"]).search(heading) is not None:
+        if phrase_pattern(prose.form["history"]).search(heading) is not None:
             return CellRole.OTHER
         role = _role(cell, prose) or prose.role_by_last_words(heading)
         return CellRole(role or CellRole.OTHER)

@@ -16,7 +16,7 @@ from argo_compiler.script.documents.tags import TAGS, tag_from, tag_of
 from argo_compiler.script.sentences.grammar.parser import StumbleError
 from argo_compiler.script.sentences.tree.nouns import Kind
 from argo_compiler.script.sentences.understanding import Understanding
-from argo_compiler.script.sentences.words.prose import PhrasePattern, cue_pattern
+from argo_compiler.script.sentences.words.prose import PhrasePattern, phrase_pattern
 
 LEGEND = "a part of a legend or of a list of tags"
 EXPLANATION = "an explanation of what a name stands for"
@@ -141,7 +141,7 @@ def _lines(
     The numbers of other lines of a legend are added to `idle`."""
     headed = False
     heading: tuple[int, ScriptText] | None = None
-    is_heading = cue_pattern("glossary", glossary.understanding.language.prose.form["glossary"])
+    is_heading = phrase_pattern(glossary.understanding.language.prose.form["glossary"])
     explaining = _explaining_lines(source, is_heading)
     last = 0
     for number in source.unclear:
@@ -260,7 +260,7 @@ def _equations(text: ScriptText, glossary: Glossary) -> list[tuple[str, str]]:
     if "=" not in text.content:
         return []
     phrases = glossary.understanding.language.prose.form["glossary"]
-    head = cue_pattern("glossary", phrases).match(text.content)
+    head = phrase_pattern(phrases).match(text.content)
     if head is not None:  # `Abbr.: PG = pressure gauge`
         text = text[head.end() :].strip()
         text = text[len(text.content) - len(text.content.lstrip(" .:")) :]

@@ -35,7 +35,7 @@ from argo_compiler.script.sentences.tree.script import Said, ScriptStep, Unread
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.language import Language
 from argo_compiler.script.sentences.words.lexicon import Lexicon, expand
-from argo_compiler.script.sentences.words.prose import cue_pattern
+from argo_compiler.script.sentences.words.prose import phrase_pattern
 from argo_compiler.script.sentences.words.unknown import UnknownError, UnknownValue
 
 MAX_LINES = 120_000
@@ -162,7 +162,7 @@ class _Parser:
         steps, at_end = _with_end_apart(steps)
         PlacingCheck(self.diagnostics).steps(steps)
         _ask_of_title(steps, self.diagnostics)
-        refers = cue_pattern("referring", language.prose.cues["referring"])
+        refers = phrase_pattern(language.prose.cues["referring"])
         if ">" in source.text and not any(
             refers.search(line) for line in source.lines if not line.lstrip().startswith(">")
         ):

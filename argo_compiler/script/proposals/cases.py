@@ -17,7 +17,7 @@ from argo_compiler.script.proposals.open_text import ENDS, HOME, OpenText
 from argo_compiler.script.resolve.units import converted
 from argo_compiler.script.sentences.tree.nouns import Labelled
 from argo_compiler.script.sentences.words.numbers import Figure
-from argo_compiler.script.sentences.words.prose import cue_pattern
+from argo_compiler.script.sentences.words.prose import phrase_pattern
 from argo_compiler.script.sentences.words.word import Word
 from argo_compiler.script.write.conditions import EVENTS
 
@@ -136,7 +136,7 @@ def _normal_limit(of: OpenText) -> _Limit | None:
     """Return the end of the normal range that `too high` names, of the checkpoint before it."""
     prose = of.composer.understanding.language.prose
     for name in ("too_high", "too_low"):
-        found = cue_pattern(name, prose.cues[name]).search(of.text.content)
+        found = phrase_pattern(prose.cues[name]).search(of.text.content)
         if found is None:
             continue
         named = _between(of.found, 0, found.start()).of("checkpoints")
@@ -174,7 +174,7 @@ def _by_failure(of: OpenText) -> Iterator[Sentences]:
 def _tells(name: str, of: OpenText) -> bool:
     """Return True if a text has one of the phrases that say something of a case."""
     phrases = of.composer.understanding.language.prose.cues[name]
-    return cue_pattern(name, phrases).search(of.text.content) is not None
+    return phrase_pattern(phrases).search(of.text.content) is not None
 
 
 def _by_event(of: OpenText) -> Iterator[Sentences]:

@@ -19,12 +19,12 @@ from argo_compiler.script.proposals.mentions import (
     checkpoint_words,
     mentions_in,
 )
-from argo_compiler.script.proposals.open_text import HOME, OpenText
+from argo_compiler.script.proposals.open_text import HOME, OpenText, as_sentences
 from argo_compiler.script.proposals.paraphrasing import reads, rephrased, sentence
 from argo_compiler.script.proposals.parts import by_parts
 from argo_compiler.script.proposals.rounds import by_rounds
 from argo_compiler.script.sentences.tree.nouns import AllOf, Pronoun, TheOne
-from argo_compiler.script.sentences.words.prose import cue_pattern
+from argo_compiler.script.sentences.words.prose import phrase_pattern
 from argo_compiler.script.sentences.words.without_effect import MISPLACED
 
 _MOST_CHOICES = 9
@@ -130,9 +130,9 @@ def _by_acts(of: OpenText) -> Iterator[Sentences]:
     """Yield what a text asks for, one after the other: `tank 5, a short break of 2 min, home`."""
     acts = of.acts(of.found, of.composer.known.last_named)
     if len(acts) > 1 and not of.found.has("IF", "UNLESS", "UNTIL", "ELSE", "EVENT"):
-        yield tuple(f"{act[0].upper()}{act[1:]}." for act in acts)
+        yield as_sentences(acts)
     elif not of.found.has("checkpoints", "EVENT") and of.found.has(*HOME, "END"):
-        yield (f"{of.return_words[0].upper()}{of.return_words[1:]}.",)
+        yield as_sentences([of.return_words])
 
 
 def _by_mentions(of: OpenText) -> Iterator[Sentences]:
@@ -197,13 +197,13 @@ def _by_dashes(of: OpenText) -> Iterator[Sentences]:
     behind = tuple(m for m in of.found.mentions if m.start >= found.end())
     acts = of.acts(replace(of.found, mentions=behind))
     check = f"Check {checkpoint_words([catalog[id] for id in ids])}."
-    yield (check, *(f"{act[0].upper()}{act[1:]}." for act in acts))
+    yield (check, *as_sentences(acts))
 
 
 def _by_order(of: OpenText) -> Iterator[Sentences]:
     """Yield what a text may be that speaks of the order."""
     labels = of.composer.understanding.language.prose.labels["order"]
-    if cue_pattern("order", labels).search(of.text.content):
+    if phrase_pattern(labels).search(of.text.content):
         yield ("Order: precise.",)
         yield ("Order: any.",)
 

@@ -8,7 +8,7 @@ from argo_compiler.script.documents.signs import CLOCK, DATE
 from argo_compiler.script.documents.source import ScriptText
 from argo_compiler.script.proposals.mentions import Mentions, mentions_in
 from argo_compiler.script.sentences.understanding import Understanding
-from argo_compiler.script.sentences.words.prose import cue_pattern
+from argo_compiler.script.sentences.words.prose import phrase_pattern
 
 NO_DATES = "a mission has no date: it begins when it is started"
 _DAY_MIN = 24 * 60
@@ -45,13 +45,11 @@ def timed(text: ScriptText, understanding: Understanding) -> Timed | None:
         return None
     start, end = found[0].span()
     cues = understanding.language.prose.cues
-    before = re.compile(
-        rf"(?:{cue_pattern('by_then', cues['by_then']).pattern})\s*$", re.IGNORECASE
-    )
+    before = re.compile(rf"(?:{phrase_pattern(cues['by_then']).pattern})\s*$", re.IGNORECASE)
     until = before.search(text.content[:start])
-    behind = re.compile(rf"\s*(?:{cue_pattern('latest', cues['latest']).pattern})", re.IGNORECASE)
+    behind = re.compile(rf"\s*(?:{phrase_pattern(cues['latest']).pattern})", re.IGNORECASE)
     latest = behind.match(text.content, end)  # `08:00 at the latest`
-    at = re.compile(rf"(?:{cue_pattern('at_time', cues['at_time']).pattern})\s*$", re.IGNORECASE)
+    at = re.compile(rf"(?:{phrase_pattern(cues['at_time']).pattern})\s*$", re.IGNORECASE)
     said = until or at.search(text.content[:start])
     end = latest.end() if latest is not None else end
     rest = text.without(said.start() if said is not None else start, end).strip()

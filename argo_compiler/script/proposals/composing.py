@@ -21,7 +21,7 @@ from argo_compiler.script.proposals.mentions import (
 from argo_compiler.script.proposals.paraphrasing import reads, rephrased, sentence
 from argo_compiler.script.sentences.tree.nouns import Kind, Nouns, TheOne
 from argo_compiler.script.sentences.understanding import Understanding
-from argo_compiler.script.sentences.words.prose import cue_pattern
+from argo_compiler.script.sentences.words.prose import phrase_pattern
 
 _EVENTS = ("EVENT", "BATTERY", "FAILS", "OCCURS")
 """what a text mentions before a colon, if what is to be done then stands behind it"""
@@ -222,7 +222,7 @@ class Composer:
         """Return a condition that ends in `likewise` with the orders of the one before it."""
         cues = self.understanding.language.prose.cues
         likewise = re.compile(
-            rf"[,:]?\s*{cue_pattern('likewise', cues['likewise']).pattern}\W*$", re.IGNORECASE
+            rf"[,:]?\s*{phrase_pattern(cues['likewise']).pattern}\W*$", re.IGNORECASE
         )
         found = likewise.search(text.content)
         _, comma, orders = self.before.partition(",")
@@ -257,7 +257,7 @@ class Composer:
         """Return what the clauses of a text propose, if each of them proposes something or names
         nothing of the mission."""
         cues = self.understanding.language.prose.cues
-        cuts = [m.span() for m in cue_pattern("clause", cues["clause"]).finditer(text.content)]
+        cuts = [m.span() for m in phrase_pattern(cues["clause"]).finditer(text.content)]
         cuts += [m.span() for m in _COMMA.finditer(text.content)]
         inside = [m for m in found.of("checkpoints") if isinstance(m.value, Nouns)]
         cuts = [(a, b) for a, b in cuts if not any(m.start < a < m.end for m in inside)]
@@ -296,7 +296,7 @@ class Composer:
         """Return a text with `too high` as a limit of the checkpoint that is named before it."""
         prose = self.understanding.language.prose
         for name in ("too_high", "too_low"):
-            found = cue_pattern(name, prose.cues[name]).search(text.content)
+            found = phrase_pattern(prose.cues[name]).search(text.content)
             before = mentions_in(text[: found.start()], self.understanding) if found else None
             named = before.of("checkpoints")[-1:] if before is not None else ()
             with suppress(RefusedError):
@@ -309,7 +309,7 @@ class Composer:
 
     def _removes(self, text: ScriptText, found: Mentions) -> bool:
         """Return True for `take checkpoint 4 out again`, which nothing else tells from a check."""
-        away = cue_pattern("away", self.understanding.language.prose.form["away"])
+        away = phrase_pattern(self.understanding.language.prose.form["away"])
         said = (text.content[word.start : word.end] for word in found.unknown)
         return not found.has("leave_out", "SPARE", "DELETE") and any(map(away.fullmatch, said))
 
@@ -323,7 +323,7 @@ class Composer:
     def _depends(self, text: ScriptText, found: Mentions) -> bool:
         """Return True if a text may begin with a case that it depends on: `On smoke, go home`."""
         cases = self.understanding.language.prose.cues["in_case"]
-        begins = cue_pattern("in_case", cases).match(text.content)
+        begins = phrase_pattern(cases).match(text.content)
         if begins is None or not found.unknown or found.occasion:
             return False
         return all(mention.start > found.unknown[0].start for mention in found.mentions)

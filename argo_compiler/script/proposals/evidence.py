@@ -14,7 +14,7 @@ from argo_compiler.script.sentences.tree.places import DockLocation
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.language import Language
 from argo_compiler.script.sentences.words.loading import pattern
-from argo_compiler.script.sentences.words.prose import PhrasePattern, cue_pattern
+from argo_compiler.script.sentences.words.prose import PhrasePattern, phrase_pattern
 
 STATEMENT = "a statement that names nothing of the mission"
 _SEPARATOR = re.compile(r"\W*([-=_*~])\1{2,}.*?\1{3,}\W*")
@@ -94,7 +94,7 @@ def row_evidence(text: ScriptText, understanding: Understanding, numbered: bool)
 
 
 def _cue(name: str, language: Language) -> PhrasePattern:
-    return cue_pattern(name, language.prose.cues[name])
+    return phrase_pattern(language.prose.cues[name])
 
 
 def _separates(text: ScriptText, _: Mentions, __: Language) -> bool:
@@ -119,7 +119,7 @@ def _greets(text: ScriptText, found: Mentions, language: Language) -> bool:
     if found.has("checkpoints", "place") or len(text.content.split()) > _MOST_WORDS:
         return False
     phrases = " | ".join((prose.greeting, prose.closing, prose.form["chatter"]))
-    courtesies = cue_pattern("courtesies", _squeezed(phrases))
+    courtesies = phrase_pattern(_squeezed(phrases))
     words = re.sub(r"[^\w\s,'|/-]", " ", text.content).strip(" ,")
     begun = courtesies.match(_squeezed(words))
     if begun is None:
@@ -154,13 +154,13 @@ def _wonders(text: ScriptText, found: Mentions, language: Language) -> bool:
 def _for_people(text: ScriptText, found: Mentions, language: Language) -> bool:
     """`Ping me if it gets stuck`"""
     content, form = text.content, language.prose.form
-    crowd = cue_pattern("crowd", form["crowd"]).match(content)
+    crowd = phrase_pattern(form["crowd"]).match(content)
     if crowd is not None:
         return found.only(*_FOR_PEOPLE - {"MEASURE"}, *_OF_CROWDS)
-    called = cue_pattern("calling", form["calling"]).search(content)
+    called = phrase_pattern(form["calling"]).search(content)
     head = content[: called.start()].strip(" ,:-") if called is not None else ""
-    before = cue_pattern("before_call", form["before_call"]).match(head)
-    news = cue_pattern("news", form["news"]).search(head)
+    before = phrase_pattern(form["before_call"]).match(head)
+    news = phrase_pattern(form["news"]).search(head)
     clauses = _cue("clause", language)
     if called is not None and clauses.search(head + content[called.end() :]) is not None:
         return False  # `photograph it and call me`
@@ -177,7 +177,7 @@ def _states(text: ScriptText, found: Mentions, language: Language) -> bool:
         return False
     if _cue("of_others", language).match(content) is not None:
         return found.only(*OF_FORMS, "place", "home", "start", "past", "last", "later")
-    news = cue_pattern("news", language.prose.form["news"]).search(content)
+    news = phrase_pattern(language.prose.form["news"]).search(content)
     if news is not None and "," not in content:
         alone = _cue("clause", language).search(content, news.end()) is None
         return alone and found.only("again") and bool(found.unknown)
@@ -203,8 +203,8 @@ def _labels(text: ScriptText, found: Mentions, _: Language) -> bool:
 def _idle_fields(text: ScriptText, found: Mentions, language: Language) -> bool:
     """`Team: Blue      Trial: 2`"""
     form = language.prose.form
-    labels = cue_pattern("labels", form["labels"])
-    also = cue_pattern("labels", f"{form['labels']} | {form['records']} | {form['runs']}")
+    labels = phrase_pattern(form["labels"])
+    also = phrase_pattern(f"{form['labels']} | {form['records']} | {form['runs']}")
     joined = re.sub(r":\s+(?=\S)", ": ", text.content)
     heads = [part.partition(":") for part in re.split(r"\s{2,}", joined)]
     said = [label.strip() for label, _, _ in heads]
@@ -229,25 +229,25 @@ def _has_no_field(text: ScriptText, found: Mentions, language: Language) -> bool
     label = _LABEL.match(text.content)
     if label is not None and _NUMBERS.fullmatch(text.content, label.end()) is not None:
         return False  # `Levels: 4, 5`
-    if cue_pattern("legend", language.prose.form["legend"]).search(text.content) is not None:
+    if phrase_pattern(language.prose.form["legend"]).search(text.content) is not None:
         return False
     value = text.content[label.end() :] if label is not None else ""
     form = language.prose.form
-    counts = cue_pattern("rounds", form["rounds_count"]).search(text.content) is not None
+    counts = phrase_pattern(form["rounds_count"]).search(text.content) is not None
     short = 0 < len(value.split()) <= _MOST_OF_VALUE and not (counts or _ENDS.search(value))
     return short and found.only(*OF_FORMS - {"MEASURE", "BE_MEASURED", "question"})
 
 
 def _is_none(text: ScriptText, found: Mentions, language: Language) -> bool:
     """`None open`"""
-    nothing = cue_pattern("nothing", language.prose.form["nothing"]).match(text.content)
+    nothing = phrase_pattern(language.prose.form["nothing"]).match(text.content)
     short = len(text.content.split()) <= _FEW_WORDS
     return nothing is not None and short and found.only(*OF_FORMS)
 
 
 def _registers(text: ScriptText, found: Mentions, language: Language) -> bool:
     """`Ticket #48213`, `Opened by m.oyelaran`, `valid from 01.03`, and such a label alone."""
-    label = cue_pattern("records", language.prose.form["records"]).match(text.content)
+    label = phrase_pattern(language.prose.form["records"]).match(text.content)
     value = text.content[label.end() :].strip(" .:") if label is not None else ""
     coded = re.fullmatch(f"{_CODE}|{_DATED}", value) is not None
     named = is_name(value) and not found.has("checkpoints", "place")
@@ -257,13 +257,13 @@ def _registers(text: ScriptText, found: Mentions, language: Language) -> bool:
 def _totals(text: ScriptText, _: Mentions, language: Language) -> bool:
     """`Total   65   ____`: numbers without a unit."""
     content = text.content.lstrip(" |;")
-    label = cue_pattern("totals", language.prose.form["totals"]).match(content)
+    label = phrase_pattern(language.prose.form["totals"]).match(content)
     return label is not None and _AMOUNTS.fullmatch(content, label.end()) is not None
 
 
 def _results(text: ScriptText, _: Mentions, language: Language) -> bool:
     """`Values: a) ____ bar  c) ____ bar`: blanks for what the items above ask for."""
-    label = cue_pattern("results", language.prose.form["results"]).match(text.content)
+    label = phrase_pattern(language.prose.form["results"]).match(text.content)
     return label is not None and _LETTERED_BLANKS.fullmatch(text.content, label.end()) is not None
 
 
@@ -278,13 +278,13 @@ def _heads_columns(text: ScriptText, found: Mentions, language: Language) -> boo
 
 def _is_boilerplate(text: ScriptText, found: Mentions, language: Language) -> bool:
     """`This message may contain confidential information`"""
-    phrases = cue_pattern("boilerplate", language.prose.form["boilerplate"])
+    phrases = phrase_pattern(language.prose.form["boilerplate"])
     return phrases.match(text.content) is not None and not found.has("checkpoints", "place")
 
 
 def _scores(text: ScriptText, found: Mentions, language: Language) -> bool:
     """`Penalty: 5 points for each missed checkpoint`"""
-    scoring = cue_pattern("scoring", language.prose.form["scoring"]).search(text.content)
+    scoring = phrase_pattern(language.prose.form["scoring"]).search(text.content)
     idle = OF_FORMS - {"MEASURE", "BE_MEASURED"} | {"STEP", "each", "EVERY", "checkpoints"}
     return scoring is not None and found.only(*idle) and not names_points(found)
 

@@ -14,7 +14,7 @@ from argo_compiler.script.sentences.tree.nouns import AllOf, Noun, Nouns, Pronou
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.amounts import Length
 from argo_compiler.script.sentences.words.lexer import all_words
-from argo_compiler.script.sentences.words.prose import begins, cue_pattern
+from argo_compiler.script.sentences.words.prose import phrase_pattern
 from argo_compiler.script.sentences.words.without_effect import (
     HARMLESS,
     MISPLACED,
@@ -155,7 +155,7 @@ def _mentions_in(text: ScriptText, understanding: Understanding) -> Mentions:
     if is_question(text, understanding.language.lexicon):
         end = len(text.content)
         found.append(Mention("question", end, end))
-    occasion = begins(understanding.language.prose.occasion).match(text.content)
+    occasion = phrase_pattern(understanding.language.prose.occasion).match(text.content)
     named_first = min((m.start for m in (*cues, *named)), default=0)
     joints = understanding.joints("or")
     found += [Mention("OR", w.start, w.start) for w in words if w.before.lower() in joints]
@@ -289,7 +289,7 @@ def _cues(content: str, understanding: Understanding) -> Iterator[Mention]:
     for name, phrases in understanding.language.prose.cues.items():
         if name in _APART:
             continue
-        for match in cue_pattern(name, phrases).finditer(content):
+        for match in phrase_pattern(phrases).finditer(content):
             opening = match.start() <= begins or match[0] == "?"
             if name not in _OPENING or opening:
                 found.append(Mention(name, *match.span()))

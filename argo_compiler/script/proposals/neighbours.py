@@ -14,7 +14,7 @@ from argo_compiler.script.proposals.composing import Composer
 from argo_compiler.script.proposals.evidence import is_name, names_points, row_evidence
 from argo_compiler.script.proposals.mentions import OF_FORMS, Mentions, mentions_in
 from argo_compiler.script.sentences.words.lexicon import expand
-from argo_compiler.script.sentences.words.prose import cue_pattern
+from argo_compiler.script.sentences.words.prose import phrase_pattern
 from argo_compiler.script.sentences.words.without_effect import MISPLACED
 from argo_compiler.script.sentences.words.word import VERBS
 
@@ -111,7 +111,7 @@ class Neighbours:
         """Note whether the lines below a piece are those of a log."""
         content = piece.text.content
         if content.isupper() and piece.text.first not in self.script.rows:
-            logs = cue_pattern("logs", self.form["logs"])
+            logs = phrase_pattern(self.form["logs"])
             self._in_log = logs.fullmatch(content.strip(" :")) is not None
 
     @cached_property
@@ -120,10 +120,10 @@ class Neighbours:
         read, or who handed over. These times are no times of a plan."""
         source = self.script.source
         first = next((line for line in source.lines if line.strip()), "")
-        title = cue_pattern("logs", f"{self.form['logs']} | {self.form['log_titles']}")
+        title = phrase_pattern(f"{self.form['logs']} | {self.form['log_titles']}")
         if title.search(first) is None or CLOCK.match(first):
             return False
-        handover = cue_pattern("handover", self.form["handover"])
+        handover = phrase_pattern(self.form["handover"])
         for number, line in enumerate(source.lines, start=1):
             if CLOCK.match(line.lstrip(" -*")):
                 found = mentions_in(source.line_text(number).strip(), self.understanding)
@@ -149,7 +149,7 @@ class Neighbours:
         behind = text.content[at.end() :] if at is not None else ""
         read = found.has("QUANTITY", "past") or _VALUE.search(behind)
         asking = self.understanding.language.prose.cues["asking"]
-        asked = {m[0].lower() for m in cue_pattern("asking", asking).finditer(text.content)}
+        asked = {m[0].lower() for m in phrase_pattern(asking).finditer(text.content)}
         if asked - {*expand(self.form["machine"])}:
             return False
         return bool(read) or not (asked or found.has("checkpoints", "MEASURE"))
@@ -186,15 +186,15 @@ class Neighbours:
         content = _BRACKETS.sub("", text.content)
         if len(content.split()) > _LONGEST_NAME or content.endswith((".", ":", "?")):
             return False
-        documents = cue_pattern("documents", self.form["documents"])
+        documents = phrase_pattern(self.form["documents"])
         named = documents.search(content)
         head = content.split("  ")[0]
         prose = self.understanding.language.prose
-        determined = cue_pattern("determiner", prose.determiner).search(content)
+        determined = phrase_pattern(prose.determiner).search(content)
         types = self.understanding.types(text)
         orders = any(a in VERBS and b in _OBJECTS for a, b in pairwise(types))
         before = content[: named.start()] if named is not None else ""
-        prepositions = cue_pattern("preposition", prose.preposition).finditer(before)
+        prepositions = phrase_pattern(prose.preposition).finditer(before)
         refers = any(found.end() == len(before.rstrip()) for found in prepositions)
         amounts = {"DURATION", "QUANTITY", "TIMES", "ALL"} & {*types}
         if determined or orders or amounts or refers or types[:1] == ("MEASURE",):
@@ -222,9 +222,9 @@ class Neighbours:
         if not alone or content[-1] in ".!?" or len(content.split()) > _LONGEST_NAME:
             return False
         prose = self.understanding.language.prose
-        if cue_pattern("explaining", self.form["explaining"]).match(content):
+        if phrase_pattern(self.form["explaining"]).match(content):
             return found.only(*OF_FORMS, "OCCURS", "forbidding")
-        section = cue_pattern("section", prose.section).fullmatch(content)
+        section = phrase_pattern(prose.section).fullmatch(content)
         return section is not None and found.only(*OF_FORMS, "STEP")
 
     def _is_on_site(self, found: Mentions) -> bool:
@@ -253,7 +253,7 @@ class Neighbours:
             return False
         content = text.content
         pointing, manner, doing, others, robot = (
-            cue_pattern(name, self.form[name]).search(content)
+            phrase_pattern(self.form[name]).search(content)
             for name in ("pointing", "manner", "doing", "through_others", "machine")
         )
         colon = content.rstrip().endswith(":")
@@ -294,7 +294,7 @@ class Neighbours:
         header = text.source.lines[:_FIRST]
         below_name = i > 0 and self.asides.get(i - 1) == SIGNED
         closed = below_name or (i > 0 and self.asides.get(i - 1) == "the end of a letter")
-        roles = cue_pattern("positions", self.form["positions"])
+        roles = phrase_pattern(self.form["positions"])
         if closed and roles.search(content) and len(content.split()) <= _LONGEST_ROLE:
             return mentions_in(text, self.understanding).only("PERSON", "NUMBER")
         line = text.source.text[: text.first].rpartition("\n")[2] + content

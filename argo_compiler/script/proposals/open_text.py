@@ -1,12 +1,13 @@
 """An open text, with what it mentions, for which choices are looked for."""
 
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.script.documents.source import RefusedError, ScriptText
 from argo_compiler.script.proposals.composing import Composer
-from argo_compiler.script.proposals.frames import length_words
+from argo_compiler.script.proposals.frames import Sentences, length_words
 from argo_compiler.script.proposals.mentions import Mention, Mentions, checkpoint_words
 from argo_compiler.script.sentences.tree.places import AreaLocation, DockLocation
 from argo_compiler.script.sentences.words.numbers import Figure
@@ -92,3 +93,8 @@ class OpenText:
         elif mentions.has("home"):
             acts.append(self.return_words)
         return acts
+
+
+def as_sentences(acts: Sequence[str]) -> Sentences:
+    """Return acts as sentences: `wait for 5 minutes` as `Wait for 5 minutes.`"""
+    return tuple(f"{act[0].upper()}{act[1:]}." for act in acts)

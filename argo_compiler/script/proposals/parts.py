@@ -13,7 +13,7 @@ from argo_compiler.script.proposals.mentions import checkpoint_words, mentions_i
 from argo_compiler.script.proposals.open_text import OpenText
 from argo_compiler.script.proposals.paraphrasing import ORDERS, reads, rephrased, sentence
 from argo_compiler.script.sentences.tree.nouns import Labelled, Nouns
-from argo_compiler.script.sentences.words.prose import cue_pattern
+from argo_compiler.script.sentences.words.prose import phrase_pattern
 from argo_compiler.script.sentences.words.spelling import candidates
 from argo_compiler.script.sentences.words.without_effect import MISPLACED
 
@@ -70,7 +70,7 @@ def _cuts(text: ScriptText, composer: Composer) -> list[int]:
     cuts |= {word.start for word in words if word.type.startswith((*_CUT_WORDS, "WORD"))}
     cuts |= {word.end for word in words if word.type == "WORD"}
     cues = composer.understanding.language.prose.cues
-    cuts |= {m.start() for m in cue_pattern("clause", cues["clause"]).finditer(text.content)}
+    cuts |= {m.start() for m in phrase_pattern(cues["clause"]).finditer(text.content)}
     return sorted(cuts - {0, len(text.content)})[: _MOST_PARTS - 1]
 
 

@@ -188,7 +188,11 @@ class _Proposer:
         floors = [one.mentions[0] for one in found if only_floors(one) and not one.unknown]
         if row is None and (piece.text.first in self.unread or piece.text.first in self.unclear):
             floors = []  # it is asked about
-        if row is None or row.is_heading or (floors and not any(map(_names, found))):
+        if (
+            row is None
+            or row.is_heading
+            or (floors and not any(one.has("checkpoints") for one in found))
+        ):
             self.composer.known.section = floors[0] if len(floors) == 1 else None
 
     def _note_item(self, piece: Piece, proposal: Proposal) -> None:
@@ -312,10 +316,6 @@ class _Proposer:
         for mention in named:
             with suppress(RefusedError):
                 self.composer.known.measured(self.composer.known.checkpoints([mention]))
-
-
-def _names(found: Mentions) -> bool:
-    return found.has("checkpoints")
 
 
 def _is_kind(noun: Noun) -> TypeGuard[AllOf | TheOne]:

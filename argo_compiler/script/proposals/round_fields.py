@@ -16,7 +16,7 @@ from argo_compiler.script.proposals.frames import Sentences, length_words
 from argo_compiler.script.proposals.mentions import Mentions, mentions_in
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.numbers import Figure
-from argo_compiler.script.sentences.words.prose import cue_pattern
+from argo_compiler.script.sentences.words.prose import phrase_pattern
 
 _ITEM = re.compile(r"(?:[A-Z]?\d{1,2}(?:\.\d)?[.)]?\s+)?")
 """the number of an item before its label: `A3`"""
@@ -28,7 +28,7 @@ _OF_VALUES = ("NUMBER", "TIMES", "EVERY", "DURATION", "TIME_WORD")
 
 @dataclass(frozen=True)
 class _RoundField:
-    """What a field says of the rounds."""
+    """Field of a sheet that gives the number of rounds, their interval or their pause."""
 
     at: int
     """the offset at which its piece begins"""
@@ -100,7 +100,7 @@ def _field(piece: Piece, row: FormRow | None, understanding: Understanding) -> _
 
 
 def _is_label(content: str, phrases: str) -> bool:
-    return cue_pattern("rounds", phrases).fullmatch(content) is not None
+    return phrase_pattern(phrases).fullmatch(content) is not None
 
 
 def _count(found: Mentions) -> int | None:

@@ -33,7 +33,7 @@ from argo_compiler.script.sentences.understanding import COMPARING
 from argo_compiler.script.sentences.words.lexer import all_words
 from argo_compiler.script.sentences.words.lexicon import expand
 from argo_compiler.script.sentences.words.numbers import Figure
-from argo_compiler.script.sentences.words.prose import cue_pattern
+from argo_compiler.script.sentences.words.prose import phrase_pattern
 from argo_compiler.script.sentences.words.without_effect import TOLD
 
 _FILL = re.compile(r"_{2,}|\.{3,}|…+|[□☐]|\[\s*\]|\(\s*y\s*/\s*n\s*\)|/", re.IGNORECASE)
@@ -245,7 +245,7 @@ def _is_idle_field(row: FormRow, composer: Composer) -> bool:
         return False
     label, value = (cell.text for cell in row.cells)
     labels = composer.understanding.language.prose.form["labels"]
-    if cue_pattern("labels", labels).search(label.content) is None:
+    if phrase_pattern(labels).search(label.content) is None:
         return False
     found = mentions_in(row.place, composer.understanding)
     needed = [m for m in found.mentions if m.kind not in OF_FORMS]
@@ -292,7 +292,7 @@ def _without_checkpoint(row: FormRow, composer: Composer, first: bool) -> Propos
                 return inner
     labels = composer.understanding.language.prose.form["labels"]
     first_cell = row.cells[0].text.content if row.cells else ""
-    idle = cue_pattern("labels", labels).search(first_cell) is not None
+    idle = phrase_pattern(labels).search(first_cell) is not None
     named = mentions_in(row.place, composer.understanding).has("checkpoints", "place")
     if plain and ((row.labelled and idle and not named) or _names_people(row)):
         return Proposal(aside="a field that a mission does not have")
@@ -378,15 +378,15 @@ def _read_sheet_cell(cell: Cell, found: _Row, composer: Composer) -> bool:
     """Read a cell whose heading says what it holds; False for one that may name a checkpoint."""
     text = cell.text.content
     form = composer.understanding.language.prose.form
-    nothing = cue_pattern("nothing", form["nothing"]).fullmatch(text) is not None
-    if cue_pattern("done", form["done"]).fullmatch(text.strip(" .!")) or _TICK.fullmatch(text):
+    nothing = phrase_pattern(form["nothing"]).fullmatch(text) is not None
+    if phrase_pattern(form["done"]).fullmatch(text.strip(" .!")) or _TICK.fullmatch(text):
         found.doubts.append(_TICKED)
         return True
     boxes = _TICKED_BOX.sub("□", text)
     if boxes != text and _FILL.search(boxes) and not _without_fill(boxes, form):
         found.doubts.append(_TICKED)
         return True
-    spare = cue_pattern("leave_out", form["leave_out"]).search(text) is not None
+    spare = phrase_pattern(form["leave_out"]).search(text) is not None
     if cell.filled and cell.role is CellRole.OTHER and _is_answer(text, composer):
         found.doubts.append(f"`{text}` in this column can mean that the row is not meant")
         return True
@@ -440,7 +440,7 @@ def _read_sheet_cell(cell: Cell, found: _Row, composer: Composer) -> bool:
         case CellRole.FILL if not _without_fill(text, form):
             return True
         case CellRole.REACTION:
-            idle = nothing or cue_pattern("no_action", form["no_action"]).fullmatch(text)
+            idle = nothing or phrase_pattern(form["no_action"]).fullmatch(text)
             found.reaction = None if idle else cell.text
             return True
         case CellRole.REMARK:
@@ -473,7 +473,7 @@ def _is_normal(text: str, form: Mapping[str, str]) -> bool:
     """Whether a cell has no more than a normal range, or the position that a valve must have."""
     if _RANGE.fullmatch(text) or _PLAIN.fullmatch(text):
         return True
-    return any(cue_pattern(name, form[name]).fullmatch(text) for name in _POSITIONS)
+    return any(phrase_pattern(form[name]).fullmatch(text) for name in _POSITIONS)
 
 
 def _read_remark(text: ScriptText, found: _Row, composer: Composer) -> bool:
@@ -497,9 +497,9 @@ def _read_doubts(content: str, found: _Row, composer: Composer) -> bool:
     left = _without_fill(content, prose.form)
 
     def has(cues: Mapping[str, str], name: str) -> bool:
-        return cue_pattern(name, cues[name]).search(left) is not None
+        return phrase_pattern(cues[name]).search(left) is not None
 
-    if cue_pattern("nothing", prose.form["nothing"]).fullmatch(content):
+    if phrase_pattern(prose.form["nothing"]).fullmatch(content):
         found.doubts.append(f"`{content}` can mean that this is left out")
     elif has(prose.form, "leave_out") or has(prose.cues, "leave_out"):
         found.left_out = True
@@ -523,11 +523,11 @@ def _asks(text: ScriptText, composer: Composer) -> bool:
 def _without_fill(text: str, form: Mapping[str, str]) -> str:
     """Return what is left of a cell without blanks to fill in and the words of forms."""
     rest = _FILL.sub(" ", text)
-    furniture = cue_pattern("furniture", form["furniture"])
+    furniture = phrase_pattern(form["furniture"])
     rest = furniture.sub(" ", rest)
     for name in _POSITIONS:
         if _FILL.search(text):
-            rest = cue_pattern(name, form[name]).sub(" ", rest)
+            rest = phrase_pattern(form[name]).sub(" ", rest)
     return rest.strip(" :.,-()%")
 
 
@@ -542,7 +542,7 @@ def _read_cell(text: ScriptText, found: _Row, composer: Composer) -> None:
     """Read a cell by what it contains."""
     form = composer.understanding.language.prose.form
     content = text.content
-    nothing = cue_pattern("nothing", form["nothing"]).fullmatch(content) is not None
+    nothing = phrase_pattern(form["nothing"]).fullmatch(content) is not None
     if not nothing and (not _without_fill(content, form) or _RANGE.fullmatch(content)):
         return
     _read_doubts(content, found, composer)
@@ -626,7 +626,7 @@ def _unused(content: str, mentions: Mentions, form: Mapping[str, str]) -> Iterat
     be."""
     used = [fill.span() for fill in _FILL.finditer(content)]
     for name in (*_POSITIONS, "furniture", "asking"):
-        used += [word.span() for word in cue_pattern(name, form[name]).finditer(content)]
+        used += [word.span() for word in phrase_pattern(form[name]).finditer(content)]
     for word in mentions.unknown:
         said = content[word.start : word.end]
         if not any(a < word.end and word.start < b for a, b in used):
@@ -725,7 +725,7 @@ def _position_difference(
 ) -> Iterator[str]:
     known = checkpoint.nominal
     for name in _POSITIONS:
-        if cue_pattern(name, form[name]).search(content) is None:
+        if phrase_pattern(form[name]).search(content) is None:
             continue
         fits = {
             "open": known.low >= _OPEN,

@@ -59,8 +59,8 @@ _EXCEPTIONS = (
 
 @dataclass(frozen=True)
 class _FailureRule:
-    """What is done if any reading of a kind fails; `policy` is None if only another try is asked
-    for."""
+    """Rule for the readings of a kind that fail: tries again, and a policy behind these, or None if
+    the script asks for no more than the tries."""
 
     kind: Kind
     retries: tuple[orders.Retry, ...]

@@ -241,7 +241,7 @@ class PhrasePattern:
 
 
 class _Words(NamedTuple):
-    """Where words of a text, and signs, begin."""
+    """Places at which the words and signs of a text begin."""
 
     places: tuple[tuple[int, str], ...]
     """each with the letters of ASCII that it begins with, in lower case"""
@@ -273,14 +273,9 @@ def _pattern_of(phrases: Iterable[str]) -> re.Pattern[str]:
 
 
 @cache
-def begins(phrases: str) -> PhrasePattern:
-    """Return the pattern of the phrases that a text lists."""
+def phrase_pattern(phrases: str) -> PhrasePattern:
+    """Return the pattern of the phrases that a text lists, with bars between them."""
     return PhrasePattern(phrases)
-
-
-def cue_pattern(_name: str, phrases: str) -> PhrasePattern:
-    """Return the pattern of the phrases of a cue."""
-    return begins(phrases)
 
 
 _IN_BRACKETS = re.compile(r"\s*[(\[]\s*[^\W\d_][^()\[\]]*[)\]]$|\s*[(\[][%°][)\]]$")

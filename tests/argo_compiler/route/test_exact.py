@@ -86,7 +86,7 @@ def test_parallel_searches_agree_with_brute_force() -> None:
 
 def test_a_short_search_has_a_route_and_a_bound() -> None:
     problem = _grid(70)
-    made = suggest_route(problem, time_limit=1.0, explain=False)
+    made = suggest_route(problem, None, work_limit=1.0, explain=False)
     assert made.route is not None
     assert evaluate(problem, made.route).feasible
     assert 0 < made.bound <= made.cost
@@ -101,7 +101,7 @@ def test_a_short_search_has_a_route_and_a_bound() -> None:
 @pytest.mark.long
 def test_a_large_problem_gets_a_route_and_a_bound() -> None:
     problem = _grid(400)
-    made = suggest_route(problem, time_limit=2.0, explain=False)
+    made = suggest_route(problem, None, work_limit=2.0, explain=False)
     assert evaluate(problem, Tour(made.order)).feasible
     assert 0 < made.bound < made.cost
     assert any("too many" in reason for reason in made.reasons)
@@ -137,7 +137,7 @@ def test_nothing_is_proven_with_a_round_of_many_members() -> None:
 
     grid = _grid(12)
     problem = replace(grid, rounds=(Round("patrol", tuple(range(11)), repeat=2),))
-    made = suggest_route(problem, time_limit=5.0, explain=False)
+    made = suggest_route(problem, None, work_limit=1.0, explain=False)
     assert evaluate(problem, Tour(made.order)).feasible
     assert not made.proven
     assert made.bound == 0

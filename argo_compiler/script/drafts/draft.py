@@ -37,6 +37,7 @@ class Act(StrEnum):
     """Act of a person on a line."""
 
     CONFIRMED = "confirmed"
+    CHOSEN = "chosen"
     SAID = "said"
     SET_ASIDE = "set aside"
 
@@ -44,7 +45,8 @@ class Act(StrEnum):
 class LineDecision(Model):
     """Decision of a person about a line of a script.
 
-    A line is found again by its text. A confirmation counts only while the proposal is the same.
+    A line is found again by its text. A confirmation counts only while the proposal is the same, a
+    choice only while it is offered.
     """
 
     text: str
@@ -256,7 +258,7 @@ class Draft:
                 f"choice {number}"
             )
         sentences = line.choices[number - 1]
-        return {id(line): (Act.SAID if sentences else Act.SET_ASIDE, sentences)}
+        return {id(line): (Act.CHOSEN if sentences else Act.SET_ASIDE, sentences)}
 
     def _named(self, label: str, decided: bool = False) -> Sequence[DraftLine]:
         """Return the lines that a label such as `7` or `7.2` means."""

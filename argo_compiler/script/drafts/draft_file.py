@@ -8,8 +8,8 @@ For each line of the script there is a block: its number and text, and below tha
     not used: I need
 
 A person decides by changing the words before the colon: `confirmed` accepts what is proposed,
-`said` stands before other sentences, and `set aside by hand` before nothing. Reading takes only
-these, and what an assistant has `suggested`, with the words that it stands for:
+`chosen` a choice, `said` stands before other sentences, and `set aside by hand` before nothing.
+Reading takes only these, and what an assistant has `suggested`, with the words that it stands for:
 
     suggested: then valve R25 => Check checkpoint 4.
 """
@@ -35,7 +35,12 @@ VERSION = 1
 _FIRST = f"# draft, version {VERSION}"
 _HEAD = re.compile(rf"{_FIRST}(?:: .*)?")
 _LINE = re.compile(r"\s*[0-9]+(?:\.[0-9]+)? \| (.*)")
-_KEYS = {Act.CONFIRMED: "confirmed", Act.SAID: "said", Act.SET_ASIDE: "set aside by hand"}
+_KEYS = {
+    Act.CONFIRMED: "confirmed",
+    Act.CHOSEN: "chosen",
+    Act.SAID: "said",
+    Act.SET_ASIDE: "set aside by hand",
+}
 _ACTS = {key: act for act, key in _KEYS.items()}
 _SUGGESTED = "suggested"
 _NOTHING = "(nothing)"

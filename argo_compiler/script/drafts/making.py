@@ -4,7 +4,7 @@ from bisect import bisect_right
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import TYPE_CHECKING, Protocol, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeVar
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.garbage_collector import collector_held
@@ -45,8 +45,15 @@ _UNREAD = frozenset(
     ]
 )
 """codes of errors of a piece that the grammar does not take; others are questions"""
+_OF_OFFERS = frozenset([Act.CONFIRMED, Act.CHOSEN])
+"""acts that count only while what they accept is offered"""
 _EMPTY = "script.empty-step"
 """code of the error that there is nothing to repeat, which lines with other errors may have"""
+_HOW = {
+    Act.CONFIRMED: "as confirmed",
+    Act.CHOSEN: "as chosen",
+    Act.SAID: "as a person has said",
+}
 BY_ASSISTANT = "suggested by an assistant"
 """reason of a line that an assistant has suggested sentences for"""
 
@@ -61,6 +68,15 @@ class _Reading:
     script: Script
     mission: Mission | None
     diagnostics: tuple[Diagnostic, ...]
+
+
+class _Context(NamedTuple):
+    """What `propose` takes beside the script and the pieces."""
+
+    catalog: Catalog
+    start_area: int | None
+    chosen: Mapping[int, tuple[str, ...]]
+    made: "Made"
 
 
 @collector_held()
@@ -83,7 +99,7 @@ def import_script(
         start_area: starting area, for a script that names none
         end_area: area to end in, likewise
         decisions: what a person has decided on for lines of the script; decisions on lines that it
-            does not have, or that have another proposal now, have no effect
+            does not have, or that have another proposal or other choices now, have no effect
         suggestions: what an assistant has suggested for lines that are open
 
     Raises:
@@ -100,35 +116,45 @@ def import_script(
 
     reading = read({})
     acts = _match(given, reading.script.pieces)
-    said = {at: act.sentences for at, act in acts.items() if act.act is not Act.CONFIRMED}
+    said = {at: act.sentences for at, act in acts.items() if act.act not in _OF_OFFERS}
+    chosen = {at: act.sentences for at, act in acts.items() if act.act is Act.CHOSEN}
     if said:
         reading = read(said)
     errors = _errors_by_piece(reading)
     unread = {at for at, error in errors.items() if error.code in _UNREAD and at not in said}
     unclear = {at for at in errors if at not in said}
     proposals: dict[int, Proposal] = {}
-    made: Made = {}
     script = reading.script
+    context = _Context(catalog, start_area, chosen, {})
     if unread or unclear:  # not of a script that is understood whole, which is to start fast
-        proposals = _propose(script, unread, unclear - unread, catalog, start_area, made)
+        proposals = _propose(script, unread, unclear - unread, context)
     proposed = {at: p.sentences for at, p in proposals.items() if not p.is_open}
     suggested = _match(tuple(suggestions), reading.script.pieces)
     assisted = _assisted(reading.script, unread - proposed.keys(), suggested, catalog)
     refused: dict[int, Diagnostic] = {}
+    decided = {**said, **proposed}
     if proposed or assisted:
         sentences = {at: proposal.sentences for at, proposal in assisted.items()}
-        reading = read({**said, **proposed, **sentences})
+        reading = read(decided | sentences)
         refused = {at: e for at, e in _errors_by_piece(reading).items() if at in assisted}
+        decided |= {at: one for at, one in sentences.items() if at not in refused}
         if refused:
-            sentences = {at: said for at, said in sentences.items() if at not in refused}
-            reading = read({**said, **proposed, **sentences})
+            reading = read(decided)
         errors = _errors_by_piece(reading)
-    lacking = {at for at in errors if at not in proposals or not proposals[at].choices}
-    if lacking:  # in error only with what was decided or proposed for this line or for others
-        others = _propose(script, unread - lacking, unclear | lacking, catalog, start_area, made)
-        for at in lacking & others.keys():
-            before = proposals.get(at, others[at])
-            proposals[at] = replace(before, choices=others[at].choices)
+    lacking: set[int] = set()
+    while more := {at for at in errors if not _has_choices(proposals.get(at))} - lacking:
+        lacking |= more  # in error only with what was decided or proposed for this line or others
+        others = _propose(script, unread - lacking, unclear | lacking, context)
+        for at in more & others.keys():
+            proposals[at] = replace(proposals.get(at, others[at]), choices=others[at].choices)
+        late = {at: others[at] for at in more & others.keys() & chosen.keys()}
+        late = {at: proposal for at, proposal in late.items() if proposal.sentences}
+        proposals |= late
+        decided |= {at: proposal.sentences for at, proposal in late.items()}
+        if not late:
+            break
+        reading = read(decided)
+        errors = _errors_by_piece(reading)
     proposals |= {at: one for at, one in assisted.items() if at not in refused}
     known = _Known(errors, acts, proposals, suggested, assisted, refused)
     lines = tuple(_lines(reading, known))
@@ -144,18 +170,21 @@ def import_script(
     )
 
 
+def _has_choices(proposal: "Proposal | None") -> bool:
+    return proposal is not None and bool(proposal.choices)
+
+
 def _propose(
     script: Script,
     unread: Collection[int],
     unclear: Collection[int],
-    catalog: Catalog,
-    start_area: int | None,
-    made: "Made",
+    context: _Context,
 ) -> "dict[int, Proposal]":
     """Return the proposals for pieces of a script; see `propose`, which is imported only here."""
     from argo_compiler.script.proposals.proposing import propose
 
-    return propose(script, unread, unclear, catalog, start_area, made)
+    catalog, start_area, chosen, made = context
+    return propose(script, unread, unclear, catalog, start_area, chosen, made)
 
 
 def _all_diagnostics(reading: _Reading, notes: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:
@@ -277,7 +306,7 @@ class _Known:
             if proposal.certain:
                 found["state"] = LineState.UNDERSTOOD
             confirmed = decision is not None and decision.sentences == proposal.sentences != ()
-        if decision is not None and (confirmed or decision.act is not Act.CONFIRMED):
+        if decision is not None and (confirmed or decision.act not in _OF_OFFERS):
             aside = decision.act is Act.SET_ASIDE
             found = {"state": LineState.SET_ASIDE if aside else LineState.UNDERSTOOD}
             found |= {"act": decision.act, "sentences": decision.sentences}
@@ -358,8 +387,7 @@ def _decided(
             message = f"{shown} is set aside by hand"
             yield diagnostic_of("script.set-aside-by-hand", message, span=span)
         else:
-            how = "as confirmed" if line.act is Act.CONFIRMED else "as a person has said"
-            message = f"{shown} counts as `{shortened(' '.join(line.sentences))}`, {how}"
+            message = f"{shown} counts as `{shortened(' '.join(line.sentences))}`, {_HOW[line.act]}"
             yield diagnostic_of("script.decided", message, span=span)
     matched = {id(act) for act in acts.values()}
     for decision in decisions:

@@ -2,7 +2,7 @@
 
 import re
 from bisect import bisect_right
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from itertools import chain, takewhile
@@ -52,12 +52,22 @@ def propose(
     unread: Collection[int],
     unclear: Collection[int],
     catalog: Catalog,
-    start_area: int | None = None,
-    made: Made | None = None,
+    start_area: int | None,
+    chosen: Mapping[int, Sentences],
+    made: Made,
 ) -> dict[int, Proposal]:
     """Return what is proposed for the unread pieces, and the choices of those that are unclear; by
-    the offset at which a piece begins. `made`: what was made of pieces of this script before, to
-    which it is added what is made now."""
+    the offset at which a piece begins.
+
+    Args:
+        script: the script
+        unread: offsets of the pieces that the grammar does not take
+        unclear: offsets of those that it takes, and that have an error
+        catalog: names and places of the site
+        start_area: where the mission starts if the script does not say it
+        chosen: choices that a person has taken; what is not offered has no effect
+        made: what was made of pieces of this script before; what is made now is added
+    """
     source = script.source
     places = [place.name for place in catalog.places]
     language = Language.of(script.source_text, places)
@@ -65,7 +75,7 @@ def propose(
     known = Known(understanding, catalog)
     known.start_area = _start_area(script) or start_area
     composer = Composer(understanding, known)
-    return _Proposer(script, unread, unclear, composer, {} if made is None else made).all()
+    return _Proposer(script, unread, unclear, composer, chosen, made).all()
 
 
 class _Proposer:
@@ -77,6 +87,7 @@ class _Proposer:
         unread: Collection[int],
         unclear: Collection[int],
         composer: Composer,
+        chosen: Mapping[int, Sentences],
         made: Made,
     ) -> None:
         self.script = script
@@ -91,6 +102,7 @@ class _Proposer:
             (p for p in script.pieces if p.text.first in unread), script.rows, self.understanding
         )
         self.found: dict[int, Proposal] = {}
+        self.chosen = chosen
         self.made = made
         self.known: tuple[object, ...] = ()
 
@@ -131,6 +143,7 @@ class _Proposer:
                 choices = self._choices(piece, proposal.choices)
                 proposal = replace(proposal, choices=choices)
             if proposal is not None:
+                proposal = self._with_chosen(piece, proposal) if proposal.is_open else proposal
                 self.found[start] = proposal
                 self._note_item(piece, proposal)
             else:
@@ -141,6 +154,16 @@ class _Proposer:
             self.composer.before = said[-1] if said else piece.text.content
         self._end_later({*measured})
         return self.found
+
+    def _with_chosen(self, piece: Piece, proposal: Proposal) -> Proposal:
+        """Return an open proposal with the sentences that a person has chosen, if they are
+        offered."""
+        chosen = self.chosen.get(piece.text.first)
+        if not chosen or chosen not in {*proposal.choices, *map(self._ending, proposal.choices)}:
+            return proposal
+        for sentence in filter(_checks, chosen):
+            self.composer.propose(piece.text.replaced(sentence))  # later texts refer to it
+        return replace(proposal, sentences=chosen, doubt="")
 
     def _end_later(self, measured: set[int]) -> None:
         """Let a return that tasks follow say where the mission ends: `Arrival: starting area 1`

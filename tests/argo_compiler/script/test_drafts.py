@@ -135,6 +135,36 @@ def test_a_confirmation_counts_only_for_the_same_proposal(catalog: Catalog) -> N
     assert other.mission is None
 
 
+IN_CONTEXT = "Read {}.\nRead {}.\n - below 3: read R12, then home\nRead R9."
+
+
+def test_a_choice_counts_only_while_it_is_offered(catalog: Catalog) -> None:
+    text = IN_CONTEXT.format("PG1", "PG3")
+    draft = draft_of(text, catalog)
+    assert "checkpoint 6" in draft.left[0].choices[0][0]
+    decisions = draft.choose("3", 1)
+    assert decisions[0].act is Act.CHOSEN
+    chosen = draft_of(text, catalog, decisions)
+    assert draft_of(text, catalog, chosen.decisions).require_mission() == chosen.require_mission()
+    assert read_decisions(draft_text(chosen), "it") == chosen.decisions == decisions
+    swapped = draft_of(IN_CONTEXT.format("PG3", "PG1"), catalog, decisions)
+    assert [line.label for line in swapped.left] == ["3"]
+    assert "checkpoint 1" in swapped.left[0].choices[0][0]
+    assert swapped.decisions == ()
+
+
+def test_a_later_choice_may_depend_on_an_earlier_one(catalog: Catalog) -> None:
+    text = "Befriend PG1.\nBefriend R12 for me.\n - below 3: go home\nTidy up valve R9, or R7."
+    draft = draft_of(text, catalog)
+    for label in ("1", "2", "3", "4"):
+        draft = draft_of(text, catalog, draft.choose(label, 1))
+    assert measured_in(draft.require_mission()) == ["1", "5", "19"]
+    assert [decision.act for decision in draft.decisions] == [Act.CHOSEN] * 4
+    assert "checkpoint 5" in draft.decisions[2].sentences[0]
+    undone = draft_of(text, catalog, draft.undo(["2"]))
+    assert [line.label for line in undone.left] == ["2", "3"]
+
+
 def test_lines_with_the_same_text_are_decided_one_by_one(catalog: Catalog) -> None:
     text = "Check #8.\nBefriend it.\nCheck #1.\nBefriend it."
     draft = draft_of(text, catalog)

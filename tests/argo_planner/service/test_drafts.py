@@ -62,7 +62,7 @@ def test_an_upload_with_lines_left_becomes_a_mission_when_all_are_decided(servic
         {"kind": "say", "label": "4", "sentences": ["Check checkpoint  6."]},
     )
     assert states(draft) == ["understood"] * 5
-    assert [line["act"] for line in draft["lines"]] == [None, "confirmed", "said", "said", None]
+    assert [line["act"] for line in draft["lines"]] == [None, "confirmed", "chosen", "said", None]
     assert draft["is_complete"]
     assert draft["lines"][4]["steps"] == ["Check checkpoint #5"]
     made = complete(service, draft)

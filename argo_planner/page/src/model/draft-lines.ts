@@ -43,7 +43,7 @@ function shownLine(line: DraftedLine, act: LineAct | undefined): ShownLine {
   if (act.kind === "confirm") return { ...decided, state: "understood", act: "confirmed", choices: [] };
   if (act.kind === "set_aside" || (act.kind === "choose" && act.sentences.length === 0))
     return { ...decided, state: "set aside", act: "set aside", sentences: [], choices: [], unused: [] };
-  if (act.kind === "choose") return { ...decided, state: "understood", act: "said", choices: [], unused: [] };
+  if (act.kind === "choose") return { ...decided, state: "understood", act: "chosen", choices: [], unused: [] };
   return { ...line, sentences: act.sentences, sending: true, reading: true };
 }
 
@@ -60,7 +60,8 @@ export function isDone(act: LineAct, line: DraftedLine): boolean {
   const made = line.act ?? null;
   if (act.kind === "undo") return made === null;
   if (act.kind === "set_aside" || (act.kind === "choose" && act.sentences.length === 0)) return made === "set aside";
-  return made === (act.kind === "confirm" ? "confirmed" : "said") && same(line.sentences, act.sentences.map(plain));
+  const wanted = { confirm: "confirmed", choose: "chosen", say: "said" }[act.kind];
+  return made === wanted && same(line.sentences, act.sentences.map(plain));
 }
 
 /** Return the labels of the lines whose decisions differ from those before, and are not those of pending acts: somebody

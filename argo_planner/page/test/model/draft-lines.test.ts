@@ -41,7 +41,7 @@ describe("lines with acts that are being sent", () => {
     const [shown] = withActs([proposed], [confirm]);
     expect(shown).toMatchObject({ state: "understood", act: "confirmed", sentences: ["Check checkpoint 4."], sending: true });
     const chosen = withActs([open], [{ kind: "choose", label: "3", number: 1, sentences: ["Check checkpoint 14."] }]);
-    expect(chosen[0]).toMatchObject({ state: "understood", act: "said", sentences: ["Check checkpoint 14."] });
+    expect(chosen[0]).toMatchObject({ state: "understood", act: "chosen", sentences: ["Check checkpoint 14."] });
     const aside = withActs([open], [{ kind: "choose", label: "3", number: 2, sentences: [] }]);
     expect(aside[0]).toMatchObject({ state: "set aside", act: "set aside" });
   });

@@ -211,11 +211,10 @@ class Asides:
     def names_checkpoint(self, text: ScriptText) -> bool:
         """Return True if a text names a checkpoint by its number or name."""
         types = self.understanding.types(text)
-        words = self.understanding.words(text)
         return (
             any(a == "KIND" and b in _LABELS for a, b in pairwise(types))
             or ("HASH", "NUMBER") in pairwise(types)
-            or any(w.type == "IDENT" and self._is_name(text, w) for w in words)
+            or self._has_name(text)
         )
 
     def names_tasks(self, text: ScriptText) -> bool:
@@ -229,9 +228,10 @@ class Asides:
             or any(pair in _FLOORS for pair in pairwise(types))
         )
 
-    def _is_name(self, text: ScriptText, word: Word) -> bool:
+    def _has_name(self, text: ScriptText) -> bool:
         """Return True if a word is a part of a name of the site, such as `R25`."""
-        return text.content[word.start : word.end].lower() in self.understanding.names
+        words = (word for word in self.understanding.words(text) if word.type == "IDENT")
+        return any(_said(text, word) in self.understanding.names for word in words)
 
     def stands_for_title(self, text: ScriptText) -> bool:
         """Whether a line over numbered steps, which makes no sense as an order, is a title though
@@ -343,7 +343,8 @@ class Asides:
     def names(self, text: ScriptText) -> bool:
         """Whether a text names a checkpoint, a starting area or a step."""
         types = self.understanding.types(text)
-        return any(a in _NAMED and b in _LABELS for a, b in pairwise(types))
+        labelled = any(a in _NAMED and b in _LABELS for a, b in pairwise(types))
+        return labelled or self._has_name(text)
 
     def asks(self, text: ScriptText, counted: bool = False) -> bool:
         """Whether a text that makes no sense may ask for something; in a title runs and tests may

@@ -28,6 +28,8 @@ class ScriptLine:
     indent: int
     mark: LineMark = LineMark.NONE
     number: int | None = None
+    rank: int | None = None
+    """which letter or number it begins with, from 1"""
     first: bool = False
     """whether it is the first line of a paragraph"""
     marked: ScriptText | None = None
@@ -42,7 +44,7 @@ class ScriptLine:
 
 
 _NUMBER = (
-    r"\(?(?:<step>\s+)?([0-9]{1,6})"
+    r"\(?(?:<step>\s+)?([0-9]{1,6})(?:(?:st|nd|rd|th)(?=:))?"
     r"\s*(?:\.?\)(?![0-9])|\.(?![0-9])|:(?![0-9])|\s-\s+(?=[^\W\d_]))\s*"
 )
 _STEP = r"<step>\s+([0-9]{1,6})\b[.:)]?\s*"
@@ -152,9 +154,13 @@ def _marked(text: ScriptText, indent: int) -> ScriptLine:
         rest = text[number.end() :].strip()
         if pattern(_FLOOR_ONLY).fullmatch(rest.content):
             return ScriptLine(text, indent)  # `1. Obergeschoss`
-        return ScriptLine(rest, indent, LineMark.NUMBER, int(number[1]), marked=text)
-    if letter := _LETTER.match(text.content) or _SUB_NUMBER.match(text.content):
-        return ScriptLine(text[letter.end() :].strip(), indent, LineMark.LETTER)
+        first = int(number[1])
+        return ScriptLine(rest, indent, LineMark.NUMBER, first, rank=first, marked=text)
+    if letter := _LETTER.match(text.content):
+        rank = ord(letter[1].lower()) - ord("a") + 1 if len(letter[1]) == 1 else None
+        return ScriptLine(text[letter.end() :].strip(), indent, LineMark.LETTER, rank=rank)
+    if number := _SUB_NUMBER.match(text.content):
+        return ScriptLine(text[number.end() :].strip(), indent, LineMark.LETTER)
     return ScriptLine(text, indent)
 
 

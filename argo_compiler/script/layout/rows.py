@@ -211,7 +211,7 @@ class _Rows:
     def _done(self, cell: ScriptText) -> None:
         """Asks about a step that may be done already."""
         if cell.content.lower() in expand(self.prose.no):
-            self._note(cell)
+            self._warn_of_remark(cell)
             return
         message = f"`{cell.content}` can mean that this is done already"
         hint = "remove the column, or the rows that are done"
@@ -231,6 +231,9 @@ class _Rows:
         if aside.content.lower() in _NOT_APPLICABLE:
             self._ask_of_cell(aside)
             return
+        self._warn_of_remark(aside)
+
+    def _warn_of_remark(self, aside: ScriptText) -> None:
         message = f"`{aside.content}` is taken for a remark and has no effect"
         self.diagnostics.warning("no-effect", message, aside.span())
 

@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from itertools import groupby
 from types import MappingProxyType
 
 from argo_compiler.base.garbage_collector import collector_held
@@ -17,7 +18,14 @@ from argo_compiler.script.layout.fields import Field, ScriptFields
 from argo_compiler.script.layout.forms import ROW, FormRow, forms
 from argo_compiler.script.layout.glossary import Tags, explain
 from argo_compiler.script.layout.items import LineItem, LineSense, items_of
-from argo_compiler.script.layout.lines import LineMark, lines_of, sentences, stamped, unmarked
+from argo_compiler.script.layout.lines import (
+    LineMark,
+    ScriptLine,
+    lines_of,
+    sentences,
+    stamped,
+    unmarked,
+)
 from argo_compiler.script.layout.lists import Lists, on_floors
 from argo_compiler.script.layout.rows import COLUMN_HEADINGS, tables
 from argo_compiler.script.parsing.repeats import Repeats, repeats
@@ -156,7 +164,9 @@ class _Parser:
         )
         width = max(map(len, source.lines))
         sense = LineSense(self.understanding, self.asides, self.fields, width)
-        items = items_of(lines_of(texts), sense, language.words)
+        lines = list(lines_of(texts))
+        _ask_of_marks(lines, language.lexicon, self.diagnostics)
+        items = items_of(lines, sense, language.words)
         lists = Lists(self.understanding, self._record)
         steps = list(self._steps(lists.told(items)))
         steps, at_end = _with_end_apart(steps)
@@ -442,6 +452,26 @@ def _is_bare_number(order: Measure) -> bool:
     noun = order.what.nouns[0]
     plain = isinstance(noun, Labelled) and noun.kind is None and not noun.hash
     return plain and len(order.what.nouns) == 1 and not order.manner
+
+
+def _ask_of_marks(lines: Sequence[ScriptLine], lexicon: Lexicon, diagnostics: Diagnostics) -> None:
+    """Ask about lines whose letters or ordinals, `c)` or `Third:`, give another order than that in
+    which they stand; steps with numbers are compared later."""
+    values = {kind[1]: phrases for kind, phrases in lexicon.phrases.items() if kind[0] == "ORDINAL"}
+    ordinals = {phrase: int(n) for n, phrases in values.items() for phrase in phrases}
+
+    def rank(line: ScriptLine) -> int | None:
+        head, colon, _ = line.text.content.partition(":")
+        ordinal = ordinals.get(head.strip().lower()) if colon else None
+        return ordinal or (line.rank if line.mark is LineMark.LETTER else None)
+
+    for ranked, run in groupby(lines, key=lambda line: (rank(line) is not None, line.indent)):
+        same = list(run)
+        ranks = [n for n in map(rank, same) if n is not None]
+        if ranked[0] and ranks != sorted(ranks) and sorted(ranks) == list(range(1, len(ranks) + 1)):
+            message = "the lines can be meant in the order of their marks, or as they are written"
+            hint = "write them in the order in which they are done"
+            diagnostics.error("ambiguous-step", message, same[0].text.span(), hint)
 
 
 def _ask_of_quotes(steps: Sequence[ScriptStep], diagnostics: Diagnostics) -> None:

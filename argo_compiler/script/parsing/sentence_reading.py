@@ -299,7 +299,7 @@ class SentenceReader:
         if not first or "," not in text.content:
             return None
         head = text[: text.content.index(",")]
-        if self.asides.names_tasks(head):
+        if self.asides.names_tasks(head) or self.asides.names(head):
             return None
         parts = self._behind(text[len(head.content) + 1 :].strip())
         return _Title(head, parts=parts) if self.asides.is_title(head) and parts else None
@@ -327,7 +327,8 @@ class SentenceReader:
     def _entitled(self, title: _Title, item: LineItem, first: bool) -> list[Said]:
         """Keeps a title, and reads what stands behind it."""
         self.begun = True
-        listing = not first or title.head.content.endswith(":") or bool(item.items)
+        content = title.head.content
+        listing = not first or content.endswith(":") or bool(item.items) or " " not in content
         excludes = self.asides.sets_aside(title.head) or self.asides.turns(title.head)
         if excludes or (listing and self.asides.keeps_away(title.head)):
             self._ask_of_heading(title.head)

@@ -26,7 +26,7 @@ _MOST_WORDS = 6
 """of a heading in capitals"""
 _BLANK_LABELS = re.compile(r"(?!.*\d\.\.)(?:[^\W\d][\w .-]{0,20}:[\s_.]*)+")
 _COUNTER = re.compile(r"\W*[^\W\d]+(?: [^\W\d]+\.?)?:? [0-9]+ ?(?:of|von|/) ?[0-9]+\W*")
-_NUMBERS = re.compile(r"\s*#?\d+(?:\s*(?:,|;|/|&|\+|and|und)\s*#?\d+)+\s*")
+_NUMBERS = re.compile(r"\s*#?\d{1,3}(?:\s*(?:,|;|/|&|\+|and|und)\s*#?\d{1,3})*\s*")
 _LABEL = re.compile(r"[^\W\d][\w ./'-]{1,40}?\s*:\s+(?=\S)")
 _MOST_OF_VALUE = 6
 """words of the value of a field"""
@@ -63,7 +63,7 @@ _IN_PLACE = (
 def evidence(text: ScriptText, found: Mentions, language: Language, clause: bool = False) -> str:
     """Return why a piece, or a clause of one, has no effect; empty if nothing shows that it has
     none. What says that something is wrong, or of the order, has no such evidence."""
-    if pattern(r"\b<overturning>\b").search(text.content) is not None:
+    if pattern(r"\b(?:<overturning>|<turning>)\b").search(text.content) is not None:
         return ""
     for reason, is_such in _OF_CLAUSES if clause else (*_OF_LINES, *_OF_CLAUSES):
         if is_such(text, found, language):
@@ -228,7 +228,7 @@ def _has_no_field(text: ScriptText, found: Mentions, language: Language) -> bool
     legend: `Black dot: chosen`."""
     label = _LABEL.match(text.content)
     if label is not None and _NUMBERS.fullmatch(text.content, label.end()) is not None:
-        return False  # `Levels: 4, 5`
+        return False  # `Levels: 4, 5`, `Less: 3`
     if phrase_pattern(language.prose.form["legend"]).search(text.content) is not None:
         return False
     value = text.content[label.end() :] if label is not None else ""

@@ -148,6 +148,7 @@ def propose_row(row: FormRow, composer: Composer, first: bool = False) -> Propos
         found.unused = [word for word in found.unused if word not in found.described]
     _compare(row.cells, next(iter(ids.values())), found, composer)
     found.unused += _unexplained(row, ids)
+    found.doubts += _denials(row, composer)
     words = checkpoint_words(list(ids.values()))
     check, spare = f"Check {words}{found.manner}.", f"Do not check {words}."
     if row.doubt:
@@ -461,6 +462,15 @@ def _window(minutes: re.Match[str]) -> str:
     low, high = (float(minutes[k].replace(",", ".")) for k in ("low", "high"))
     latest = f" not later than {high:g} minutes after the start"
     return f" between minute {low:g} and minute {high:g}" if low else latest
+
+
+def _denials(row: FormRow, composer: Composer) -> Iterator[str]:
+    """Yield a doubt for `no` in a row that does not offer `yes` as well."""
+    prose = composer.understanding.language.prose
+    cells = [cell.text.content.lower() for cell in row.cells if cell.role is not CellRole.NUMBER]
+    denied = [cell for cell in cells if cell in expand(prose.form["denied"])]
+    if denied and not any(cell in expand(prose.yes) for cell in cells):
+        yield f"`{denied[0]}` can mean that the row is not meant"
 
 
 def _is_answer(text: str, composer: Composer) -> bool:

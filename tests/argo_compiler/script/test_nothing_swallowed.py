@@ -70,6 +70,28 @@ def conditions(text: str, catalog: Catalog) -> list[tuple[str | None, ConditionT
         ("Contact: ext. 14\nCheck valve R40.", "or have no meaning"),
         ("Robot #2 shall read #6 and #8.", ""),
         ("Roboter Nr. 2 soll #6 prüfen.", ""),
+        # remarks that deny, add to, or are about who does it
+        ("- #6 (ok)\n- #7 (no access)", "a change, or a remark"),
+        ("R25 - y\nR12 - n", "a change, or a remark"),
+        ("#1 - nein\n#2 - ja", "a change, or a remark"),
+        ("#7 - me\n#8 - you", "a change, or a remark"),
+        ("Pressure gauges 1, 2 and 3 - levels too.", "a change, or a remark"),
+        ("Manometer 1 und 2 - Füllstände auch.", ""),
+        ("R25 | yes\nR12 | no", "the row is not meant"),
+        ("Point\tread?\nR25\tyes\nR12\tn", ""),
+        # marks that give another order
+        ("1st: #20\n3rd: #14\n2nd: #17", "the order of their numbers"),
+        ("First: #20\nThird: #14\nSecond: #17", "the order of their marks"),
+        ("c) #20\na) #14\nb) #17", "the order of their marks"),
+        ("Top down:\n#1\n#9\n#20", "`Top`"),
+        ("Von oben nach unten:\n#1\n#9", ""),
+        # headings, greetings and fields that name something
+        ("Deferred\n- R18\nNow\n- #13, #15", "are not tasks"),
+        ("Point 3, pressure gauge 3 and level gauge 3.", ""),
+        ("Lieber R31 als R7, und das zuerst, dann #12.", ""),
+        ("Dear R31, then #12.", ""),
+        ("Level gauges 1 to 5\nless: 3", "`less`"),
+        ("#17, and the one after that.", "`the`"),
         # boxes behind a name
         ("Valve R7: read it? yes [ ] no [x]\nCheck #1.", "ticked"),
         ("Valve R7 [x] yes [ ] no\nCheck #1.", "ticked"),

@@ -90,6 +90,10 @@ _LABELS = frozenset(["NUMBER", "NUMBER_WORD", "IDENT", "STRING", "HASH"])
 _NOUNS = _LABELS | {"KIND", "EVERYTHING", "FLOOR", "FLOOR_NAME", "AREA", "DOCK", "PLACE", "RPAR"}
 _COUNTS = frozenset(["NUMBER", "NUMBER_WORD", "ALL", "BOTH", "EITHER", "NEITHER", "THEM", "EVERY"])
 _TIMES = frozenset(["DURATION", "A_UNIT", "UNIT_S", "TIMES"])
+_COUNTED = frozenset(
+    ["KIND", "FLOOR", "AREA", "STEP", "UNIT", "UNIT_S", "NUMBER_WORD", "NUMBER", "WORD", "DASH"]
+)
+"""types of words behind a number of them"""
 _LIMITS = OPENINGS | _RELATIONS | {"TIMES", "MOST_TIMES", "MOST_TIME", "FOR", "BY"}
 
 
@@ -137,7 +141,8 @@ def places_of(words: Sequence[Word], i: int, before: Sequence[Word]) -> WordPlac
         found |= WordPlace.BEFORE_VERB
     if last in _VERBAL and last != "IS":
         found |= WordPlace.AFTER_VERB
-    if next_ not in _NO_NAME or beside in WITHOUT_EFFECT - {"ARTICLE"}:
+    stands_for_name = words[i].type == "ARTICLE" and _is_pronoun(words[i + 1 : i + 3])
+    if (next_ not in _NO_NAME and not stands_for_name) or beside in WITHOUT_EFFECT - {"ARTICLE"}:
         found |= WordPlace.BEFORE_NAME
     numbered = following[:1] == ["KIND"] and following[1:2] and following[1] in _LABELS
     if last in _BEGIN and (next_ in _VERBAL | _LABELS | {"JOINT"} or numbered):
@@ -166,6 +171,12 @@ def parts_list(words: Sequence[Word], i: int, before: Sequence[Word]) -> bool:
     behind = [word.type for word in without_empty(words[i + 1 :])]
     clause = list(takewhile(lambda type_: type_ not in VERBS, behind))
     return clause[:1] != [] and clause[0] in _NOUNS | {"ALL", "EVERY"} and "ANY_ORDER" in clause
+
+
+def _is_pronoun(words: Sequence[Word]) -> bool:
+    """Return True for `one` that counts nothing: `the one after that`."""
+    one = [word.type for word in words[:1]] == ["NUMBER_WORD"] and words[0].value == 1
+    return one and not (words[1:] and words[1].type in _COUNTED)
 
 
 def _in_condition(before: Sequence[Word]) -> bool:

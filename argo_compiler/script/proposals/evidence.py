@@ -26,7 +26,7 @@ _MOST_WORDS = 6
 """of a heading in capitals"""
 _BLANK_LABELS = re.compile(r"(?!.*\d\.\.)(?:[^\W\d][\w .-]{0,20}:[\s_.]*)+")
 _COUNTER = re.compile(r"\W*[^\W\d]+(?: [^\W\d]+\.?)?:? [0-9]+ ?(?:of|von|/) ?[0-9]+\W*")
-_NUMBERS = re.compile(r"\s*#?\d{1,3}(?:\s*(?:,|;|/|&|\+|and|und)\s*#?\d{1,3})*\s*")
+_NUMBERS = re.compile(r"\s*#?[1-9]\d{0,2}(?:\s*(?:,|;|/|&|\+|and|und)\s*#?\d{1,3})*\s*")
 _LABEL = re.compile(r"[^\W\d][\w ./'-]{1,40}?\s*:\s+(?=\S)")
 _MOST_OF_VALUE = 6
 """words of the value of a field"""

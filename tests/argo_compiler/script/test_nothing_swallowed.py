@@ -83,7 +83,7 @@ def conditions(text: str, catalog: Catalog) -> list[tuple[str | None, ConditionT
         ("1st: #20\n3rd: #14\n2nd: #17", "the order of their numbers"),
         ("First: #20\nThird: #14\nSecond: #17", "the order of their marks"),
         ("c) #20\na) #14\nb) #17", "the order of their marks"),
-        ("Top down:\n#1\n#9\n#20", "`Top`"),
+        ("Top down:\n#1\n#9\n#20", "`Top down:`"),
         ("Von oben nach unten:\n#1\n#9", ""),
         # headings, greetings and fields that name something
         ("Deferred\n- R18\nNow\n- #13, #15", "are not tasks"),

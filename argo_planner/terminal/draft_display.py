@@ -1,5 +1,6 @@
 """Text of the lines of a draft that are left to decide on."""
 
+import os
 import shlex
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -12,6 +13,8 @@ if TYPE_CHECKING:
 
 _SHOWN = 20
 """lines of a draft that are shown; a file has all of them"""
+_CHOICES_SHOWN = 4
+"""choices of a line that are shown, if a file has all of them"""
 
 
 def incomplete_text(error: "IncompleteDraft") -> str:
@@ -24,35 +27,39 @@ def incomplete_text(error: "IncompleteDraft") -> str:
 
 
 def left_text(draft: "Draft") -> str:
-    """Return the proposed lines of a draft, how many lines are left, and the way to decide.
-
-    Of a document all lines that are left are shown, as messages have their places, not numbers.
-    """
+    """Return the lines of a draft that are left, how many they are, and the way to decide."""
     from argo_compiler.script import IncompleteDraft, LineState
 
     proposed = [line for line in draft.left if line.state is LineState.PROPOSED]
-    parts = _lines_text(draft.left if any(line.place for line in draft.left) else proposed)
+    path = draft_path(Path(draft.source_name))
+    parts = _lines_text(draft.left, path)
     parts.append(str(IncompleteDraft(draft)))
     if draft.left:
         parts.append(_commands(draft, proposed))
     return "\n".join(parts)
 
 
-def _lines_text(lines: Sequence["DraftLine"]) -> list[str]:
-    shown = [text for line in lines[:_SHOWN] for text in _line_text(line)]
+def _lines_text(lines: Sequence["DraftLine"], path: Path | None) -> list[str]:
+    kept = path is not None and os.path.exists(path)
+    most = _CHOICES_SHOWN if kept else None
+    shown = [text for line in lines[:_SHOWN] for text in _line_text(line, most)]
     left = len(lines) - _SHOWN
-    return [*shown, f"({left} more)"] if left > 0 else shown
+    shown += [f"({left} more lines)"] if left > 0 else []
+    return [*shown, f"all lines and choices are in {path}"] if kept and lines else shown
 
 
-def _line_text(line: "DraftLine") -> Iterable[str]:
+def _line_text(line: "DraftLine", most: int | None) -> Iterable[str]:
     place = f" ({line.place})" if line.place else ""
     yield f"line {line.label}{place}: {printable(line.text)}"
     if line.sentences or not line.reason:
         yield f"    => {' '.join(line.sentences) or '(nothing)'}"
-    if line.reason:
+    if line.reason and (line.place or line.sentences):  # else a message has it
         yield f"    {line.reason}"
-    for number, sentences in enumerate(line.choices if line.place else (), start=1):
+    for number, sentences in enumerate(line.choices[:most], start=1):
         yield f"    choice {number}: {' '.join(sentences) or '(set it aside)'}"
+    more = len(line.choices[:most]) < len(line.choices)
+    if more:
+        yield f"    (choices up to {len(line.choices)})"
     if line.unused:
         yield f"    not used: {printable(', '.join(line.unused))}"
 

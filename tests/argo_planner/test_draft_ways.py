@@ -9,8 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from argo_compiler.script import import_script
+from argo_compiler.script import IncompleteDraft, import_script
 from argo_env.planning.opening import OpenedSite
+from argo_planner.terminal.draft_display import incomplete_text
 from tests.argo_planner.conftest import argo
 from tests.processes import ROOT
 
@@ -242,6 +243,16 @@ def test_the_decisions_of_one_command_are_about_the_lines_as_they_were_shown(
     mission = script.parent / "m.json"
     argo("import", script, "-o", mission, *acts, "--set-aside", "7", status=0)
     assert count == 2
+
+
+def test_an_import_shows_the_choices_and_where_the_draft_is(script: Path) -> None:
+    write(script, OPEN)
+    result = argo("import", script, "-o", script.parent / "m.json")
+    assert isinstance(result.exception, IncompleteDraft)
+    shown = incomplete_text(result.exception)
+    assert "choice 1: Check checkpoint 4." in shown
+    assert "choice 3: (set it aside)" in shown
+    assert f"all lines and choices are in {script}.draft" in shown
 
 
 def test_all_and_ranges_leave_out_lines_that_another_option_names(script: Path) -> None:

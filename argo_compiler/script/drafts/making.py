@@ -31,6 +31,7 @@ from argo_compiler.script.drafts.draft import (
 from argo_compiler.script.parsing.parser import parse
 from argo_compiler.script.parsing.script import Piece, Script
 from argo_compiler.script.resolve.importing import resolve_script
+from argo_compiler.script.sentences.understanding import IS_MEANT
 
 if TYPE_CHECKING:
     from argo_compiler.script.proposals.composing import Proposal
@@ -45,6 +46,8 @@ _UNREAD = frozenset(
     ]
 )
 """codes of errors of a piece that the grammar does not take; others are questions"""
+_WITHOUT_SENSE = frozenset(["script.not-understood", "script.unfinished"])
+"""codes of errors whose hints are samples of the language"""
 _OF_OFFERS = frozenset([Act.CONFIRMED, Act.CHOSEN])
 """acts that count only while what they accept is offered"""
 _EMPTY = "script.empty-step"
@@ -156,7 +159,8 @@ def import_script(
         reading = read(decided)
         errors = _errors_by_piece(reading)
     proposals |= {at: one for at, one in assisted.items() if at not in refused}
-    known = _Known(errors, acts, proposals, suggested, assisted, refused)
+    hinted = {at: _with_own_hint(error, proposals.get(at)) for at, error in errors.items()}
+    known = _Known(hinted, acts, proposals, suggested, assisted, refused)
     lines = tuple(_lines(reading, known))
     left = any(line.is_left for line in lines)
     notes = (*_asides(reading, proposals), *_decided(reading, given, acts, lines))
@@ -165,7 +169,9 @@ def import_script(
         source_name=source_name,
         lines=lines,
         mission=None if left else reading.mission,
-        diagnostics=_all_diagnostics(reading, notes),
+        diagnostics=_all_diagnostics(
+            reading, notes, {id(errors[at]): error for at, error in hinted.items()}
+        ),
         text=reading.script.source_text,
     )
 
@@ -187,10 +193,24 @@ def _propose(
     return propose(script, unread, unclear, catalog, start_area, chosen, made)
 
 
-def _all_diagnostics(reading: _Reading, notes: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """Return all diagnostics of a script, by their place."""
+def _with_own_hint(error: Diagnostic, proposal: "Proposal | None") -> Diagnostic:
+    """Return the error of a text that makes no sense with what may be said of its own checkpoints,
+    if that is known."""
+    choice = " ".join(proposal.choices[0]) if proposal is not None and proposal.choices else ""
+    if not choice or error.code not in _WITHOUT_SENSE:
+        return error
+    meant, asks, _ = (error.hint or "").partition(IS_MEANT)
+    parts = [f"{meant}{asks}"] if asks else []
+    return error.model_copy(update={"hint": "; ".join([*parts, f"say, `{choice}`"])})
+
+
+def _all_diagnostics(
+    reading: _Reading, notes: Sequence[Diagnostic], hinted: Mapping[int, Diagnostic]
+) -> tuple[Diagnostic, ...]:
+    """Return all diagnostics of a script, by their place. `hinted`: those with other hints, by the
+    identity of what they replace."""
     source = reading.script.source
-    found = by_position((*reading.diagnostics, *notes))
+    found = by_position((*(hinted.get(id(d), d) for d in reading.diagnostics), *notes))
     document = source.document
     return (*source.placed(found), *(() if document is None else document.note_diagnostics()))
 

@@ -173,10 +173,13 @@ class Asides:
         return not self.names_tasks(text) or self._is_headline(text)
 
     def _lists_kind(self, text: ScriptText) -> bool:
-        """Return True for `Gauges: all on floor 1`, and for a count: `Number of valves: 3`."""
+        """Return True for `Gauges: all on floor 1`, `Floor 1: valves`, and for a count: `Number of
+        valves: 3`."""
         head, _, rest = text.content.partition(":")
-        kinds = self.understanding.types(text[: len(head)])[-1:] == ("KIND",)
-        return kinds and bool(rest.strip())
+        types = self.understanding.types(text[: len(head)])
+        placed = any(pair in _FLOORS for pair in pairwise(types)) or "FLOOR_NAME" in types
+        of_floor = placed and "KIND" in self.understanding.types(text[len(head) :])
+        return (types[-1:] == ("KIND",) and bool(rest.strip())) or of_floor
 
     def _counts_rounds(self, text: ScriptText) -> bool:
         head, colon, _ = text.content.partition(":")

@@ -47,7 +47,7 @@ _NUMBER = (
     r"\(?(?:<step>\s+)?([0-9]{1,6})(?:(?:st|nd|rd|th)(?=:))?"
     r"\s*(?:\.?\)(?![0-9])|\.(?![0-9])|:(?![0-9])|\s-\s+(?=[^\W\d_]))\s*"
 )
-_STEP = r"<step>\s+([0-9]{1,6})\b[.:)]?\s*"
+_STEP = r"<step>\s+([0-9]{1,6})\b[.:)]?(?!\s*(?:<about_step>)\b)\s*"
 _SUB_NUMBER = re.compile(r"[0-9]{1,4}\.[0-9]{1,4}[.)]?\s+(?=[A-Z])")
 _BRACKETED = re.compile(r"\[([0-9]{1,6})\]\s+")
 _LETTER = re.compile(r"\(?([a-z]|[ivx]{1,4})[.)]\s+", re.IGNORECASE)

@@ -154,21 +154,43 @@ def _normal_limit(of: OpenText) -> _Limit | None:
 def _by_failure(of: OpenText) -> Iterator[Sentences]:
     """Yield what is done if a checkpoint can't be read: that one, or each of them; first, if it is
     to be tried again."""
-    named = [c for m in of.found.of("checkpoints") if _is_labelled(m) for c in of.named_by(m)]
+    known, behind = of.composer.known, _behind_failure(of)
+    before = _between(of.found, 0, behind)
+    rest = _between(of.found, behind, len(of.text.content))
+    named = _named_in(before, of)
+    types = of.composer.understanding.types(of.text[:behind])
+    if not named and "IT" in types and len(known.memory.last) == 1:
+        named = [*known.memory.last]
+    if not named:
+        named, rest = _named_in(of.found, of), of.found.without("checkpoints")
     one = len({c.id for c in named}) == 1
-    if not one and not of.composer.known.memory.so_far:
+    if not one and not known.memory.so_far:
         return
     case = f"If checkpoint {named[0].id} fails" if one else "If a reading fails"
     counts = of.counts("TIMES", "MORE", "MOST_TIMES", "NUMBER")
     times = {1: "once", 2: "twice"}.get(counts[0] or 1, f"{counts[0]} times") if counts else "once"
-    acts = [a for a in of.acts(of.found.without("checkpoints")) if not a.startswith("wait")]
+    acts = [a for a in of.acts(rest) if not a.startswith("wait")]
+    likely = [(f"{case}, {act}.",) for act in acts]
     acts = acts or [of.return_words, "abort the mission"] if one else acts
     if of.found.has("RETRY", "again", "MORE") or _tells("trying", of):
         again = f"{case}, try again {times}."
         yield from ((again, f"If it still fails, {act}.") for act in acts)
         yield (again,)
+    yield from likely
     yield (f"{case}, go on with the next checkpoint.",)
     yield from ((f"{case}, {act}.",) for act in acts)
+
+
+def _behind_failure(of: OpenText) -> int:
+    """Return where the words end that say that a reading fails."""
+    ends = [mention.end for mention in of.found.of("FAILS")[:1]]
+    phrases = phrase_pattern(of.composer.understanding.language.prose.cues["failing"])
+    said = phrases.search(of.text.content)
+    return min([*ends, *([] if said is None else [said.end()])])
+
+
+def _named_in(found: Mentions, of: OpenText) -> list[CheckpointInfo]:
+    return [c for m in found.of("checkpoints") if _is_labelled(m) for c in of.named_by(m)]
 
 
 def _tells(name: str, of: OpenText) -> bool:

@@ -176,12 +176,18 @@ def _by_header(of: OpenText) -> Iterator[Sentences]:
         end = f"End of the mission: starting area {last}."
         places.append((f"Start in starting area {first}.", end))
     for area in dict.fromkeys(of.areas):
-        start, end = f"Start in starting area {area}.", f"starting area {area}."
-        there: list[Sentences] = [(start,), (f"Return to the docking station in {end}",)]
-        both = (start, f"End of the mission: {end}")
-        places += [both, *there] if of.found.has("home", "HOME", "END") else [*there, both]
+        start, end = f"Start in starting area {area}.", f"End of the mission: starting area {area}."
+        returned = f"Return to the docking station in starting area {area}."
+        homewards = of.found.has("home", "HOME", "END")
+        if homewards and not of.found.has("start", "START"):
+            places += [(returned,), (start, end), (start,)]
+        elif homewards:
+            places += [(start, end), (start,), (returned,)]
+        else:
+            places += [(start,), (returned,), (start, end)]
     for limit in limits:
-        yield from ((*place, limit) for place in places[:2])
+        for place in places[:2]:
+            yield (limit, *place) if place[0].startswith(_RETURN) else (*place, limit)
     yield from places
     for length in lengths:
         yield from ((f"Maximum duration: {length}.",), (f"Wait for {length}.",))

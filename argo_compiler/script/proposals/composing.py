@@ -7,6 +7,7 @@ sentence uses, the clause stays open, and what it may become are choices.
 import re
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.script.documents.source import RefusedError, ScriptText
@@ -235,6 +236,9 @@ class Composer:
             return None
         if self._numbers_robot(text, found) or _BACK_TO_ITEM.search(text.content):
             return None
+        sides = pairwise(found.of("checkpoints"))
+        if any(self.understanding.types(text[a.end : b.start]) == ("IS",) for a, b in sides):
+            return None  # `gauge four is #9`
         self.known.warnings.clear()
         sentences = sentences_of(found, self.known)
         if sentences is None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
+from itertools import pairwise
 from typing import NoReturn, TypeGuard
 
 from argo_compiler.base.catalog import CheckpointInfo
@@ -21,6 +22,8 @@ from argo_compiler.script.sentences.tree.nouns import (
 )
 from argo_compiler.script.sentences.tree.places import FloorName
 
+_BESIDE = frozenset([",", ";", ":", "-", "–", "/", "="])
+"""between number and name of one checkpoint"""
 _SHOWN_BY: dict[Quantity | None, Kind] = {
     Quantity.PRESSURE: Kind.PRESSURE_GAUGE,
     Quantity.LEVEL: Kind.LIQUID_LEVEL_GAUGE,
@@ -113,7 +116,7 @@ class NounResolver:
             if not (found and _is_the_one(one[0]) and agrees(found[-1], one[0].kind)):
                 found.extend(self._noun(*one))
 
-        self.diagnostics.each(find, _inheriting(nouns.nouns))
+        self.diagnostics.each(find, _inheriting(self._once_each(nouns.nouns)))
         out: list[CheckpointInfo] = []
         for noun, kind, _ in _inheriting(nouns.but):
             excepted = self._left_out(noun, kind, found)
@@ -136,6 +139,34 @@ class NounResolver:
             hint = "name the checkpoints to measure"
             self.diagnostics.refuse("no-checkpoint", message, nouns.span, hint)
         return left
+
+    def _once_each(self, nouns: Sequence[Noun]) -> Sequence[Noun]:
+        """Return a list without the names that stand behind the numbers of the same checkpoints, or
+        the other way round: `#8, pressure gauge 5`."""
+        again = (self._names_again(first, second) for first, second in pairwise(nouns))
+        return [
+            *nouns[:1],
+            *(b for b, is_again in zip(nouns[1:], again, strict=True) if not is_again),
+        ]
+
+    def _names_again(self, first: Noun, second: Noun) -> bool:
+        """Return True for number and name of one checkpoint, side by side; ask about `#8, pressure
+        gauge 8`, which may be meant so."""
+        if not isinstance(first, Labelled) or not isinstance(second, Labelled):
+            return False
+        numbered = [noun.hash or noun.kind is Kind.CHECKPOINT for noun in (first, second)]
+        said = self.diagnostics.source.said(first.span, second.span)
+        beside = said[first.span.length : len(said) - second.span.length].strip() in _BESIDE
+        named = second if numbered[0] else first
+        single = first.last is second.last is None
+        if not beside or not single or sum(numbered) != 1 or named.kind is None:
+            return False
+        (one,), (other,) = (self._named(noun, noun.kind, False) for noun in (first, second))
+        if one != other and first.label == second.label:
+            message = f"`{said}` can be {told(one)} and {told(other)}, or only one of them"
+            hint = "correct the number or the name, or write `and` between two checkpoints"
+            self.diagnostics.refuse("checkpoint-mismatch", message, second.span, hint)
+        return one == other
 
     def _require_no_count(
         self, noun: Noun, excepted: list[CheckpointInfo], found: list[CheckpointInfo]
@@ -228,6 +259,11 @@ class NounResolver:
 
     def _range(self, noun: Labelled) -> range:
         first, last = noun.label, noun.last
+        said = self.diagnostics.source.said(noun.span)
+        if not noun.hash and noun.kind is not Kind.CHECKPOINT and "#" in said:
+            message = f"`{said}` can be a range, or number and name of one checkpoint"
+            hint = f"write `{first} to {last}` for the first, or only one of the two"
+            self.diagnostics.refuse("range", message, noun.span, hint)
         if not isinstance(first, int) or not isinstance(last, int):
             message = "a range needs two numbers"
             self.diagnostics.refuse("range", message, noun.span, "name each checkpoint")

@@ -31,6 +31,8 @@ _MOST_TRIED = 32
 """ways to put the misspelt words of a sentence right"""
 _MIXED = re.compile(r"(?<![\w.,'-])(?=[lIiOo|]*[0-9])(?=[0-9]*[lIiOo|])([0-9lIiOo|]+)(?![\w|]|-\w)")
 _WORD = re.compile(r"(?<![\w.'-])(?=[^\W\d_]*[0-9])[^\W_]{4,}(?![\w-])")
+IS_MEANT = " meant?"
+"""end of the part of a hint that asks for the right spelling"""
 _LETTERS = {"0": "o", "1": "li", "5": "s", "8": "b"}
 """what text recognition takes for figures"""
 _DIGITS = str.maketrans("lIi|Oo", "111100")
@@ -271,7 +273,7 @@ class Understanding:
             meant = candidates(said, self.known)
             if meant and said.lower() not in meant:
                 choices = listed((f"`{word}`" for word in sorted(meant)[:3]), "or")
-                parts.append(f"is {choices} meant?")
+                parts.append(f"is {choices}{IS_MEANT}")
         if at is None or (stumble.at < len(found) and found[stumble.at] is at):
             before = tuple(word.type for word in found[: stumble.at])
             follow = self._may_follow(before)

@@ -111,6 +111,14 @@ BEFORE = "Check pressure gauge 3 and valve R12.\n"
             "and if it can't see R12 skip it",
             "If checkpoint 5 fails, go on with the next checkpoint.",
         ),
+        (
+            "Check R7. If it can't be read try twice more, and if that fails too take PG4 instead",
+            "If checkpoint 11 fails, try again twice. If it still fails, check checkpoint 9.",
+        ),
+        (
+            "Should pressure gauge 3 be unreadable, take valve R7 in its place",
+            "If checkpoint 6 fails, check checkpoint 11.",
+        ),
         # changes of the list above
         (
             "Hang valve R7 between pressure gauge 3 and valve R12",
@@ -163,6 +171,25 @@ def test_a_choice_that_does_not_fit_leaves_the_others(catalog: Catalog) -> None:
     again = draft_of(text, catalog, draft.choose(line.label, wrong)).lines[-1]
     assert again.state is LineState.OPEN
     assert again.choices == (*line.choices[: wrong - 1], *line.choices[wrong:])
+
+
+def test_an_end_and_a_limit_of_time_are_one_choice(catalog: Catalog) -> None:
+    (*_, last) = draft_of(f"{BEFORE}finish in starting area 1 within 45 min", catalog).lines
+    end = "Return to the docking station in starting area 1."
+    assert ("Maximum duration: 45 minutes.", end) in last.choices
+
+
+def test_a_sentence_about_a_step_is_not_that_step(catalog: Catalog) -> None:
+    text = "Step 1 check R7\nStep 2 check R12\nStep 2 is cancelled"
+    (*_, last) = draft_of(text, catalog).lines
+    assert last.text == "Step 2 is cancelled"
+    assert last.choices[0] == ("Delete checkpoint 5.",)
+
+
+def test_the_hint_of_an_open_line_is_about_its_own_checkpoint(catalog: Catalog) -> None:
+    draft = draft_of(f"{BEFORE}Befriend valve R7.", catalog)
+    assert "`Check checkpoint 11.`" in draft.lines[-1].hint
+    assert "`Check checkpoint 11.`" in str(draft.diagnostics[-1].hint)
 
 
 def test_rounds_may_be_chosen_above_the_tasks_that_are_open(catalog: Catalog) -> None:

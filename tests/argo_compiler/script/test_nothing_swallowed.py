@@ -92,6 +92,13 @@ def conditions(text: str, catalog: Catalog) -> list[tuple[str | None, ConditionT
         ("Dear R31, then #12.", ""),
         ("Level gauges 1 to 5\nless: 3", "`less`"),
         ("#17, and the one after that.", "`the`"),
+        # number and name side by side, and numbers that count
+        ("#8, pressure gauge 8", "or only one of them"),
+        ("Pressure gauge 8, #8, R7", "or only one of them"),
+        ("Pressure gauge number four is #9 and number three is #6.", "`is`"),
+        ("Read the pressure gauges 2-4, so three of them.", "`of them`"),
+        ("Check the seven.", "`the`"),
+        ("Pressure gauge 5 - #8", "or number and name"),
         # boxes behind a name
         ("Valve R7: read it? yes [ ] no [x]\nCheck #1.", "ticked"),
         ("Valve R7 [x] yes [ ] no\nCheck #1.", "ticked"),
@@ -205,6 +212,9 @@ def test_a_first_line_that_may_change_the_plan_is_no_title(title: str, catalog: 
         ("Check PG 1, then R25, then PG 5.", ["1", "4", "8"]),
         ("On floor 2, first check #5, then #7.", ["5", "7"]),
         ("First check #8.\nCheck #1.", ["8", "1"]),
+        ("#8, pressure gauge 5, R7", ["8", "11"]),
+        ("#8 and pressure gauge 8", ["8", "18"]),
+        ("Floor 2: valves\nFloor 3: both valves", ["5", "10", "11"]),
     ],
 )
 def test_what_is_read(text: str, checkpoints: list[str], catalog: Catalog) -> None:

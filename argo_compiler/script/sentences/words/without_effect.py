@@ -91,9 +91,22 @@ _NOUNS = _LABELS | {"KIND", "EVERYTHING", "FLOOR", "FLOOR_NAME", "AREA", "DOCK",
 _COUNTS = frozenset(["NUMBER", "NUMBER_WORD", "ALL", "BOTH", "EITHER", "NEITHER", "THEM", "EVERY"])
 _TIMES = frozenset(["DURATION", "A_UNIT", "UNIT_S", "TIMES"])
 _COUNTED = frozenset(
-    ["KIND", "FLOOR", "AREA", "STEP", "UNIT", "UNIT_S", "NUMBER_WORD", "NUMBER", "WORD", "DASH"]
+    [
+        "KIND",
+        "FLOOR",
+        "AREA",
+        "STEP",
+        "UNIT",
+        "UNIT_S",
+        "NUMBER_WORD",
+        "NUMBER",
+        "TIME_WORD",
+        "WORD",
+        "DASH",
+    ]
 )
 """types of words behind a number of them"""
+_AND = frozenset(["JOINT", "NEXT"])
 _LIMITS = OPENINGS | _RELATIONS | {"TIMES", "MOST_TIMES", "MOST_TIME", "FOR", "BY"}
 
 
@@ -149,7 +162,7 @@ def places_of(words: Sequence[Word], i: int, before: Sequence[Word]) -> WordPlac
         found |= WordPlace.BEFORE_NUMBERED
     if last in _NOUNS:
         found |= WordPlace.AFTER_NOUN
-    if last in _COUNTS:
+    if last in _COUNTS and not (last in _LABELS and before[-2:][0].type in _AND):
         found |= WordPlace.AFTER_COUNT
     if last in _TIMES:
         found |= WordPlace.AFTER_TIME
@@ -174,9 +187,9 @@ def parts_list(words: Sequence[Word], i: int, before: Sequence[Word]) -> bool:
 
 
 def _is_pronoun(words: Sequence[Word]) -> bool:
-    """Return True for `one` that counts nothing: `the one after that`."""
-    one = [word.type for word in words[:1]] == ["NUMBER_WORD"] and words[0].value == 1
-    return one and not (words[1:] and words[1].type in _COUNTED)
+    """Return True for a number in words that counts nothing: `the one after that`."""
+    number = [word.type for word in words[:1]] == ["NUMBER_WORD"]
+    return number and not (words[1:] and words[1].type in _COUNTED)
 
 
 def _in_condition(before: Sequence[Word]) -> bool:

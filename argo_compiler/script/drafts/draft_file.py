@@ -19,6 +19,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.listing import listed
 from argo_compiler.base.model import Model
 from argo_compiler.script.assistant.suggestion import LineSuggestion, SuggestedSentence
 from argo_compiler.script.drafts.draft import (
@@ -42,6 +43,10 @@ _KEYS = {
     Act.SET_ASIDE: "set aside by hand",
 }
 _ACTS = {key: act for act, key in _KEYS.items()}
+_GENERATED = re.compile(
+    r"place|understood|proposed|set aside|open|note|not used|hint|choice [0-9]+", re.IGNORECASE
+)
+"""keys of what each import writes anew"""
 _SUGGESTED = "suggested"
 _NOTHING = "(nothing)"
 """stands for a suggestion without sentences"""
@@ -97,7 +102,7 @@ def read_draft(text: str, source_name: str) -> StoredDraft:
     """Return what a person has decided on, and an assistant has suggested, in the text of a draft.
 
     Raises:
-        Invalid: It is no draft, or one of another version.
+        Invalid: It is no draft, or one of another version, or a line of it can't be read.
     """
     first, *rest = text.split("\n")
     head = _HEAD.fullmatch(first.strip("\ufeff \t\r"))
@@ -107,12 +112,18 @@ def read_draft(text: str, source_name: str) -> StoredDraft:
             f"`{_FIRST}`; remove the file to decide anew"
         )
     blocks: list[_Block] = []
-    for line in rest:
+    for number, line in enumerate(rest, start=2):
         if (begun := _LINE.fullmatch(line.rstrip())) is not None:
             blocks.append(_Block(" ".join(begun[1].split())))
-        elif blocks:
+        elif line.strip() and not line.startswith("#"):
             key, colon, value = line.partition(":")
-            blocks[-1].read(" ".join(key.split()), value.strip() if colon else "")
+            fault = "it stands above the first line of the script"
+            if blocks:
+                fault = blocks[-1].read(
+                    " ".join(key.lower().split()), value.strip() if colon else ""
+                )
+            if fault:
+                raise Invalid(f"{source_name}, line {number}: {fault}")
     return StoredDraft(
         decisions=decisions_of((b.text, b.decided, tuple(b.sentences)) for b in blocks),
         suggestions=suggestions_of(
@@ -144,19 +155,26 @@ class _Block:
         """The act, unless it needs sentences and has none."""
         return self.act if self.sentences or self.act is Act.SET_ASIDE else None
 
-    def read(self, key: str, value: str) -> None:
-        """Read a line of a key and a value."""
+    def read(self, key: str, value: str) -> str:
+        """Read a line of a key and a value; return what is wrong with it, empty if nothing is."""
         if key == _SUGGESTED:
             self.suggested = self.suggested or []
             words, stands_for, sentence = value.rpartition(_STANDS_FOR)
             if stands_for and words.strip() and sentence.strip():
                 part = SuggestedSentence(words=words.strip(), sentence=sentence.strip())
                 self.suggested.append(part)
-            return
-        act = _ACTS.get(key)
+            return ""
+        act = Act.SET_ASIDE if key == "set aside" and not value else _ACTS.get(key)
         if act is None:
-            return
-        if act is not self.act:
-            self.act, self.sentences = act, []
-        if value and act is not Act.SET_ASIDE:
-            self.sentences.append(value)
+            keys = listed(
+                [f"`{one}: ...`" for one in _ACTS if _ACTS[one] is not Act.SET_ASIDE], "or"
+            )
+            wrong = f"`{key}` is no key of a draft: write {keys} for each sentence, or "
+            return "" if _GENERATED.fullmatch(key) else f"{wrong}`{_KEYS[Act.SET_ASIDE]}`"
+        if self.act not in (None, act):
+            return f"`{key}` is a second decision on one line"
+        if not value and act is not Act.SET_ASIDE:
+            return f"a sentence is missing behind `{key}:`"
+        self.act = act
+        self.sentences += [value] if act is not Act.SET_ASIDE else []
+        return ""

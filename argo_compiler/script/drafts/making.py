@@ -79,6 +79,7 @@ class _Context(NamedTuple):
     catalog: Catalog
     start_area: int | None
     chosen: Mapping[int, tuple[str, ...]]
+    sure: Collection[int]
     made: "Made"
 
 
@@ -128,8 +129,14 @@ def import_script(
     unclear = {at for at in errors if at not in said}
     proposals: dict[int, Proposal] = {}
     script = reading.script
-    context = _Context(catalog, start_area, chosen, {})
+    context = _Context(catalog, start_area, {}, frozenset(), {})
     if unread or unclear:  # not of a script that is understood whole, which is to start fast
+        proposals = _propose(script, unread, unclear - unread, context)
+    if chosen:  # what is offered may hang on the other choices
+        offered = {at: one.choices for at, one in proposals.items()}
+        sure = frozenset(at for at, taken in chosen.items() if taken in offered.get(at, ()))
+        context = context._replace(chosen=chosen, sure=sure)
+    if chosen and proposals:
         proposals = _propose(script, unread, unclear - unread, context)
     proposed = {at: p.sentences for at, p in proposals.items() if not p.is_open}
     suggested = _match(tuple(suggestions), reading.script.pieces)
@@ -189,8 +196,7 @@ def _propose(
     """Return the proposals for pieces of a script; see `propose`, which is imported only here."""
     from argo_compiler.script.proposals.proposing import propose
 
-    catalog, start_area, chosen, made = context
-    return propose(script, unread, unclear, catalog, start_area, chosen, made)
+    return propose(script, unread, unclear, *context)
 
 
 def _with_own_hint(error: Diagnostic, proposal: "Proposal | None") -> Diagnostic:
@@ -336,7 +342,7 @@ class _Known:
             doubt = "" if proposal is None else proposal.doubt
             found |= {"state": LineState.OPEN, "reason": doubt or error.message}
             found |= {"hint": error.hint or "", "is_question": error.code not in _UNREAD}
-            refused = decision.sentences if decision is not None else None
+            refused = decision.sentences if decision is not None and "act" in found else None
             choices = () if proposal is None else proposal.choices
             found |= {"choices": tuple(choice for choice in choices if choice != refused)}
         if (refusal := self.refused.get(at)) is not None and "act" not in found:
@@ -394,14 +400,15 @@ def _decided(
 ) -> Iterator[Diagnostic]:
     """Yield notes of what was decided on, and warnings of decisions that have no effect."""
     effective: set[int] = set()
+    matched: dict[int, DraftLine] = {}
     for piece, line in zip(reading.script.pieces, lines, strict=True):
         act = acts.get(piece.text.first)
         if act is None:
             continue
-        if line.act is not None or line.is_left:
-            effective.add(id(act))
+        matched[id(act)] = line
         if line.act is None:
             continue
+        effective.add(id(act))
         span, shown = piece.text.span(), f"`{shortened(line.text)}`"
         if line.act is Act.SET_ASIDE:
             message = f"{shown} is set aside by hand"
@@ -409,16 +416,32 @@ def _decided(
         else:
             message = f"{shown} counts as `{shortened(' '.join(line.sentences))}`, {_HOW[line.act]}"
             yield diagnostic_of("script.decided", message, span=span)
-    matched = {id(act) for act in acts.values()}
     for decision in decisions:
         if id(decision) not in effective:
-            why = "the line is understood without it" if id(decision) in matched else ""
+            why = _why_not(decision, matched.get(id(decision)))
             count = sum(line.text == decision.text for line in lines)
             now = f"{count} lines have this text now" if count > 1 else "one line has this text now"
             why = why or (now if count else "no line has this text")
             message = f"what was decided on `{shortened(decision.text)}` has no effect: {why}"
             hint = "import the script again to forget the decision, or decide anew"
             yield diagnostic_of("script.decision-unused", message, hint)
+
+
+def _why_not(decision: LineDecision, line: DraftLine | None) -> str:
+    """Return why a decision on a line that the script still has does not count; empty if it has no
+    such line."""
+    if line is None:
+        return ""
+    if not line.is_left:
+        return "the line is understood without it"
+    number = f"line {line.label}"
+    if decision.act is Act.CHOSEN:
+        return f"{number} does not offer `{shortened(' '.join(decision.sentences))}` now"
+    return (
+        f"{number} has another proposal now"
+        if line.sentences
+        else f"nothing is proposed for {number}"
+    )
 
 
 def _lines_of(piece: Piece) -> tuple[int, int]:

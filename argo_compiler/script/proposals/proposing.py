@@ -54,6 +54,7 @@ def propose(
     catalog: Catalog,
     start_area: int | None,
     chosen: Mapping[int, Sentences],
+    sure: Collection[int],
     made: Made,
 ) -> dict[int, Proposal]:
     """Return what is proposed for the unread pieces, and the choices of those that are unclear; by
@@ -66,6 +67,7 @@ def propose(
         catalog: names and places of the site
         start_area: where the mission starts if the script does not say it
         chosen: choices that a person has taken; what is not offered has no effect
+        sure: offsets of those that are offered whatever else is chosen
         made: what was made of pieces of this script before; what is made now is added
     """
     source = script.source
@@ -75,7 +77,7 @@ def propose(
     known = Known(understanding, catalog)
     known.start_area = _start_area(script) or start_area
     composer = Composer(understanding, known)
-    return _Proposer(script, unread, unclear, composer, chosen, made).all()
+    return _Proposer(script, unread, unclear, composer, chosen, sure, made).all()
 
 
 class _Proposer:
@@ -88,6 +90,7 @@ class _Proposer:
         unclear: Collection[int],
         composer: Composer,
         chosen: Mapping[int, Sentences],
+        sure: Collection[int],
         made: Made,
     ) -> None:
         self.script = script
@@ -103,6 +106,7 @@ class _Proposer:
         )
         self.found: dict[int, Proposal] = {}
         self.chosen = chosen
+        self.sure = sure
         self.made = made
         self.known: tuple[object, ...] = ()
 
@@ -159,7 +163,8 @@ class _Proposer:
         """Return an open proposal with the sentences that a person has chosen, if they are
         offered."""
         chosen = self.chosen.get(piece.text.first)
-        if not chosen or chosen not in {*proposal.choices, *map(self._ending, proposal.choices)}:
+        offered = {*proposal.choices, *map(self._ending, proposal.choices)}
+        if not chosen or not (chosen in offered or piece.text.first in self.sure):
             return proposal
         for sentence in filter(_checks, chosen):
             self.composer.propose(piece.text.replaced(sentence))  # later texts refer to it

@@ -7,6 +7,7 @@ from argo_compiler.base.errors import Invalid
 from argo_compiler.script import (
     Act,
     Draft,
+    DraftActs,
     IncompleteDraft,
     LineState,
     draft_text,
@@ -151,6 +152,55 @@ def test_a_choice_counts_only_while_it_is_offered(catalog: Catalog) -> None:
     assert [line.label for line in swapped.left] == ["3"]
     assert "checkpoint 1" in swapped.left[0].choices[0][0]
     assert swapped.decisions == ()
+
+
+def test_choices_that_were_offered_together_count_together(catalog: Catalog) -> None:
+    text = "Check R12.\nZip to R25.\nRather skip R25, mate.\nGo home."
+    draft = draft_of(text, catalog)
+    acts = DraftActs(choose=(("2", 1), ("3", 1)))
+    decided = draft_of(text, catalog, draft.decide(acts))
+    assert [decision.act for decision in decided.decisions] == [Act.CHOSEN, Act.CHOSEN]
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "why"),
+    [
+        ("Check PG4.\nIf it shows too much, go straight home.", "PG6", "does not offer"),
+        ("Check PG1.\nleave it please.", "R25", "another proposal now"),
+    ],
+)
+def test_a_decision_that_no_longer_fits_is_a_warning(
+    before: str, after: str, why: str, catalog: Catalog
+) -> None:
+    draft = draft_of(before, catalog)
+    (line,) = draft.left
+    decisions = draft.choose("2", 1) if line.choices else draft.confirm()
+    assert draft_of(before, catalog, decisions).left == ()
+    now = draft_of(before.replace("PG4", after).replace("PG1", after), catalog, decisions)
+    assert [line.label for line in now.left] == ["2"]
+    (warning,) = (d for d in now.diagnostics if d.code == "script.decision-unused")
+    assert why in warning.message
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ("confirm: Check checkpoint 1.", "line 4: `confirm` is no key of a draft"),
+        ("said: Check PG 4.\nWait for 2 minutes.", "line 5: `wait for 2 minutes.` is no key"),
+        ("said:", "line 4: a sentence is missing"),
+        ("said: Check PG 4.\nset aside by hand", "line 5: `set aside by hand` is a second"),
+        ("conf", "line 4: `conf` is no key"),
+    ],
+)
+def test_a_line_of_a_draft_that_cannot_be_read_is_named(changed: str, message: str) -> None:
+    with pytest.raises(Invalid, match=message):
+        read_decisions(f"# draft, version 1: it\n\n1 | Befriend PG 1\n{changed}\n", "it")
+
+
+@pytest.mark.parametrize("key", ["Set aside by hand", "set aside", "SAID: Check #1."])
+def test_keys_of_a_draft_are_read_as_people_write_them(key: str) -> None:
+    draft = f"# draft, version 1: it\n\n1 | Befriend PG 1\n{key}\n# a remark\n"
+    assert len(read_decisions(draft, "it")) == 1
 
 
 def test_a_later_choice_may_depend_on_an_earlier_one(catalog: Catalog) -> None:

@@ -1,7 +1,7 @@
 /** A line of a draft: the words of the script, and what they become. */
 
 import type { Diagnostic } from "../api/types";
-import { isLeft, type ShownLine, splitUnused } from "../model/draft-lines";
+import { isLeft, isRefused, type ShownLine, splitUnused } from "../model/draft-lines";
 import { t } from "../texts";
 import { css, html, nothing } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
@@ -173,7 +173,7 @@ export interface RowHandlers {
   readonly edit: (line: ShownLine) => void;
   readonly undo: (line: ShownLine) => void;
   readonly say: (line: ShownLine, text: string) => void;
-  readonly cancel: () => void;
+  readonly cancel: (line: ShownLine) => void;
 }
 
 export interface RowState {
@@ -215,8 +215,9 @@ export function draftRow(line: ShownLine, shown: RowState, on: RowHandlers) {
     <div role="gridcell" class="becomes">
       <div class=${isLeft(line) ? "" : "settled"}>${badge(line)} ${isLeft(line) ? nothing : meaning(line)}</div>
       ${line.reading ? html`<p class="plainly">${texts.reading}</p>` : nothing}
-      ${isLeft(line) ? meaning(line) : nothing} ${doubts(line, shown.notes)}
-      ${shown.editing !== null ? sayForm(line, shown.editing, on) : shown.may ? buttons(line, shown, on) : nothing}
+      ${isLeft(line) && !(shown.editing !== null && isRefused(line)) ? meaning(line) : nothing}
+      ${doubts(line, shown.notes)} ${shown.editing !== null && shown.may ? sayForm(line, shown.editing, shown, on) : nothing}
+      ${shown.may && (shown.editing === null || isRefused(line)) ? buttons(line, shown, on) : nothing}
     </div>
   </div>`;
 }
@@ -288,7 +289,7 @@ function buttons(line: ShownLine, shown: RowState, on: RowHandlers) {
             ${icon("check", 16)} ${texts.confirm} <kbd aria-hidden="true">c</kbd>
           </button>`
         : nothing}
-      ${open || shown.active
+      ${(open || shown.active) && shown.editing === null
         ? html`<button tabindex=${tab} class="say" @click=${() => on.edit(line)}>
             ${texts.say} <kbd aria-hidden="true">e</kbd>
           </button>`
@@ -311,8 +312,9 @@ function offersAside(line: ShownLine): boolean {
   return isLeft(line) && line.choices.some((sentences) => sentences.length === 0);
 }
 
-function sayForm(line: ShownLine, text: string, on: RowHandlers) {
+function sayForm(line: ShownLine, text: string, shown: RowState, on: RowHandlers) {
   const texts = t().draft;
+  const tab = shown.active ? 0 : -1;
   const send = (event: SubmitEvent) => {
     event.preventDefault();
     const field = (event.target as HTMLFormElement).elements.namedItem("words") as HTMLInputElement;
@@ -325,13 +327,14 @@ function sayForm(line: ShownLine, text: string, on: RowHandlers) {
       name="words"
       maxlength="1000"
       autocomplete="off"
+      tabindex=${tab}
       aria-label=${texts.inOtherWords(line.label)}
       .value=${text}
       @input=${(event: Event) => (event.target as HTMLInputElement).setCustomValidity("")}
     />
     <div class="buttons">
-      <button class="main">${texts.apply} <kbd aria-hidden="true">Enter</kbd></button>
-      <button type="button" @click=${on.cancel}>${texts.cancel} <kbd aria-hidden="true">Esc</kbd></button>
+      <button class="main" tabindex=${tab}>${texts.apply} <kbd aria-hidden="true">Enter</kbd></button>
+      <button type="button" tabindex=${tab} @click=${() => on.cancel(line)}>${texts.cancel} <kbd aria-hidden="true">Esc</kbd></button>
     </div>
   </form>`;
 }

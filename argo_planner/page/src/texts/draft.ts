@@ -55,6 +55,8 @@ export const draft = both(
     wasSetAside: (label: string) => `Line ${label} is set aside.`,
     wasChosen: (label: string, meaning: string) => `Line ${label} becomes: ${meaning}`,
     allConfirmed: (count: number) => (count === 1 ? "One line is confirmed." : `${count} lines are confirmed.`),
+    isRead: (label: string) => `Line ${label} is being read.`,
+    notRead: (label: string) => `Line ${label} is not understood in these words either: its field is open.`,
     undone: (label: string) => `The decision on line ${label} is undone.`,
     left: (count: number) => (count === 0 ? "Nothing is left." : `${count} left.`),
     becameOther: (labels: readonly string[]) =>
@@ -132,6 +134,8 @@ export const draft = both(
     wasSetAside: (label: string) => `Zeile ${label} ist beiseitegelegt.`,
     wasChosen: (label: string, meaning: string) => `Zeile ${label} wird: ${meaning}`,
     allConfirmed: (count: number) => (count === 1 ? "Eine Zeile ist bestätigt." : `${count} Zeilen sind bestätigt.`),
+    isRead: (label: string) => `Zeile ${label} wird gelesen.`,
+    notRead: (label: string) => `Zeile ${label} wird auch in diesen Worten nicht verstanden: Ihr Feld ist offen.`,
     undone: (label: string) => `Die Entscheidung über Zeile ${label} ist rückgängig gemacht.`,
     left: (count: number) => (count === 0 ? "Nichts ist mehr offen." : `Noch ${count}.`),
     becameOther: (labels: readonly string[]) =>

@@ -10,11 +10,11 @@ import { isLeft, isRefused, type LineAct, messagesByLine, nextLeft, type ShownLi
 import { mayPlan } from "../state/session";
 import { world } from "../state/world";
 import { language, t } from "../texts";
-import { placeBefore } from "../texts/place";
+import { placeBefore, spokenPlace } from "../texts/place";
 import { options, valueOf } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, query, state } from "../ui/element";
 import { icon } from "../ui/icons";
-import { draftRow, draftRowStyles, type RowHandlers } from "./row";
+import { draftRow, draftRowStyles, messageText, type RowHandlers } from "./row";
 import {
   actsSaved,
   canUndo,
@@ -323,7 +323,7 @@ export class DraftView extends PageElement {
         <h2 id="idle-title">${texts.idleTitle(lines.length)}</h2>
         <p>${texts.idleExplained}</p>
         <ul tabindex="0" aria-label=${texts.lines}>
-          ${lines.map((line) => html`<li><span class="dim">${line.place || texts.line(line.label)}:</span> ${line.text}</li>`)}
+          ${lines.map((line) => html`<li><span class="dim">${spokenPlace(line.place) || texts.line(line.label)}:</span> ${line.text}</li>`)}
         </ul>
         <div class="row">
           <button class="main" autofocus>${texts.idleApply(lines.length)}</button>
@@ -385,10 +385,10 @@ export class DraftView extends PageElement {
     const errors = draft.diagnostics.filter((one) => one.severity === "error" && one.code !== "script.area-choice");
     if (errors.length === 0) return nothing;
     return html`<section class="told bad" role="alert" aria-label=${t().draft.messages}>
-      <ul lang="en">
+      <ul>
         ${errors.slice(0, 20).map(
           (one) =>
-            html`<li>${placeBefore(one)}${one.message}${one.hint ? html`<br /><span class="dim">${one.hint}</span>` : nothing}</li>`,
+            html`<li>${placeBefore(one)}${messageText(one.message)}${one.hint ? html`<br /><span class="dim">${messageText(one.hint)}</span>` : nothing}</li>`,
         )}
       </ul>
     </section>`;

@@ -3,6 +3,8 @@
 import type { Diagnostic } from "../api/types";
 import { isLeft, isRefused, type ShownLine, splitUnused } from "../model/draft-lines";
 import { t } from "../texts";
+import { spokenPlace } from "../texts/place";
+import { spoken } from "../texts/reasons";
 import { css, html, nothing } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
 
@@ -204,7 +206,7 @@ export function draftRow(line: ShownLine, shown: RowState, on: RowHandlers) {
     <div role="gridcell" class="words">
       <span class="number" aria-hidden="true">${line.label}</span>
       <div>
-        ${line.place ? html`<span class="place">${line.place}</span>` : nothing}
+        ${line.place ? html`<span class="place">${spokenPlace(line.place)}</span>` : nothing}
         <span class="source"
           >${splitUnused(line.text, aside || line.act === "said" ? [] : line.unused).map((part) =>
             part.unused ? html`<mark title=${texts.unusedMark}>${part.text}</mark>` : part.text,
@@ -225,10 +227,10 @@ export function draftRow(line: ShownLine, shown: RowState, on: RowHandlers) {
 /** Return what a screen reader says of a row: number, state, and what the line becomes. */
 function rowLabel(line: ShownLine): string {
   const texts = t().draft;
-  const parts = [texts.line(line.label), ...(line.place ? [line.place] : []), texts.state[line.state], line.text];
+  const parts = [texts.line(line.label), ...(line.place ? [spokenPlace(line.place)] : []), texts.state[line.state], line.text];
   if (line.sentences.length > 0) parts.push(`${texts.becomes}: ${line.sentences.join(" ")}`);
   if (line.unused.length > 0 && line.state === "proposed") parts.push(texts.unused(line.unused));
-  if (line.reason) parts.push(line.reason);
+  if (line.reason) parts.push(spoken(line.reason).text);
   return parts.join(". ");
 }
 
@@ -251,7 +253,7 @@ function meaning(line: ShownLine) {
       : html`<p class="plainly">${texts.asWritten}</p>`;
   if (line.state === "set aside") {
     const reason = line.act === null || line.act === undefined ? line.reason : "";
-    return html`<p class="plainly">${texts.noEffect}${reason ? html`: <span lang="en">${reason}</span>` : nothing}</p>`;
+    return html`<p class="plainly">${texts.noEffect}${reason ? html`: ${messageText(reason)}` : nothing}</p>`;
   }
   return nothing;
 }
@@ -261,9 +263,15 @@ function doubts(line: ShownLine, notes: readonly Diagnostic[]) {
   return html`${line.unused.length > 0 && line.state === "proposed"
       ? html`<p class="small">${texts.unused(line.unused)}</p>`
       : nothing}
-    ${line.state === "open" && line.reason ? html`<p class="small reason" lang="en">${line.reason}</p>` : nothing}
-    ${isLeft(line) && line.hint ? html`<p class="small dim" lang="en">${line.hint}</p>` : nothing}
-    ${notes.map((note) => html`<p class="small dim" lang="en">${icon("warning", 13)} ${note.message}</p>`)}`;
+    ${line.state === "open" && line.reason ? html`<p class="small reason">${messageText(line.reason)}</p>` : nothing}
+    ${isLeft(line) && line.hint ? html`<p class="small dim">${messageText(line.hint)}</p>` : nothing}
+    ${notes.map((note) => html`<p class="small dim">${icon("warning", 13)} ${messageText(note.message)}</p>`)}`;
+}
+
+/** Render a message of the service, in German if it is translated. */
+export function messageText(message: string) {
+  const { text, lang } = spoken(message);
+  return html`<span lang=${lang}>${text}</span>`;
 }
 
 /** Render the buttons of a line. Those of the active line only can be reached by Tab. */

@@ -24,6 +24,8 @@ MAX_SENTENCE_LENGTH = 1_000
 MOST_SENTENCES = 20
 MAX_AREA = 1_000
 
+OF_DECISIONS = frozenset(["script.decided", "script.set-aside-by-hand"])
+"""codes of messages that state what a person has decided on a line"""
 OF_ASIDES = frozenset(["script.set-aside", "script.no-effect"])
 """codes of messages whose text is the reason why a line is set aside"""
 
@@ -196,6 +198,8 @@ def other_messages(draft: Draft, problems: Iterable[Diagnostic]) -> tuple[Diagno
         span = diagnostic.span
         if diagnostic.severity is Severity.ERROR:
             return span is None or span.line not in open_
+        if diagnostic.code in OF_DECISIONS:
+            return False
         if span is None or diagnostic.code not in OF_ASIDES:
             return True
         at = bisect_right(starts, (span.line, span.column)) - 1

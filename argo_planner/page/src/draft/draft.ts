@@ -72,17 +72,21 @@ export class DraftView extends PageElement {
         max-width: 100%;
         font-weight: 600;
       }
+      #plan {
+        margin-left: auto;
+      }
       .columns {
         display: grid;
-        grid-template-columns: minmax(0, 1fr) minmax(0, 1fr);
+        grid-template-columns: minmax(0, 2fr) minmax(0, 3fr);
         font-weight: 600;
         border-bottom: 1px solid var(--line);
+        border-left: 4px solid transparent;
       }
       .columns [role="columnheader"] {
         padding: 8px 12px;
       }
       .columns [role="columnheader"]:first-child {
-        padding-left: 60px;
+        padding-left: 56px;
       }
       [role="grid"] {
         margin-top: 8px;
@@ -149,6 +153,10 @@ export class DraftView extends PageElement {
         }
         .count {
           flex-basis: 100%;
+        }
+        #saved,
+        #plan {
+          order: 1;
         }
       }
       @media (max-height: 480px) {

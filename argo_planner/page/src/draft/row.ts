@@ -18,7 +18,7 @@ const SIGNS: Record<ShownLine["state"], Icon> = {
 export const draftRowStyles = css`
   [role="row"].line {
     display: grid;
-    grid-template-columns: minmax(0, 1fr) minmax(0, 1fr);
+    grid-template-columns: minmax(0, 2fr) minmax(0, 3fr);
     border-bottom: 1px solid var(--line);
     content-visibility: auto;
     contain-intrinsic-size: auto 56px;
@@ -152,6 +152,11 @@ export const draftRowStyles = css`
   }
   .small {
     font-size: 13px;
+  }
+  @media (hover: none) {
+    .buttons kbd {
+      display: none;
+    }
   }
   @media (max-width: 700px) {
     [role="row"].line {

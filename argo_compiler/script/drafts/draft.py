@@ -69,6 +69,8 @@ class DraftLine(Model):
     line: int
     """number of its first line in the file, from 1"""
     last_line: int
+    column: int = 1
+    """where it begins in its first line, from 1"""
     part: int = 1
     """which of the pieces that begin in this line it is, from 1"""
     parts: int = 1

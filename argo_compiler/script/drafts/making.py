@@ -361,6 +361,7 @@ def _lines(reading: _Reading, known: _Known) -> Iterator[DraftLine]:
         line = DraftLine(
             line=first,
             last_line=last,
+            column=piece.text.span().column,
             part=part,
             parts=count,
             place="" if source.document is None else source.document.place_at(first),

@@ -348,8 +348,9 @@ class SentenceReader:
         return said
 
     def _ask_of_heading(self, heading: ScriptText) -> None:
-        message = f"`{heading.content}` can mean that the lines below it are not tasks, "
-        message += "or not always"
+        message = (
+            f"`{heading.content}` can mean that the lines below it are not tasks, or not always"
+        )
         hint = "remove the lines that are not tasks, and the heading; or write another heading"
         self.diagnostics.error("ambiguous-title", message, heading.span(), hint)
 

@@ -79,6 +79,8 @@ _IDLE = OF_FORMS | {
     *("UNIT_S", "Y", "HASH", "OR", "OR_TEST", "HALF", "STRING", "GO", "start"),
 }
 """kinds of mentions that do not change how, when or whether the checkpoint of a row is read"""
+_BESIDE = OF_FORMS - {"MEASURE", "BE_MEASURED", "measuring"}
+"""kinds of mentions that belong to the unknown words beside them: `alarm operator`"""
 _TICKED = "this row is ticked, or marked as done: it may be left out"
 
 
@@ -632,15 +634,27 @@ def _of_floor(mention: Mention, section: Mention | None, known: Known) -> Sequen
 
 
 def _unused(content: str, mentions: Mentions, form: Mapping[str, str]) -> Iterator[str]:
-    """Yield the words that say more than that a checkpoint is read, and in which state it should
-    be."""
+    """Yield the phrases that say more than that a checkpoint is read, and in which state it should
+    be: `call the operator`, not `call` alone. They end where a word is used."""
     used = [fill.span() for fill in _FILL.finditer(content)]
-    for name in (*_POSITIONS, "furniture", "asking"):
+    used += [(m.start, m.end) for m in mentions.mentions if m.kind not in _BESIDE]
+    for name in (*_POSITIONS, "furniture"):
         used += [word.span() for word in phrase_pattern(form[name]).finditer(content)]
-    for word in mentions.unknown:
-        said = content[word.start : word.end]
-        if not any(a < word.end and word.start < b for a, b in used):
-            yield said
+    asking = [word.span() for word in phrase_pattern(form["asking"]).finditer(content)]
+    spans = [(word.start, word.end) for word in mentions.unknown]
+    more = [span for span in spans if not _overlap(span, [*used, *asking])]
+    spans = [(m.start, m.end) for m in mentions.mentions if m.kind in _BESIDE and m.start < m.end]
+    spans = sorted([*more, *(span for span in spans if not _overlap(span, [*used, *asking]))])
+    first = 0
+    for start, end in (*sorted(used), (len(content), len(content))):
+        phrase = [span for span in spans if first <= span[0] < start]
+        if any(span in more for span in phrase):
+            yield content[phrase[0][0] : phrase[-1][1]]
+        first = max(first, end)
+
+
+def _overlap(span: tuple[int, int], others: Sequence[tuple[int, int]]) -> bool:
+    return any(start < span[1] and span[0] < end for start, end in others)
 
 
 def _unexplained(row: FormRow, named: Mapping[int, CheckpointInfo]) -> Iterator[str]:

@@ -1,5 +1,6 @@
 """The draft of a script as clients see it, and the acts by which they decide on its lines."""
 
+from bisect import bisect_right
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
@@ -23,6 +24,8 @@ MAX_SENTENCE_LENGTH = 1_000
 MOST_SENTENCES = 20
 MAX_AREA = 1_000
 
+OF_DECISIONS = frozenset(["script.decided", "script.set-aside-by-hand"])
+"""codes of messages that state what a person has decided on a line"""
 OF_ASIDES = frozenset(["script.set-aside", "script.no-effect"])
 """codes of messages whose text is the reason why a line is set aside"""
 
@@ -114,6 +117,8 @@ class DraftedLine(Model):
     line: int
     """number of its first line in the script, from 1"""
     last_line: int
+    column: int = 1
+    """where it begins in its first line, from 1"""
     place: str = ""
     """in a document: its cells, or its page; `line` then only numbers the lines of the draft"""
     text: str
@@ -187,18 +192,18 @@ def other_messages(draft: Draft, problems: Iterable[Diagnostic]) -> tuple[Diagno
     open_ = {
         number for line in draft.lines if line.state is LineState.OPEN for number in _numbers(line)
     }
-    aside = {
-        number
-        for line in draft.lines
-        if line.state is LineState.SET_ASIDE
-        for number in _numbers(line)
-    }
+    starts = [(line.line, line.column) for line in draft.lines]
 
     def is_other(diagnostic: Diagnostic) -> bool:
-        number = 0 if diagnostic.span is None else diagnostic.span.line
+        span = diagnostic.span
         if diagnostic.severity is Severity.ERROR:
-            return number not in open_
-        return not (diagnostic.code in OF_ASIDES and number in aside)
+            return span is None or span.line not in open_
+        if diagnostic.code in OF_DECISIONS:
+            return False
+        if span is None or diagnostic.code not in OF_ASIDES:
+            return True
+        at = bisect_right(starts, (span.line, span.column)) - 1
+        return at < 0 or draft.lines[at].state is not LineState.SET_ASIDE
 
     found = filter(is_other, draft.diagnostics)
     return tuple(dict.fromkeys([*problems, *found]))[:MOST_MESSAGES]

@@ -100,6 +100,14 @@ def test_words_that_a_row_does_not_use_have_to_be_confirmed(catalog: Catalog) ->
     assert at(draft, 2).unused == ("tap the glass first",)
 
 
+@pytest.mark.parametrize("words", ["alarm operator", "call the operator", "fetch another person"])
+def test_words_for_people_are_not_used_as_a_whole(words: str, catalog: Catalog) -> None:
+    """Also those that mean something elsewhere: `until the operator lets it go`."""
+    draft = draft_of(f"Tag | Name | Unit | Action\n3 | pressure gauge 2 | bar | {words}\n", catalog)
+    assert at(draft, 2).state is LineState.PROPOSED
+    assert at(draft, 2).unused == (words,)
+
+
 def test_a_row_on_another_floor_is_asked_about(catalog: Catalog) -> None:
     text = "Valve   Location    Required       Found\nR25     floor 2     OPEN           _____\n"
     line = at(draft_of(text, catalog), 2)

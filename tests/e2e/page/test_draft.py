@@ -115,7 +115,8 @@ def test_decisions_survive_a_reload(draft: Person) -> None:
     expect(line(draft, 4)).to_be_focused()
 
 
-def test_the_message_for_a_sentence_that_is_not_understood_is_shown(draft: Person) -> None:
+def test_a_text_that_is_not_understood_stays_in_its_field(draft: Person) -> None:
+    """With the message beside it, while the person goes on with the next line."""
     draft.click(line(draft, 6).locator("button.say"))
     field = draft.page.locator("argo-draft form input")
     expect(field).to_have_value("Photograph pump 3")
@@ -126,13 +127,56 @@ def test_the_message_for_a_sentence_that_is_not_understood_is_shown(draft: Perso
     expect(field).to_be_focused()  # no empty sentence is sent
     draft.type("Chek the zorg.")
     draft.key("Enter")
-    expect(line(draft, 6)).to_contain_text("Argo does not understand")
-    expect_state(draft, 6, "open")
-    expect(line(draft, 6)).to_contain_text("Chek the zorg.")
-    draft.key("e")
+    expect(line(draft, 3)).to_be_focused()
     expect(field).to_have_value("Chek the zorg.")
-    draft.key("Escape", "u")
+    expect(line(draft, 6).get_by_text("Argo does not understand")).to_have_count(1)
+    expect_state(draft, 6, "open")
+    expect(line(draft, 3)).to_be_focused()
+    draft.page.reload()
+    expect(line(draft, 3)).to_be_focused()
+    draft.key("Shift+N", "e")
+    expect(field).to_be_focused()
+    expect(field).to_have_value("Chek the zorg.")
+    draft.key("Escape")
+    expect(field).to_have_count(0)
+    expect(line(draft, 6)).to_contain_text("Chek the zorg.")
+    draft.key("u")
     expect(line(draft, 6)).to_contain_text("`Photograph`")
+
+
+def test_the_last_line_is_said_again_until_it_is_understood(draft: Person) -> None:
+    draft.key("c", "c", "1", "e")
+    draft.type("Chek the zorg.")
+    draft.key("Enter")
+    field = draft.page.locator("argo-draft form input")
+    expect(line(draft, 6).get_by_text("Argo does not understand")).to_be_visible()
+    expect(field).to_be_focused()
+    expect(field).to_have_value("Chek the zorg.")
+    draft.key("Control+a")
+    draft.type("Check checkpoint 6.")
+    draft.key("Enter")
+    expect(draft.page.locator("#plan")).to_be_focused()
+    expect(field).to_have_count(0)
+
+
+def test_fields_of_several_lines_keep_their_texts(draft: Person) -> None:
+    draft.key("e")
+    draft.type("Read")
+    draft.click(line(draft, 6).locator("button.say"))
+    draft.type("Check checkpoint 6.")
+    expect(line(draft, 3).locator("input")).to_have_value("Read")
+    draft.key("Enter")
+    expect_state(draft, 6, "understood")
+    expect(line(draft, 3)).to_be_focused()
+    expect(line(draft, 3).locator("input")).to_have_value("Read")
+
+
+def test_a_note_stands_below_the_part_of_the_line_that_it_is_about(service, shared_person) -> None:
+    text = "Start in starting area 1.\nCheck R12 tomorrow. Photograph the pump.\n"
+    shared_person.go(f"/drafts/{upload(service, text)}")
+    expect(line(shared_person, "2.1")).to_contain_text("`tomorrow` has no effect")
+    expect(line(shared_person, "2.2")).to_be_focused()
+    expect(line(shared_person, "2.2")).not_to_contain_text("has no effect")
 
 
 def test_all_proposals_are_confirmed_at_once_and_decisions_undone(draft: Person) -> None:
@@ -242,6 +286,24 @@ def test_lines_that_name_nothing_are_listed_and_set_aside_together(service, shar
     expect_state(ann, 4, "open")
 
 
+def test_words_for_people_are_struck_out_as_a_whole(service, shared_person) -> None:
+    sheet = "Tag | Name | Limit | Action\n1 | Pressure gauge 1 | 3 - 7 | alarm operator\n"
+    shared_person.go(f"/drafts/{upload(service, sheet)}")
+    expect(line(shared_person, 2).locator("mark")).to_have_text(["alarm operator"])
+    expect(line(shared_person, 2)).to_contain_text("Not used: alarm operator")
+
+
+def test_the_choice_of_a_file_is_one_tab_stop(shared_person: Person) -> None:
+    button = shared_person.button("Choose a file…")
+    shared_person.focus(button)
+    shared_person.key("Tab")
+    expect(button).not_to_be_focused()
+    expect(shared_person.page.locator("argo-import :focus")).to_have_count(0)
+    shared_person.focus(button)
+    with shared_person.page.expect_file_chooser():
+        shared_person.key("Enter")
+
+
 @pytest.mark.parametrize(
     ("name", "make", "place"),
     [
@@ -316,6 +378,10 @@ def test_the_draft_is_in_german(service: Served, browsers, address) -> None:
     expect(bert.page.locator("#left")).to_have_text("2 Zeilen zu bestätigen, 2 Zeilen zu klären")
     expect(line(bert, 3)).to_be_focused()
     expect(line(bert, 3)).to_contain_text("vorgeschlagen")
+    expect(line(bert, 1)).to_contain_text("ohne Wirkung: eine Anrede")
+    expect(line(bert, 1).locator("[lang=en]")).to_have_count(0)
+    expect(line(bert, 6)).to_contain_text("Argo versteht `Photograph` hier nicht")
+    expect(line(bert, 6)).to_contain_text("sagen Sie zum Beispiel `check checkpoint 4`")
     bert.key("c", "c", "x", "x")
     expect(bert.page.locator("#left")).to_have_text("nichts mehr offen")
     expect_saved(bert, "Gespeichert")

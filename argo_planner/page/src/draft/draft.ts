@@ -1,20 +1,20 @@
 /** The draft of a script: its lines and what they become, in two columns. Everything works by keyboard. */
 
-import { computed } from "@preact/signals-core";
+import { computed, untracked } from "@preact/signals-core";
 import { guard } from "lit/directives/guard.js";
 import { repeat } from "lit/directives/repeat.js";
 
 import type { Diagnostic, DraftState } from "../api/types";
 import { isTyping } from "../frame/keys";
-import { isLeft, type LineAct, nextLeft, type ShownLine } from "../model/draft-lines";
+import { isLeft, isRefused, type LineAct, messagesByLine, nextLeft, type ShownLine } from "../model/draft-lines";
 import { mayPlan } from "../state/session";
 import { world } from "../state/world";
 import { language, t } from "../texts";
-import { placeBefore } from "../texts/place";
+import { placeBefore, spokenPlace } from "../texts/place";
 import { options, valueOf } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, query, state } from "../ui/element";
 import { icon } from "../ui/icons";
-import { draftRow, draftRowStyles, type RowHandlers } from "./row";
+import { draftRow, draftRowStyles, messageText, type RowHandlers } from "./row";
 import {
   actsSaved,
   canUndo,
@@ -24,6 +24,8 @@ import {
   followOthers,
   namingNothing,
   openedDraft,
+  pendingActs,
+  returnedTexts,
   sendingActs,
   shownLines,
   toAnswer,
@@ -70,17 +72,21 @@ export class DraftView extends PageElement {
         max-width: 100%;
         font-weight: 600;
       }
+      #plan {
+        margin-left: auto;
+      }
       .columns {
         display: grid;
-        grid-template-columns: minmax(0, 1fr) minmax(0, 1fr);
+        grid-template-columns: minmax(0, 2fr) minmax(0, 3fr);
         font-weight: 600;
         border-bottom: 1px solid var(--line);
+        border-left: 4px solid transparent;
       }
       .columns [role="columnheader"] {
         padding: 8px 12px;
       }
       .columns [role="columnheader"]:first-child {
-        padding-left: 60px;
+        padding-left: 56px;
       }
       [role="grid"] {
         margin-top: 8px;
@@ -148,6 +154,10 @@ export class DraftView extends PageElement {
         .count {
           flex-basis: 100%;
         }
+        #saved,
+        #plan {
+          order: 1;
+        }
       }
       @media (max-height: 480px) {
         .bar {
@@ -159,13 +169,17 @@ export class DraftView extends PageElement {
 
   /** Index of the row that can be reached by Tab. */
   @state() private active = 0;
-  @state() private editing: { readonly label: string; readonly text: string } | null = null;
+  /** Fields for other words: the labels of their lines, each with the text at the beginning; null: the person has
+   * closed the field of a text that was not understood. */
+  @state() private fields: ReadonlyMap<string, string | null> = NO_FIELDS;
   @state() private announced = "";
   @state() private completing = false;
   /** The lines that name nothing, while they are listed to be set aside; null: they are not. */
   @state() private listed: readonly ShownLine[] | null = null;
   @query("#plan") private readonly planButton!: HTMLButtonElement | null;
   private shownId: string | null = null;
+  /** The labels of the lines that are being read with other words. */
+  private reading: readonly string[] = [];
   /** Where the focus goes after the next drawing. */
   private focusNext: "row" | "field" | "plan" | null = null;
 
@@ -176,10 +190,12 @@ export class DraftView extends PageElement {
       const id = openedDraft.value?.id ?? null;
       if (id === this.shownId) return;
       this.shownId = id;
-      this.editing = null;
+      this.fields = NO_FIELDS;
       this.active = Math.max(0, nextLeft(shownLines.peek(), -1));
       this.focusNext = "row";
     });
+    this.watch(() => (this.fields = new Map([...untracked(() => this.fields), ...returnedTexts.value])));
+    this.watch(() => this.onRead(shownLines.value));
   }
 
   private endFollowing: (() => void) | null = null;
@@ -202,9 +218,10 @@ export class DraftView extends PageElement {
     if (goal === "row") this.focusRow();
     if (goal === "plan") this.planButton?.focus();
     if (goal === "field") {
-      const field = this.renderRoot.querySelector<HTMLInputElement>("form input");
+      const field = this.renderRoot.querySelector<HTMLInputElement>(`#line-${this.active} form input`);
       field?.focus();
-      field?.select();
+      const line = shownLines.value[this.active];
+      if (line && !isRefused(line)) field?.select(); // what a person wrote is to be corrected, not replaced
     }
   }
 
@@ -242,7 +259,7 @@ export class DraftView extends PageElement {
           (line) => line.label,
           (line, index) => {
             const active = index === this.active;
-            const editing = this.editing?.label === line.label ? this.editing.text : null;
+            const editing = this.fieldText(line);
             const told = notes.get(line.label) ?? NONE;
             return guard([line, index, active, editing, may, told.length, spoken], () =>
               draftRow(line, { index, active, editing, may, notes: told }, this.handlers),
@@ -314,7 +331,7 @@ export class DraftView extends PageElement {
         <h2 id="idle-title">${texts.idleTitle(lines.length)}</h2>
         <p>${texts.idleExplained}</p>
         <ul tabindex="0" aria-label=${texts.lines}>
-          ${lines.map((line) => html`<li><span class="dim">${line.place || texts.line(line.label)}:</span> ${line.text}</li>`)}
+          ${lines.map((line) => html`<li><span class="dim">${spokenPlace(line.place) || texts.line(line.label)}:</span> ${line.text}</li>`)}
         </ul>
         <div class="row">
           <button class="main" autofocus>${texts.idleApply(lines.length)}</button>
@@ -376,10 +393,10 @@ export class DraftView extends PageElement {
     const errors = draft.diagnostics.filter((one) => one.severity === "error" && one.code !== "script.area-choice");
     if (errors.length === 0) return nothing;
     return html`<section class="told bad" role="alert" aria-label=${t().draft.messages}>
-      <ul lang="en">
+      <ul>
         ${errors.slice(0, 20).map(
           (one) =>
-            html`<li>${placeBefore(one)}${one.message}${one.hint ? html`<br /><span class="dim">${one.hint}</span>` : nothing}</li>`,
+            html`<li>${placeBefore(one)}${messageText(one.message)}${one.hint ? html`<br /><span class="dim">${messageText(one.hint)}</span>` : nothing}</li>`,
         )}
       </ul>
     </section>`;
@@ -404,8 +421,9 @@ export class DraftView extends PageElement {
     },
     edit: (line) => {
       this.setActive(line);
-      this.editing = { label: line.label, text: line.sentences.join(" ") || line.text };
+      this.setField(line, this.fieldText(line) ?? (line.sentences.join(" ") || line.text));
       this.focusNext = "field";
+      this.requestUpdate();
     },
     undo: (line) => {
       if (line.act === null || line.act === undefined) return;
@@ -415,25 +433,53 @@ export class DraftView extends PageElement {
       this.focusNext = "row";
     },
     say: (line, text) => {
-      this.editing = null;
-      decide([{ kind: "say", label: line.label, sentences: [text] }]);
-      this.announced = t().draft.reading;
-      this.focusNext = "row"; // the answer may be that the sentence is not understood
+      this.decideOn(line, { kind: "say", label: line.label, sentences: [text] }, t().draft.isRead(line.label));
     },
-    cancel: () => {
-      this.editing = null;
+    cancel: (line) => {
+      this.setField(line, null);
+      this.setActive(line);
       this.focusNext = "row";
     },
   };
 
+  /** Return the text at the beginning of the field for other words of a line; null: it has no field. The field of a
+   * text that is not understood stays open. */
+  private fieldText(line: ShownLine): string | null {
+    const text = this.fields.get(line.label);
+    return text === undefined && isRefused(line) ? line.sentences.join(" ") : (text ?? null);
+  }
+
+  /** Open the field of a line with a text, or close it (null). */
+  private setField(line: ShownLine, text: string | null): void {
+    this.fields = new Map([...this.fields, [line.label, text]]);
+  }
+
+  /** Announce which texts are not understood, once they have been read. If the person waits for one of them, go to its
+   * field, or on to the next line that is left. */
+  private onRead(lines: readonly ShownLine[]): void {
+    const done = lines.filter((line) => !line.reading && this.reading.includes(line.label));
+    this.reading = pendingActs.value.filter((act) => act.kind === "say").map((act) => act.label);
+    for (const line of done) {
+      const waits = lines[this.active]?.label === line.label && this.shadowRoot?.activeElement?.id === `line-${this.active}`;
+      if (isRefused(line)) this.announced = t().draft.notRead(line.label);
+      if (waits && isRefused(line)) this.focusNext = "field";
+      else if (waits) this.goOn();
+    }
+  }
+
   /** Carry out an act on a line, and go on to the next one that is left. */
   private decideOn(line: ShownLine, act: LineAct, told: string): void {
-    if (!mayPlan() || line.reading) return;
-    this.editing = null;
+    if (!mayPlan() || (line.reading && act.kind !== "say")) return;
+    this.fields = new Map([...this.fields].filter(([label]) => label !== line.label));
     decide([act]);
     this.announce(told);
     this.setActive(line);
-    const next = nextLeft(shownLines.value, this.active);
+    this.goOn();
+  }
+
+  /** Go to the next line that is left after the active one, or to the button that plans the mission. */
+  private goOn(from = this.active): void {
+    const next = nextLeft(shownLines.peek(), from);
     if (next >= 0) this.active = next;
     this.focusNext = next >= 0 ? "row" : "plan";
   }
@@ -452,9 +498,7 @@ export class DraftView extends PageElement {
     if (!mayPlan() || lines.length === 0) return;
     decide(lines.map(({ label, sentences }) => ({ kind, label, sentences: kind === "confirm" ? sentences : [] })));
     this.announce(told);
-    const next = nextLeft(shownLines.value, this.active - 1);
-    if (next >= 0) this.active = next;
-    this.focusNext = next >= 0 ? "row" : "plan";
+    this.goOn(this.active - 1);
   }
 
   private readonly undoLast = (): void => {
@@ -507,7 +551,8 @@ export class DraftView extends PageElement {
   }
 
   private onKey(event: KeyboardEvent): void {
-    if (event.key === "Escape" && this.editing !== null) this.handlers.cancel();
+    const line = shownLines.value[this.active];
+    if (event.key === "Escape" && line && this.fieldText(line) !== null) this.handlers.cancel(line);
     else if (isTyping(event) || event.ctrlKey || event.metaKey || event.altKey || !this.onPlainKey(event)) return;
     event.preventDefault();
   }
@@ -552,6 +597,7 @@ export class DraftView extends PageElement {
 }
 
 const NONE: readonly Diagnostic[] = [];
+const NO_FIELDS: ReadonlyMap<string, string | null> = new Map();
 
 /** Return the index of the line that an event comes from; null: none. */
 function indexOf(event: Event): number | null {
@@ -561,14 +607,7 @@ function indexOf(event: Event): number | null {
 
 /** The warnings and notes about each line, by its label. */
 const notesByLine = computed(() => {
-  const found = new Map<string, Diagnostic[]>();
   const draft = openedDraft.value;
-  if (draft === null) return found;
-  const told = draft.diagnostics.filter((one) => one.severity !== "error" && one.span);
-  for (const note of told) {
-    const at = note.span?.line ?? 0;
-    const line = draft.lines.findLast((one) => one.line <= at && at <= one.last_line);
-    if (line) found.set(line.label, [...(found.get(line.label) ?? []), note]);
-  }
-  return found;
+  const notes = draft?.diagnostics.filter((one) => one.severity !== "error") ?? [];
+  return messagesByLine(draft?.lines ?? [], notes);
 });

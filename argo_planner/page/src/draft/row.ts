@@ -1,8 +1,10 @@
 /** A line of a draft: the words of the script, and what they become. */
 
 import type { Diagnostic } from "../api/types";
-import { isLeft, type ShownLine, splitUnused } from "../model/draft-lines";
+import { isLeft, isRefused, type ShownLine, splitUnused } from "../model/draft-lines";
 import { t } from "../texts";
+import { spokenPlace } from "../texts/place";
+import { spoken } from "../texts/reasons";
 import { css, html, nothing } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
 
@@ -16,7 +18,7 @@ const SIGNS: Record<ShownLine["state"], Icon> = {
 export const draftRowStyles = css`
   [role="row"].line {
     display: grid;
-    grid-template-columns: minmax(0, 1fr) minmax(0, 1fr);
+    grid-template-columns: minmax(0, 2fr) minmax(0, 3fr);
     border-bottom: 1px solid var(--line);
     content-visibility: auto;
     contain-intrinsic-size: auto 56px;
@@ -151,6 +153,11 @@ export const draftRowStyles = css`
   .small {
     font-size: 13px;
   }
+  @media (hover: none) {
+    .buttons kbd {
+      display: none;
+    }
+  }
   @media (max-width: 700px) {
     [role="row"].line {
       grid-template-columns: minmax(0, 1fr);
@@ -173,7 +180,7 @@ export interface RowHandlers {
   readonly edit: (line: ShownLine) => void;
   readonly undo: (line: ShownLine) => void;
   readonly say: (line: ShownLine, text: string) => void;
-  readonly cancel: () => void;
+  readonly cancel: (line: ShownLine) => void;
 }
 
 export interface RowState {
@@ -204,7 +211,7 @@ export function draftRow(line: ShownLine, shown: RowState, on: RowHandlers) {
     <div role="gridcell" class="words">
       <span class="number" aria-hidden="true">${line.label}</span>
       <div>
-        ${line.place ? html`<span class="place">${line.place}</span>` : nothing}
+        ${line.place ? html`<span class="place">${spokenPlace(line.place)}</span>` : nothing}
         <span class="source"
           >${splitUnused(line.text, aside || line.act === "said" ? [] : line.unused).map((part) =>
             part.unused ? html`<mark title=${texts.unusedMark}>${part.text}</mark>` : part.text,
@@ -215,8 +222,9 @@ export function draftRow(line: ShownLine, shown: RowState, on: RowHandlers) {
     <div role="gridcell" class="becomes">
       <div class=${isLeft(line) ? "" : "settled"}>${badge(line)} ${isLeft(line) ? nothing : meaning(line)}</div>
       ${line.reading ? html`<p class="plainly">${texts.reading}</p>` : nothing}
-      ${isLeft(line) ? meaning(line) : nothing} ${doubts(line, shown.notes)}
-      ${shown.editing !== null ? sayForm(line, shown.editing, on) : shown.may ? buttons(line, shown, on) : nothing}
+      ${isLeft(line) && !(shown.editing !== null && isRefused(line)) ? meaning(line) : nothing}
+      ${doubts(line, shown.notes)} ${shown.editing !== null && shown.may ? sayForm(line, shown.editing, shown, on) : nothing}
+      ${shown.may && (shown.editing === null || isRefused(line)) ? buttons(line, shown, on) : nothing}
     </div>
   </div>`;
 }
@@ -224,10 +232,10 @@ export function draftRow(line: ShownLine, shown: RowState, on: RowHandlers) {
 /** Return what a screen reader says of a row: number, state, and what the line becomes. */
 function rowLabel(line: ShownLine): string {
   const texts = t().draft;
-  const parts = [texts.line(line.label), ...(line.place ? [line.place] : []), texts.state[line.state], line.text];
+  const parts = [texts.line(line.label), ...(line.place ? [spokenPlace(line.place)] : []), texts.state[line.state], line.text];
   if (line.sentences.length > 0) parts.push(`${texts.becomes}: ${line.sentences.join(" ")}`);
   if (line.unused.length > 0 && line.state === "proposed") parts.push(texts.unused(line.unused));
-  if (line.reason) parts.push(line.reason);
+  if (line.reason) parts.push(spoken(line.reason).text);
   return parts.join(". ");
 }
 
@@ -250,7 +258,7 @@ function meaning(line: ShownLine) {
       : html`<p class="plainly">${texts.asWritten}</p>`;
   if (line.state === "set aside") {
     const reason = line.act === null || line.act === undefined ? line.reason : "";
-    return html`<p class="plainly">${texts.noEffect}${reason ? html`: <span lang="en">${reason}</span>` : nothing}</p>`;
+    return html`<p class="plainly">${texts.noEffect}${reason ? html`: ${messageText(reason)}` : nothing}</p>`;
   }
   return nothing;
 }
@@ -260,9 +268,15 @@ function doubts(line: ShownLine, notes: readonly Diagnostic[]) {
   return html`${line.unused.length > 0 && line.state === "proposed"
       ? html`<p class="small">${texts.unused(line.unused)}</p>`
       : nothing}
-    ${line.state === "open" && line.reason ? html`<p class="small reason" lang="en">${line.reason}</p>` : nothing}
-    ${isLeft(line) && line.hint ? html`<p class="small dim" lang="en">${line.hint}</p>` : nothing}
-    ${notes.map((note) => html`<p class="small dim" lang="en">${icon("warning", 13)} ${note.message}</p>`)}`;
+    ${line.state === "open" && line.reason ? html`<p class="small reason">${messageText(line.reason)}</p>` : nothing}
+    ${isLeft(line) && line.hint ? html`<p class="small dim">${messageText(line.hint)}</p>` : nothing}
+    ${notes.map((note) => html`<p class="small dim">${icon("warning", 13)} ${messageText(note.message)}</p>`)}`;
+}
+
+/** Render a message of the service, in German if it is translated. */
+export function messageText(message: string) {
+  const { text, lang } = spoken(message);
+  return html`<span lang=${lang}>${text}</span>`;
 }
 
 /** Render the buttons of a line. Those of the active line only can be reached by Tab. */
@@ -288,7 +302,7 @@ function buttons(line: ShownLine, shown: RowState, on: RowHandlers) {
             ${icon("check", 16)} ${texts.confirm} <kbd aria-hidden="true">c</kbd>
           </button>`
         : nothing}
-      ${open || shown.active
+      ${(open || shown.active) && shown.editing === null
         ? html`<button tabindex=${tab} class="say" @click=${() => on.edit(line)}>
             ${texts.say} <kbd aria-hidden="true">e</kbd>
           </button>`
@@ -311,8 +325,9 @@ function offersAside(line: ShownLine): boolean {
   return isLeft(line) && line.choices.some((sentences) => sentences.length === 0);
 }
 
-function sayForm(line: ShownLine, text: string, on: RowHandlers) {
+function sayForm(line: ShownLine, text: string, shown: RowState, on: RowHandlers) {
   const texts = t().draft;
+  const tab = shown.active ? 0 : -1;
   const send = (event: SubmitEvent) => {
     event.preventDefault();
     const field = (event.target as HTMLFormElement).elements.namedItem("words") as HTMLInputElement;
@@ -325,13 +340,14 @@ function sayForm(line: ShownLine, text: string, on: RowHandlers) {
       name="words"
       maxlength="1000"
       autocomplete="off"
+      tabindex=${tab}
       aria-label=${texts.inOtherWords(line.label)}
       .value=${text}
       @input=${(event: Event) => (event.target as HTMLInputElement).setCustomValidity("")}
     />
     <div class="buttons">
-      <button class="main">${texts.apply} <kbd aria-hidden="true">Enter</kbd></button>
-      <button type="button" @click=${on.cancel}>${texts.cancel} <kbd aria-hidden="true">Esc</kbd></button>
+      <button class="main" tabindex=${tab}>${texts.apply} <kbd aria-hidden="true">Enter</kbd></button>
+      <button type="button" tabindex=${tab} @click=${() => on.cancel(line)}>${texts.cancel} <kbd aria-hidden="true">Esc</kbd></button>
     </div>
   </form>`;
 }

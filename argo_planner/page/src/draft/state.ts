@@ -23,6 +23,8 @@ export const pendingActs = signal<readonly LineAct[]>([]);
 export const sendingActs = signal(false);
 /** Acts of this session, the newest last; each has the labels of its lines. */
 const history = signal<readonly (readonly string[])[]>([]);
+/** Other words for lines that were not taken, by the labels of the lines, so that they can be sent again. */
+export const returnedTexts = signal<ReadonlyMap<string, string>>(new Map());
 
 export const shownLines = computed(() => withActs(openedDraft.value?.lines ?? [], pendingActs.value));
 export const toConfirm = computed(() => shownLines.value.filter((line) => line.state === "proposed").length);
@@ -40,6 +42,7 @@ export async function openDraft(id: string, isWanted: () => boolean): Promise<vo
   batch(() => {
     history.value = [];
     openedDraft.value = found;
+    returnedTexts.value = new Map();
     pendingActs.value = acts.filter((act) => lineOf(found, act.label) !== undefined);
   });
   // Lines that are decided on differently since then have been decided on by somebody else.
@@ -264,6 +267,7 @@ function dropConflicting(found: DraftState, others: ReadonlySet<string>): Readon
       .filter((labels) => labels.length > 0);
   });
   storeActs();
+  returnTexts(lost);
   if (lost.length > 0)
     showNotice("warn", t().draft.notTaken, {
       details: lost.slice(0, 8).map((act) => t().draft.wasMeant(act.label, t().draft.kind[act.kind], act.sentences.join(" "))),
@@ -275,6 +279,12 @@ function drop(id: string, acts: readonly LineAct[]): void {
   if (openedDraft.value?.id !== id) return;
   pendingActs.value = pendingActs.value.filter((act) => !acts.includes(act));
   storeActs();
+  returnTexts(acts);
+}
+
+function returnTexts(acts: readonly LineAct[]): void {
+  const texts = acts.filter((act) => act.kind === "say").map((act) => [act.label, act.sentences.join(" ")] as const);
+  if (texts.length > 0) returnedTexts.value = new Map(texts);
 }
 
 function lineOf(draft: DraftState, label: string) {

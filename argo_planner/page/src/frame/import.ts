@@ -73,7 +73,7 @@ export class MissionImport extends PageElement {
         <p class="dim">${texts.whatCanBeImported}</p>
         <input
           id="file"
-          class="unseen"
+          hidden
           type="file"
           aria-label=${texts.chooseFile}
           ?disabled=${!may}

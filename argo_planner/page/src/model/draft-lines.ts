@@ -1,6 +1,6 @@
 /** Lines of a draft with acts that the service has not answered yet. */
 
-import type { DraftAct, DraftedLine } from "../api/types";
+import type { Diagnostic, DraftAct, DraftedLine } from "../api/types";
 
 /** An act of a person on one line; `sentences` are what the person saw or wrote. */
 export interface LineAct {
@@ -137,13 +137,35 @@ export function splitUnused(text: string, unused: readonly string[]): readonly T
   return parts;
 }
 
-/** Return the index of the next line that is left, after `from` and then from the top; -1: none. */
-export function nextLeft(lines: readonly DraftedLine[], from: number, step: 1 | -1 = 1): number {
+/** Return the index of the next line that is left, after `from` and then from the top; -1: none. One that is being
+ * read comes last, as it may be left no more. */
+export function nextLeft(lines: readonly (DraftedLine & { reading?: boolean })[], from: number, step: 1 | -1 = 1): number {
   const count = lines.length;
+  let read = -1;
   for (let offset = 1; offset <= count; offset++) {
     const at = (((from + step * offset) % count) + count) % count;
     const line = lines[at];
-    if (line && isLeft(line)) return at;
+    if (!line || !isLeft(line)) continue;
+    if (line.reading !== true) return at;
+    if (read < 0) read = at;
   }
-  return -1;
+  return read;
+}
+
+/** Return the messages about each line, by its label. */
+export function messagesByLine(lines: readonly DraftedLine[], messages: readonly Diagnostic[]): ReadonlyMap<string, readonly Diagnostic[]> {
+  const found = new Map<string, readonly Diagnostic[]>();
+  for (const message of messages) {
+    if (!message.span) continue;
+    const { line: at, column } = message.span;
+    const [first, ...others] = lines.filter((one) => one.line <= at && at <= one.last_line);
+    const about = others.findLast((one) => one.line < at || one.column <= column) ?? first;
+    if (about) found.set(about.label, [...(found.get(about.label) ?? []), message]);
+  }
+  return found;
+}
+
+/** Return whether a person has written other words for a line, and they are not understood. */
+export function isRefused(line: ShownLine): boolean {
+  return line.state === "open" && line.act === "said" && !line.sending;
 }

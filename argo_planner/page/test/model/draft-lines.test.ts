@@ -1,10 +1,12 @@
 import { describe, expect, it } from "vitest";
 
-import type { DraftedLine } from "../../src/api/types";
+import type { Diagnostic, DraftedLine } from "../../src/api/types";
 import {
   decidedByOthers,
   isDone,
+  isRefused,
   type LineAct,
+  messagesByLine,
   nextLeft,
   splitUnused,
   stillApplies,
@@ -17,6 +19,7 @@ function line(label: string, state: DraftedLine["state"], more: Partial<DraftedL
     label,
     line: Number(label),
     last_line: Number(label),
+    column: 1,
     place: "",
     text: "I need R25, please",
     state,
@@ -129,5 +132,39 @@ describe("the next line that is left", () => {
     expect(nextLeft(lines, 2)).toBe(1);
     expect(nextLeft(lines, 1, -1)).toBe(2);
     expect(nextLeft([line("1", "understood")], 0)).toBe(-1);
+  });
+  it("is one that is being read only if there is no other", () => {
+    const read = withActs(lines, [{ kind: "say", label: "2", sentences: ["Check R7."] }]);
+    expect(nextLeft(read, 0)).toBe(2);
+    expect(nextLeft([...read.slice(0, 2)], 0)).toBe(1);
+  });
+});
+
+describe("messages", () => {
+  const first = line("3", "understood", { label: "3.1" });
+  const second = line("3", "understood", { label: "3.2", column: 20, last_line: 4 });
+  const third = line("4", "open", { label: "4.1", column: 9 });
+  const at = (number: number, column: number) => ({ code: "c", span: { line: number, column } }) as unknown as Diagnostic;
+
+  it("belong to the part of the line in which they begin", () => {
+    const found = messagesByLine([first, second, third], [at(3, 1), at(3, 19), at(3, 20), at(4, 8), at(4, 9), at(5, 1)]);
+    expect([...found].map(([label, messages]) => [label, messages.length])).toEqual([
+      ["3.1", 2],
+      ["3.2", 2],
+      ["4.1", 1],
+    ]);
+  });
+
+  it("before the first part are about that", () => {
+    expect([...messagesByLine([{ ...first, column: 4 }, second], [at(3, 1)]).keys()]).toEqual(["3.1"]);
+  });
+});
+
+describe("other words that are not understood", () => {
+  it("are those of an open line once they have been read", () => {
+    const [shown] = withActs([{ ...open, act: "said", sentences: ["Chek"] }], []);
+    expect(shown && isRefused(shown)).toBe(true);
+    const [sending] = withActs([open], [{ kind: "say", label: "3", sentences: ["Chek"] }]);
+    expect(sending && isRefused(sending)).toBe(false);
   });
 });

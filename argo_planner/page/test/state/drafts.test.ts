@@ -3,13 +3,14 @@ import { afterEach, beforeEach, expect, test, vi } from "vitest";
 import { type Answer, type Asked, fakeService, problem } from "./fake-service";
 
 import type { DraftedLine, DraftState } from "../../src/api/types";
-import { actsSaved, closeDraft, decide, followOthers, openDraft, openedDraft, shownLines } from "../../src/draft/state";
+import { actsSaved, closeDraft, decide, followOthers, openDraft, openedDraft, returnedTexts, shownLines } from "../../src/draft/state";
 import { notices } from "../../src/state/notices";
 
 const OPEN: DraftedLine = {
   label: "1",
   line: 1,
   last_line: 1,
+  column: 1,
   place: "",
   text: "Photograph the pump",
   state: "open",
@@ -74,7 +75,16 @@ test("a decision on a line that somebody else has decided on is not sent, and is
   expect(stored.revision).toBe(3);
   expect(stored.lines[0]?.sentences).toEqual([]);
   expect(texts().join()).toContain("“Check R7.”");
+  expect([...returnedTexts.value]).toEqual([["1", "Check R7."]]);
   expect(notices.value).toHaveLength(1);
+});
+
+test("a text that the service refuses is returned", async () => {
+  fakeService((asked) => (asked.method === "POST" ? problem(422, "invalid") : answer(asked)));
+  decide([{ kind: "say", label: "2", sentences: ["Check R7."] }]);
+  await vi.advanceTimersByTimeAsync(100);
+  expect(actsSaved.value).toBe(true);
+  expect([...returnedTexts.value]).toEqual([["2", "Check R7."]]);
 });
 
 test("a decision whose answer was lost is not taken for that of somebody else", async () => {

@@ -28,6 +28,8 @@ _WAIT_FACTOR = 6
 """A busy machine may make a process wait for this many times its processor time."""
 _ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 """Numerical libraries reserve memory for each of their threads, which counts for the limit."""
+_NO_BACKTRACE = {"RUST_BACKTRACE": "0"}
+"""Libraries in Rust may wait for ever where there is no memory to print how they came to fail."""
 _START = "import sys; sys.path[:] = {path!r}; from {module} import _serve; _serve()"
 
 
@@ -123,12 +125,12 @@ def limited(limits: CallLimits) -> Iterator[None]:
     """
     global _inside
     before, _inside = _inside, True
+    os.environ.update(_NO_BACKTRACE)
     try:
         with limit_processor_time_and_memory(limits.seconds, limits.memory):
             yield
     except MemoryError:
-        most = limits.memory // 1_000_000
-        raise LimitExceeded(f"takes more than {most} MB of memory to read") from None
+        raise LimitExceeded(_too_much_memory(limits)) from None
     finally:
         _inside = before
 
@@ -140,8 +142,14 @@ def exceeded_limit(limits: CallLimits, exit_code: int | None, timed_out: bool) -
         return LimitExceeded(f"takes longer than {limits.total_seconds:.0f} s to read")
     if ended_by and ended_by == getattr(signal, "SIGXCPU", 0):
         return LimitExceeded(f"takes more than {limits.seconds:.0f} s of processor time to read")
+    if ended_by == getattr(signal, "SIGABRT", None):  # how compiled libraries end without memory
+        return LimitExceeded(f"{_too_much_memory(limits)}, or makes its reader crash")
     status = f"signal {ended_by}" if ended_by else f"status {exit_code}"
     return LimitExceeded(f"makes its reader crash ({status})")
+
+
+def _too_much_memory(limits: CallLimits) -> str:
+    return f"takes more than {limits.memory // 1_000_000} MB of memory to read"
 
 
 class _Process:

@@ -167,7 +167,7 @@ def import_script(
         errors = _errors_by_piece(reading)
     proposals |= {at: one for at, one in assisted.items() if at not in refused}
     hinted = {at: _with_own_hint(error, proposals.get(at)) for at, error in errors.items()}
-    known = _Known(hinted, acts, proposals, suggested, assisted, refused)
+    known = _Known(errors, acts, proposals, suggested, assisted, refused)
     lines = tuple(_lines(reading, known))
     left = any(line.is_left for line in lines)
     notes = (*_asides(reading, proposals), *_decided(reading, given, acts, lines))
@@ -202,12 +202,21 @@ def _propose(
 def _with_own_hint(error: Diagnostic, proposal: "Proposal | None") -> Diagnostic:
     """Return the error of a text that makes no sense with what may be said of its own checkpoints,
     if that is known."""
-    choice = " ".join(proposal.choices[0]) if proposal is not None and proposal.choices else ""
-    if not choice or error.code not in _WITHOUT_SENSE:
-        return error
+    choice = _first_choice(error, proposal)
+    hints = filter(None, (_spelling(error), f"say, `{choice}`"))
+    return error.model_copy(update={"hint": "; ".join(hints)}) if choice else error
+
+
+def _first_choice(error: Diagnostic, proposal: "Proposal | None") -> str:
+    """Return the first choice for a text that makes no sense; empty if it has none."""
+    has_choice = error.code in _WITHOUT_SENSE and proposal is not None and proposal.choices
+    return " ".join(proposal.choices[0]) if has_choice and proposal is not None else ""
+
+
+def _spelling(error: Diagnostic) -> str:
+    """Return the part of a hint that asks for the right spelling, if it has one."""
     meant, asks, _ = (error.hint or "").partition(IS_MEANT)
-    parts = [f"{meant}{asks}"] if asks else []
-    return error.model_copy(update={"hint": "; ".join([*parts, f"say, `{choice}`"])})
+    return f"{meant}{asks}" if asks else ""
 
 
 def _all_diagnostics(
@@ -341,7 +350,8 @@ class _Known:
         if (error := self.errors.get(at)) is not None:
             doubt = "" if proposal is None else proposal.doubt
             found |= {"state": LineState.OPEN, "reason": doubt or error.message}
-            found |= {"hint": error.hint or "", "is_question": error.code not in _UNREAD}
+            hint = _spelling(error) if _first_choice(error, proposal) else error.hint or ""
+            found |= {"hint": hint, "is_question": error.code not in _UNREAD}
             refused = decision.sentences if decision is not None and "act" in found else None
             choices = () if proposal is None else proposal.choices
             found |= {"choices": tuple(choice for choice in choices if choice != refused)}

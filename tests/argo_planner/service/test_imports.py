@@ -42,10 +42,9 @@ def upload(service: Served, name: str, content: bytes) -> dict:
 def test_an_upload_that_takes_too_much_memory_is_refused(service: Served, monkeypatch) -> None:
     monkeypatch.setattr(imports, "limits_for_size", lambda _: CallLimits(9.0, 20_000_000))
     refused = upload(service, "large.json", LARGE)
-    assert refused["detail"] == (
-        "large.json takes more than 20 MB of memory to read: is it the right file? A mission takes "
-        "far less"
-    )
+    # Python's own code ends in order, a compiled library may crash instead.
+    assert refused["detail"].startswith("large.json takes more than 20 MB of memory to read")
+    assert refused["detail"].endswith(": is it the right file? A mission takes far less")
     assert service.imported(json.dumps(data("a")), "small.json")
 
 

@@ -5,6 +5,7 @@ sentence uses, the clause stays open, and what it may become are choices.
 """
 
 import re
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -66,6 +67,10 @@ _BACK_TO_ITEM = re.compile(r"\s[a-z]\)?\W*$")
 """a letter at the end of a text may be the item to go back to"""
 _CUT_FIGURES = re.compile(r"(?<=\d)[ \t]+(?=\d)")
 _MOST_CLAUSES = 14
+_NO_LISTS = frozenset([("IS",), ("TO",), ("UPTO",)])
+"""types of words between two checkpoints that say more than that both are in a list"""
+_NO_NAME = re.compile(r"\s+(?:X{1,4}|N{2,3}|_+|\?+|\.{3}|TBD|TBC)\b")
+"""what stands for a name that is not known yet"""
 
 
 @dataclass(frozen=True)
@@ -131,6 +136,8 @@ class Composer:
             return Proposal()  # `R9 as well?`
         if said := self.known.disagreement(found.of("checkpoints")):
             return Proposal(doubt=said)
+        if self._may_be_no_list(text, found.of("checkpoints")):
+            return Proposal()
         if self._may_be_case(rephrased(text, self.understanding).text):
             return Proposal()
         before = self.known.state()
@@ -236,9 +243,8 @@ class Composer:
             return None
         if self._numbers_robot(text, found) or _BACK_TO_ITEM.search(text.content):
             return None
-        sides = pairwise(found.of("checkpoints"))
-        if any(self.understanding.types(text[a.end : b.start]) == ("IS",) for a, b in sides):
-            return None  # `gauge four is #9`
+        if any(self._lacks_name(text, mention) for mention in found.of("checkpoints")):
+            return None
         self.known.warnings.clear()
         sentences = sentences_of(found, self.known)
         if sentences is None:
@@ -311,6 +317,16 @@ class Composer:
                 text = text.replace(*found.span(), prose.say[name].format(limit))
         return text
 
+    def _may_be_no_list(self, text: ScriptText, named: Sequence[Mention]) -> bool:
+        """Return True for `gauge four is #9`, `PG 1 to PG 4` and `PG 1 - PG 4`."""
+        between = {self.understanding.types(text[a.end : b.start]) for a, b in pairwise(named)}
+        return bool(between & _NO_LISTS) or (len(named) == 2 and between == {("DASH",)})
+
+    def _lacks_name(self, text: ScriptText, mention: Mention) -> bool:
+        """Return True for `level gauge XX`, whose name is still to be written."""
+        name = _NO_NAME.match(text.content, mention.end)
+        return name is not None and any(isinstance(noun, TheOne) for noun in mention.nouns)
+
     def _removes(self, text: ScriptText, found: Mentions) -> bool:
         """Return True for `take checkpoint 4 out again`, which nothing else tells from a check."""
         away = phrase_pattern(self.understanding.language.prose.form["away"])
@@ -328,6 +344,10 @@ class Composer:
         """Return True if a text may begin with a case that it depends on: `On smoke, go home`."""
         cases = self.understanding.language.prose.cues["in_case"]
         begins = phrase_pattern(cases).match(text.content)
+        head, comma, _ = text.content.partition(",")
+        supposed = phrase_pattern(self.understanding.language.prose.form["supposing"])
+        if comma and supposed.match(head) and any(w.start < len(head) for w in found.unknown):
+            return True  # `Should floor 6 be blocked, leave out R9`
         if begins is None or not found.unknown or found.occasion:
             return False
         return all(mention.start > found.unknown[0].start for mention in found.mentions)

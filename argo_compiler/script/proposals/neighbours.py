@@ -139,15 +139,15 @@ class Neighbours:
         goes_on = self._same_line(i - 1) and self.asides.get(i - 1) == LOGGED
         if (at is None and not goes_on) or text.content.endswith(":"):
             return False
+        behind = text.content[at.end() :] if at is not None else ""
+        read = found.has("QUANTITY", "past") or _VALUE.search(behind)
         if self._in_log and at is not None:
-            return True
+            return bool(read) or not found.has("checkpoints")
         if not self.is_log or not found.only(*_OF_ENTRIES, "checkpoints", "forbidding", "start"):
             return False
         denied = {text.content[m.start : m.end].lower() for m in found.of("forbidding")}
         if not denied <= {*expand(self.form["none_of"])}:
             return False
-        behind = text.content[at.end() :] if at is not None else ""
-        read = found.has("QUANTITY", "past") or _VALUE.search(behind)
         asking = self.understanding.language.prose.cues["asking"]
         asked = {m[0].lower() for m in phrase_pattern(asking).finditer(text.content)}
         if asked - {*expand(self.form["machine"])}:

@@ -386,10 +386,13 @@ class NounResolver:
             return self._counted(noun, noun.count)
         if noun.every and len(last) == len(self.memory.before) == 1:
             both = [*self.memory.before, *last]
-            if not noun.or_one:
-                return both
             one, two = map(told, both)
             said = self.diagnostics.source.said(noun.span)
+            if len(self.memory.so_far) > len(both):
+                message = f"`{said}` can be {one} and {two}, or all that was measured before"
+                self.diagnostics.refuse("ambiguous-pronoun", message, noun.span, "name them")
+            if not noun.or_one:
+                return both
             message = f"`{said}` can be {two}, or both {one} and {two}"
             self.diagnostics.refuse("ambiguous-pronoun", message, noun.span, "name them")
         if len(last) == 1 or noun.every:

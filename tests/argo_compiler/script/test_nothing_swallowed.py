@@ -99,6 +99,19 @@ def conditions(text: str, catalog: Catalog) -> list[tuple[str | None, ConditionT
         ("Read the pressure gauges 2-4, so three of them.", "`of them`"),
         ("Check the seven.", "`the`"),
         ("Pressure gauge 5 - #8", "or number and name"),
+        # numbers that may count, and pronouns of more than two readings
+        ("Check PG 1, LLG 1 and PG 2.\nIf two are out of range abort.", "`two`"),
+        ("Prüfe #1, #2 und #3.\nWenn zwei über 4 liegen, abbrechen.", "`zwei`"),
+        ("Check #1.\nCheck #6.\nCheck #8.\nIf any of them is out of range, abort.", "or all"),
+        # no proposal over a condition, a range, or without a name
+        ("Check R9.\nShould the way to floor 6 be blocked, leave out R9.", ""),
+        ("R9 prüfen.\nSollte Etage 6 gesperrt sein, R9 auslassen.", ""),
+        ("PG 1 to PG 4", ""),
+        ("Check PG 1 - PG 4.", ""),
+        ("Read LLG 2\nRead level gauge XX", ""),
+        # requests among the entries of a log
+        ("SHIFT LOG\n18:20 pump B tripped\n22:00 check R31\nCheck #1.", "`check`"),
+        ("SHIFT LOG\n18:20 pump B tripped\n22:10 R7 looked odd\nCheck #1.", ""),
         # boxes behind a name
         ("Valve R7: read it? yes [ ] no [x]\nCheck #1.", "ticked"),
         ("Valve R7 [x] yes [ ] no\nCheck #1.", "ticked"),

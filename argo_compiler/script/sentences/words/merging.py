@@ -191,11 +191,14 @@ def _numbers(words: list[Word]) -> list[Word]:
 
 
 def _one_of_them(number: Word, found: list[Word], after: list[Word]) -> Word:
-    """`If one is abnormal` asks about one of them, and not about checkpoint 1."""
+    """`If one is abnormal` asks about one of them, and not about checkpoint 1; `if two are` is not
+    known."""
     last = found[-1].type if found else ""
     asked = last in OPENINGS or (last == "IS" and _begins(found))  # `Ist eins auffällig, ...`
-    one = asked and after and after[0].type in _SAID and number.value.value == 1
-    return replace(number, type="THEM", value="either") if one else number
+    if not (asked and after and after[0].type in _SAID):
+        return number
+    one = number.value.value == 1
+    return replace(number, type="THEM", value="either") if one else replace(number, type="STRAY")
 
 
 def _joined_bounds(words: list[Word]) -> list[Word]:

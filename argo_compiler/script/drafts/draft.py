@@ -249,9 +249,12 @@ class Draft:
         if not choosing and any(line.act is not None for line in named):
             raise Invalid(f"line {label} of {self.source_name} is decided on: undo that first")
         if len(choosing) != 1:
+            proposed = any(line.state is LineState.PROPOSED for line in named)
+            ways = (
+                "confirm what is proposed, say what it means" if proposed else "say what it means"
+            )
             raise Invalid(
-                f"line {label} of {self.source_name} offers no choice: say what it means, or set "
-                "it aside"
+                f"line {label} of {self.source_name} offers no choice: {ways}, or set it aside"
             )
         (line,) = choosing
         if not 1 <= number <= len(line.choices):

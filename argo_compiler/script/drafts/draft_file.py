@@ -80,7 +80,8 @@ def _block(line: DraftLine, width: int) -> Iterator[str]:
 def _state_lines(line: DraftLine) -> Iterator[str]:
     if line.act is not None:
         key = _KEYS[line.act]
-        yield from (f"{key}: {sentence}" for sentence in line.sentences or ("",))
+        yield from (f"{key}: {sentence}" for sentence in line.sentences)
+        yield from () if line.sentences else (key,)
         if not line.is_left:
             return
     key = str(line.state)

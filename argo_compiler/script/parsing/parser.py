@@ -252,7 +252,7 @@ class _Parser:
         said += fields
         remark = False
         parts = sentences(text)
-        if not self.asides.is_remark(text.content):
+        if not self._is_decided(item) and not self.asides.is_remark(text.content):
             ask_of_dots(text, self.diagnostics)
         for sentence in parts:
             # What stands behind a remark is one as well, unless it makes sense.
@@ -321,7 +321,8 @@ class _Parser:
     def _decided(self, sentence: str, place: ScriptText) -> list[Said]:
         """Read a sentence that stands for a piece of the script."""
         text = self.fields.read_all(place.replaced(sentence))
-        return [said for part in sentences(text) for said in self.reader.read_decided(part)]
+        parts = (self.fields.read_all(part) for part in sentences(text))
+        return [s for part in parts if part.content for s in self.reader.read_decided(part)]
 
     def _fields(self, text: ScriptText, item: LineItem) -> tuple[list[Said], ScriptText]:
         """Read the fields that a text begins with; return what is decided on for them instead, and
@@ -359,7 +360,11 @@ class _Parser:
     def _is_plain(self, item: LineItem) -> bool:
         """Whether what an item says follows from its text alone."""
         plain = self.reader.ordered and not self.closed and not item.text.content.endswith(":")
-        return plain and not (self.decided and any(o in self.decided for o in item.text.offsets))
+        return plain and not self._is_decided(item)
+
+    def _is_decided(self, item: LineItem) -> bool:
+        """Return True if a person has decided on a piece of an item."""
+        return bool(self.decided) and any(o in self.decided for o in item.text.offsets)
 
     def _is_said_below(self, item: LineItem, said: Sequence[Said]) -> bool:
         """Return True if an item stands over no others, or consists of conditions for these."""

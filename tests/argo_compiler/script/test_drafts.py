@@ -203,6 +203,23 @@ def test_keys_of_a_draft_are_read_as_people_write_them(key: str) -> None:
     assert len(read_decisions(draft, "it")) == 1
 
 
+def test_dots_are_asked_about_once(catalog: Catalog) -> None:
+    text = "Start in starting area 1.\nCheck R9 ... and PG 1."
+    draft = draft_of(text, catalog)
+    assert draft.mission is None
+    said = draft_of(text, catalog, draft.say("2.1", ["Check R9."]))
+    assert measured_in(said.require_mission()) == ["19", "1"]
+    assert draft_of(text, catalog, draft.set_aside(["2"])).left == ()
+
+
+def test_other_words_may_be_several_sentences_and_fields(catalog: Catalog) -> None:
+    text = "Befriend valve R25.\nCheck #1."
+    words = "Start in starting area 1. Maximum duration: 35 minutes. Check R9."
+    mission = draft_of(text, catalog, draft_of(text, catalog).say("1", [words])).require_mission()
+    assert measured_in(mission) == ["19", "1"]
+    assert mission.max_duration == 35 * 60
+
+
 def test_a_later_choice_may_depend_on_an_earlier_one(catalog: Catalog) -> None:
     text = "Befriend PG1.\nBefriend R12 for me.\n - below 3: go home\nTidy up valve R9, or R7."
     draft = draft_of(text, catalog)

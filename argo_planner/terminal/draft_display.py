@@ -49,7 +49,8 @@ def _lines_text(lines: Sequence["DraftLine"], path: Path | None) -> list[str]:
 
 
 def _line_text(line: "DraftLine", most: int | None) -> Iterable[str]:
-    place = f" ({line.place})" if line.place else ""
+    known = line.place == f"line {line.line}"
+    place = f" ({line.place})" if line.place and not known else ""
     yield f"line {line.label}{place}: {printable(line.text)}"
     if line.sentences or not line.reason:
         yield f"    => {' '.join(line.sentences) or '(nothing)'}"

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from argo_compiler.script import IncompleteDraft, import_script
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.script import IncompleteDraft, import_script, read_document
 from argo_env.planning.opening import OpenedSite
 from argo_planner.terminal.draft_display import incomplete_text
 from tests.argo_planner.conftest import argo
@@ -309,3 +310,15 @@ def test_a_said_sentence_that_fits_only_with_other_lines_is_checked_at_once(scri
     write(script, "Start in starting area 1.\nBefriend all.\nBefriend valve R7.\n")
     words = ("import", script, "-o", script.parent / "m.json", "--say", "2", "Check it.")
     assert "is not understood" in str(argo(*words).exception)
+
+
+def test_the_place_of_a_line_is_told_once(tmp_path: Path, catalog: Catalog) -> None:
+    """In separated values it is the number of the line."""
+    table = tmp_path / "round.csv"
+    table.write_text("Seq.,Point,Normal\n2,R25,\n1,R12,\n", encoding="utf-8")
+    draft = import_script(read_document(table), catalog, start_area=1)
+    with pytest.raises(IncompleteDraft) as raised:
+        draft.require_mission()
+    shown = incomplete_text(raised.value)
+    assert "line 1: | Seq. | Point | Normal |" in shown
+    assert "(line 1)" not in shown

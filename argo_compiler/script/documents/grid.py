@@ -78,6 +78,7 @@ def grid_lines(rows: Sequence[GridRow], table: int) -> Iterator[DocumentLine]:
     rows = _without_empty_columns(list(_headed(_filled_down(rows))))
     pairs = _is_form(rows)
     begun = False
+    barred = any(map(_has_empty_end, rows))
     for row in rows:
         held = [(i, cell) for i, cell in enumerate(row.cells) if cell.text]
         if not held:
@@ -99,10 +100,18 @@ def grid_lines(rows: Sequence[GridRow], table: int) -> Iterator[DocumentLine]:
                     yield _row(replace(row, cells=pair, place=place), table)
         else:
             begun = True
-            yield _row(row, table)
+            yield _row(row, table, barred)
 
 
-def _row(row: GridRow, table: int) -> DocumentLine:
+def _has_empty_end(row: GridRow) -> bool:
+    """Return True if the first or the last cell of a row with several is empty."""
+    filled = [bool(cell.text) and not cell.across for cell in row.cells]
+    return sum(filled) > 1 and not (filled[0] and filled[-1])
+
+
+def _row(row: GridRow, table: int, barred: bool = False) -> DocumentLine:
+    """Return the line of a row; with bars at both ends, which show where empty cells are, if it is
+    `barred` as others of its table, or has such a cell itself."""
     parts: list[str] = []
     cells: list[tuple[int, str]] = []
     at = 0
@@ -111,8 +120,7 @@ def _row(row: GridRow, table: int) -> DocumentLine:
         cells.append((at, cell.place or row.place))
         parts.append(text)
         at += len(text) + 3
-    # Bars at both ends show where empty cells are.
-    barred = not parts[0] or not parts[-1]
+    barred = barred or not parts[0] or not parts[-1]
     text = " | ".join(parts)
     return DocumentLine(
         f"| {text} |" if barred else text,

@@ -18,7 +18,19 @@ DATE = re.compile(
     r"|(?:Jan|Feb|Mar|Apr|May|Jun|Jul|Aug|Sep|Oct|Nov|Dec)[a-z]*\s+[0-9]{1,2})\b)"
 )
 
+_PLACE_IN_ORDER = re.compile(r"#?\s*(\d{1,6})(?:st|nd|rd|th|[.):])?", re.IGNORECASE)
+_LETTER_IN_ORDER = re.compile(r"([A-Za-z])[.):]?")
+
 
 def is_to_fill(content: str) -> bool:
     """Return True if a text has a blank or a box for a person to fill in."""
     return BLANK.search(content) is not None or _BOX.search(content) is not None
+
+
+def place_in_order(content: str) -> int | None:
+    """Return the place in an order that a cell has, from its number or letter; None if it has
+    none."""
+    number, letter = _PLACE_IN_ORDER.fullmatch(content), _LETTER_IN_ORDER.fullmatch(content)
+    if letter is not None:
+        return ord(letter[1].lower()) - ord("a") + 1
+    return int(number[1]) if number is not None else None

@@ -42,6 +42,9 @@ class _Words:
     struck: list[str] = field(default_factory=list)
     deleted: list[str] = field(default_factory=list)
     inserted: list[str] = field(default_factory=list)
+    hidden: list[str] = field(default_factory=list)
+    hidden_styles: frozenset[str] = frozenset()
+    """names of the styles whose text a person does not see"""
     comments: list[str] = field(default_factory=list)
     """numbers of comments"""
     boxes: list[Any] = field(default_factory=list)
@@ -79,6 +82,7 @@ class _Reader:
         self.word = document
         self.notes: list[DocumentNote] = []
         self.lists = _Lists(document)
+        self.hidden_styles = _hidden_styles(document)
         self.comments = _comments(document)
         self.paragraphs = self.tables = self.boxes = 0
 
@@ -125,6 +129,8 @@ class _Reader:
             properties = row.find(f"{_W}trPr")
             deleted = properties is not None and properties.find(f"{_W}del") is not None
             doubt = "this row is deleted by a tracked change" if deleted else ""
+            if _is_on(properties, "hidden"):
+                doubt = doubt or "this row is hidden in the document"
             cells += [GridCell()] * _number(properties, "gridBefore")
             for cell in _within(row, "tc"):
                 made, why = self._cell(cell, f"{where}, column {len(cells) + 1}")
@@ -159,12 +165,16 @@ class _Reader:
         return [first, *rest], doubt
 
     def _read(self, element: Any, place: str) -> _Paragraph:
-        words = _Words()
+        words = _Words(hidden_styles=self.hidden_styles)
         _collect(element, words, "", 0)
         text = words.text
-        for gone, how in ((words.struck, "struck through"), (words.deleted, "deleted")):
+        for gone, how in (
+            (words.struck, "struck through"),
+            (words.deleted, "deleted"),
+            (words.hidden, "hidden"),
+        ):
             said = " ".join("".join(gone).split())
-            if said and (text.strip() or how == "deleted"):
+            if said and (text.strip() or how != "struck through"):
                 self.notes.append(DocumentNote(f"`{said}` is {how}, and is not read", place))
         if said := " ".join("".join(words.inserted).split()):
             self.notes.append(DocumentNote(f"`{said}` is a tracked change, and is read", place))
@@ -183,7 +193,7 @@ class _Reader:
             if part.is_linked_to_previous:
                 continue
             for element in part._element.iter(f"{_W}p"):
-                words = _Words()
+                words = _Words(hidden_styles=self.hidden_styles)
                 _collect(element, words, "", 0)
                 text = " ".join(words.text.split())
                 if text and text not in met:
@@ -276,13 +286,49 @@ def _collect_control(control: Any, words: _Words, change: str, depth: int) -> No
         _collect(content, words, change, depth + 1)
 
 
+def _hidden_styles(document: "WordDocument") -> frozenset[str]:
+    """Return the names of the styles whose text is hidden, or that are based on such a style."""
+    elements = {style.style_id: style.element for style in document.styles}
+    hidden = {name for name, one in elements.items() if _is_on(one.find(f"{_W}rPr"), "vanish")}
+    for _ in range(_MOST_DEEP):
+        based = {
+            name
+            for name, one in elements.items()
+            if _named(one, "basedOn") in hidden and not _has(one.find(f"{_W}rPr"), "vanish")
+        }
+        if based <= hidden:
+            break
+        hidden |= based
+    return frozenset(hidden)
+
+
+def _named(properties: Any, tag: str) -> str:
+    """Return what a property names, such as a style; empty if it is not there."""
+    found = None if properties is None else properties.find(f"{_W}{tag}")
+    return "" if found is None else found.get(f"{_W}val") or ""
+
+
+def _has(properties: Any, tag: str) -> bool:
+    return properties is not None and properties.find(f"{_W}{tag}") is not None
+
+
+def _is_hidden(run: Any, properties: Any, hidden_styles: frozenset[str]) -> bool:
+    """Return True if a person does not see a run: by itself, or by its style or paragraph's."""
+    if _has(properties, "vanish"):
+        return _is_on(properties, "vanish")
+    own = _named(properties, "rStyle")
+    paragraph = next(run.iterancestors(f"{_W}p"), None)
+    of_paragraph = None if paragraph is None else paragraph.find(f"{_W}pPr")
+    return bool({own, _named(of_paragraph, "pStyle")} & hidden_styles)
+
+
 def _collect_run(run: Any, words: _Words, change: str) -> None:
     properties = run.find(f"{_W}rPr")
-    if _is_on(properties, "vanish"):
-        return
     into = words.kept
     if change == "deleted":
         into = words.deleted
+    elif _is_hidden(run, properties, words.hidden_styles):
+        into = words.hidden
     elif _is_on(properties, "strike", "dstrike"):
         into = words.struck
     for child in run:

@@ -13,6 +13,7 @@ from argo_compiler.script.documents.signs import CLOCK
 from argo_compiler.script.documents.source import Diagnostics, ScriptText, join
 from argo_compiler.script.sentences.grammar.parser import StumbleError
 from argo_compiler.script.sentences.understanding import Understanding
+from argo_compiler.script.sentences.words.lexer import says_order
 from argo_compiler.script.sentences.words.lexicon import expand
 from argo_compiler.script.sentences.words.loading import pattern
 from argo_compiler.script.sentences.words.prose import Prose, either, phrase_pattern
@@ -66,6 +67,7 @@ _COUNTED = frozenset(
 _AREA = ("AREA", "NUMBER")
 _FLOORS = frozenset([("FLOOR", "NUMBER"), ("ORDINAL", "FLOOR"), _AREA])
 """types of words, side by side, that name a floor or an area"""
+_OF_FLOOR = frozenset(["FLOOR", "NUMBER", "ORDINAL", "ON", "IN", "AT", "COLON", "SIGN"])
 _PARTICIPLE = re.compile(
     r"(?!required|selected|planned|scheduled|listed|numbered|unmanned|elevated|detailed|combined)"
     r"\w{4,}ed"
@@ -156,8 +158,8 @@ class Asides:
     def is_title(self, text: ScriptText) -> bool:
         """Whether a line may be the title of a script, or the heading of a part of it."""
         words = text.content.lower().rstrip(":").split()
-        if self._lists_kind(text) or self._counts_rounds(text):
-            return False  # `Gauges: all on floor 1`, `Rounds: 3`
+        if self._lists_kind(text) or self._counts_rounds(text) or self.drives(text):
+            return False  # `Gauges: all on floor 1`, `Rounds: 3`, `Speed: slow`
         if ".." in text.content or self.turns(text):
             return False  # `for i in 1..3`, `Floor 3, bottom to top`
         if text.content.endswith(":") and {*words} <= _phrases_of(self.prose.around_reactions):
@@ -186,6 +188,11 @@ class Asides:
         phrases = self.prose.form["rounds_count"]
         return bool(colon) and phrase_pattern(phrases).fullmatch(head.strip()) is not None
 
+    def drives(self, text: ScriptText) -> bool:
+        """Return True for a field that says how to drive: `Speed: slow`, `Tempo: langsam`."""
+        head, colon, value = text.content.partition(":")
+        return bool(colon and value.strip()) and pattern(r"\b<driving>\b").search(head) is not None
+
     def _is_headline(self, text: ScriptText) -> bool:
         """Return True if a text that names a checkpoint or a floor is only a headline.
 
@@ -196,6 +203,8 @@ class Asides:
         types = self.understanding.types(text)
         if content.endswith(".") or not _COUNTED.isdisjoint(types) or _AREA in pairwise(types):
             return False
+        if "FLOOR" in types and {*types} <= _OF_FLOOR:
+            return False  # `FLOOR 4`, over what is read there
         if self.names_checkpoint(text) and not self._of_checkpoint(text):
             return False
         cues = self.prose.cues
@@ -276,7 +285,7 @@ class Asides:
             yield outer, brackets
         for dash in _DASH.finditer(content):
             aside = text[dash.end() :].strip()
-            if not self.adds(aside):
+            if not (self.adds(aside) or self._denies(aside)):
                 yield text[: dash.start()].strip(), [aside]
         colon = content.find(": ")
         behind_colon = text[colon + 1 :].strip()
@@ -333,7 +342,11 @@ class Asides:
             inner = text[found.start() : found.end()].strip()
             if not any(map(str.isalnum, inner.content)) or inner.content.lower() == "(x)":
                 continue  # `(-)`, `(x)` may mean that it is left out, or done
-            if self.adds(inner[1:-1]) or _FIGURES.search(inner.content):
+            if (
+                self.adds(inner[1:-1])
+                or self._denies(inner[1:-1])
+                or _FIGURES.search(inner.content)
+            ):
                 continue
             kept.append(text[start : found.start()])
             cut.append(inner)
@@ -423,6 +436,16 @@ class Asides:
         round`, `R7 was meant`."""
         return pattern(r"\b<overturning>\b").search(remark.content) is not None
 
+    def orders_row(self, remark: ScriptText) -> bool:
+        """Return True if a cell may say when its row is done: `please last`, `then`, `2nd`; not of
+        `tap the glass first`, where that is said of something else."""
+        content = remark.content
+        if says_order(content, self.understanding.language.lexicon):
+            return True
+        cues = (phrase_pattern(self.prose.cues[name]).search(content) for name in ("first", "last"))
+        rests = (remark.without(*found.span()) for found in cues if found is not None)
+        return any("WORD" not in self.understanding.types(rest) for rest in rests)
+
     def ranks(self, text: ScriptText) -> bool:
         """Whether a text says of a kind only when it is done: `The valves come first`."""
         types = self.understanding.types(text)
@@ -447,6 +470,11 @@ class Asides:
             or types[0].startswith(("OR_", "AND_"))
         )
         return sides or opens or {*types} <= _LABELS or self.asks(text) or self.names(text)
+
+    def _denies(self, text: ScriptText) -> bool:
+        """Return True for `N/A` or a dash, which may mean that something is left out."""
+        nothing = phrase_pattern(self.prose.form["nothing"])
+        return nothing.fullmatch(text.content.strip(" .")) is not None
 
     def _has_object(self, content: str) -> bool:
         """Whether an article stands where that of a verb's object does: `send an SMS`."""

@@ -21,6 +21,7 @@ from argo_compiler.script.sentences.tree.script import AreaChosen, Areas, Script
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.lexer import unquoted
 from argo_compiler.script.sentences.words.lexicon import expand
+from argo_compiler.script.sentences.words.loading import pattern
 from argo_compiler.script.sentences.words.prose import phrase_pattern
 from argo_compiler.script.sentences.words.spelling import candidates, nearest
 from argo_compiler.script.sentences.words.word import VERBS, Word
@@ -102,6 +103,8 @@ class ScriptFields:
         for word in reversed(list(re.finditer(r"[\w'-]+", label[0]))):
             if word[0].lower() in self.prose.label_words:
                 continue
+            if pattern("<driving>").fullmatch(word[0]) is not None:
+                return text
             meant = candidates(word[0], self.prose.label_words)
             if len(meant) != 1:
                 return text

@@ -45,6 +45,9 @@ class CellRole(StrEnum):
     REMARK = "remark"
     REACTION = "reaction"
     """what is done if the reading is not normal"""
+    ORDER = "order"
+    """the place of the row in the order, or when it is done"""
+    PRIORITY = "priority"
     WINDOW = "window"
     """minutes from and to which it is done"""
     OTHER = "other"
@@ -59,6 +62,8 @@ class Cell:
     text: ScriptText
     filled: bool = False
     """whether it is filled in, where other rows have nothing"""
+    column: int | None = None
+    """the index of its heading; None: it has none"""
 
 
 @dataclass(frozen=True)
@@ -80,6 +85,12 @@ class FormRow:
     """for headings: the cells below times of day that are filled in"""
     computed: bool = False
     """whether all numbers in it are computed by a spreadsheet"""
+    headed_at: int | None = None
+    """the offset of the first of its headings; None: it has none"""
+
+    def cell_in(self, column: int) -> Cell | None:
+        """Return the cell below a heading; None if it is empty."""
+        return next((cell for cell in self.cells if cell.column == column), None)
 
 
 Columns = list[tuple[int, CellRole]]
@@ -100,10 +111,16 @@ _LEADER = re.compile(r"\s*(?:\.{3,}|…+)\s*")
 _CUTS = {
     "|": re.compile(r"\|"),
     "\t": re.compile(r"\t+"),
+    "\t ": re.compile(r"\t"),
     ";": re.compile(";"),
     ",": re.compile(","),
     "  ": re.compile(r"\s{2,}|\t"),
 }
+_LONGEST_HEADING = 5
+"""words"""
+_FEWEST_SIGNS = {";": 1, ",": 2}
+_LOOSE = tuple(_FEWEST_SIGNS)
+"""signs that cut rows below headings that they cut, and are signs of sentences elsewhere"""
 _BLANK_CELL = re.compile(r"_{2,}|\.{4,}")
 _STEP_MARK = re.compile(r"^(?:[0-9]{1,3}|[a-z])[.)]\s+")
 """the number of a step, behind which many blanks make no cells"""
@@ -155,9 +172,11 @@ def forms(
     """by the table of a document, which sections may part"""
     cut_rows: dict[int, tuple[int, list[Cell]]] = {}
     headed: set[int] = set()
-    for at, (group, cut) in enumerate(_groups(source, taken)):
+    for at, (group, cut) in enumerate(_groups(source, taken, prose)):
         table = _table_of(source, group[0])
-        lines = [(number, _cells(source.line_text(number), cut)) for number in group]
+        bars = cut == "|" and _bars(source, group)
+        sign = "\t " if cut == "\t" and _has_single_tabs(source, group) else cut
+        lines = [(number, _cells(source.line_text(number), sign, bars)) for number in group]
         if cut == "  ":
             lines = list(_wrapped(lines, source, texts))
         heads = [_headings(found, prose) for _, found in lines]
@@ -181,20 +200,22 @@ def forms(
                 continue  # text recognition cuts words by tabs, and sentences have commas
             else:
                 cells = _with_roles(found, columns, cut)
+                if columns is not None and cut in _LOOSE and len(cells) > len(columns):
+                    doubt = doubt or "this row has more cells than there are headings"
                 said = _instruction(cells, is_plain)
                 if said is not None and not doubt:
                     texts[number] = said
                 elif columns is not None or table is not None or not is_plain(line):
                     cut_rows[number] = (at if table is None else -table, cells)
                     headed |= {number} if columns is not None and cut != "  " else set()
-                    rows[number] = _row(line, cells, cut)
+                    at_heading = columns[0][0] if columns else None
+                    row = _row(line, cells, cut)
+                    rows[number] = replace(row, headed_at=at_heading, doubt=doubt)
     for number, cells in _with_filled(cut_rows, headed).items():
         filled = tuple(cell for cell in cells if cell.text.content)
         if rows[number].box is None and not rows[number].is_heading:
             rows[number] = replace(rows[number], cells=filled)
-        rows[number] = replace(
-            rows[number], doubt=_doubt_of(source, number), computed=_is_computed(source, number)
-        )
+        rows[number] = replace(rows[number], computed=_is_computed(source, number))
     for number in source.unclear:
         line = source.line_text(number)
         content = line.content
@@ -377,18 +398,23 @@ def _row(line: ScriptText, cells: Sequence[Cell], cut: str) -> FormRow:
     return FormRow(line.strip(), tuple(c for c in cells if c.text.content), mark, labelled=labelled)
 
 
-def _groups(source: Source, taken: Mapping[int, ScriptText]) -> Iterator[tuple[list[int], str]]:
+def _groups(
+    source: Source, taken: Mapping[int, ScriptText], prose: Prose
+) -> Iterator[tuple[list[int], str]]:
     """Yield the numbers of lines, one below the other, that are cut into cells alike."""
     group: list[int] = []
     cut = ""
     table: int | None = None
+    loose = False
+    """whether headings, rather than the signs of each line, show what cuts the lines"""
     for number in (*source.unclear, len(source.lines) + 1):
         if group and number > group[-1] + 1:
-            if len(group) > 1:
+            if len(group) > 1 or _is_pair(source, group, cut):
                 yield group, cut
             group, cut = [], ""
         line = source.line_text(number).content if number <= len(source.lines) else ""
         here = "" if number in taken else _cut_of(line)
+        begins = "" if number in taken else _cut_of_headings(line, source, number, prose)
         of = None if number in taken else _table_of(source, number)
         if of is not None or table is not None:
             if group and (of != table or number in taken):
@@ -401,11 +427,18 @@ def _groups(source: Source, taken: Mapping[int, ScriptText]) -> Iterator[tuple[l
                 continue
         rule = cut == "|" and line.strip() and RULE.fullmatch(line)
         deep = cut == "  " and line.strip() and len(line) - len(line.lstrip()) >= _DEEP
-        if group and (here == cut or rule or deep):
+        goes_on = loose and number not in taken and cut in line and not _ENDED.search(line.strip())
+        ends = line.strip()[:1] + line.strip()[-1:]
+        alike = bool(group) and line.count("|") == source.lines[group[0] - 1].count("|")
+        goes_on |= cut == "|" and "|" in line and (ends.count("|") == 1 or alike)  # `valve R25 |`
+        apart = bool(begins) and begins != cut
+        if group and not apart and (here == cut or rule or deep or goes_on):
+            loose = loose or bool(begins)
             group.append(number)
             continue
-        if len(group) > 1:
+        if len(group) > 1 or _is_pair(source, group, cut):
             yield group, cut
+        here, loose = begins or here, bool(begins)
         group, cut = ([number], here) if here else ([], "")
 
 
@@ -419,7 +452,7 @@ def _cut_of(line: str) -> str:
         return "|"
     if "\t" in inner:
         return "\t"
-    if inner.count(";") >= 1 and not _ENDED.search(inner) and "; " not in inner:
+    if inner.count(";") >= 1 and not _ENDED.search(inner) and not re.search(r"\S;\s", inner):
         return ";"
     if inner.count(",") >= 2 and not re.search(r",\s", inner) and not inner.endswith("."):
         return ","
@@ -428,11 +461,47 @@ def _cut_of(line: str) -> str:
     return "  " if '"' not in inner and re.search(r"\S\s{2,}\S", inner) else ""
 
 
-def _cells(line: ScriptText, cut: str) -> list[Cell]:
+def _is_pair(source: Source, group: Sequence[int], cut: str) -> bool:
+    """Return True for a single line of two cells with a bar between them."""
+    return bool(group) and cut == "|" and source.lines[group[0] - 1].strip(" |").count("|") == 1
+
+
+def _cut_of_headings(line: str, source: Source, number: int, prose: Prose) -> str:
+    """Return the sign that cuts a line into headings of columns, as in `Point; Floor; Priority`,
+    where sentences have it as well; empty for another line."""
+    stripped = line.strip()
+    if len(line) > _LONGEST or stripped.endswith((":", ".", "!", "?")):
+        return ""
+    for cut in _LOOSE:
+        parts = line.split(cut)
+        short = all(0 < len(part.split()) <= _LONGEST_HEADING for part in parts)
+        if len(parts) > _FEWEST_SIGNS[cut] and short:
+            cells = _cells(source.line_text(number), cut)
+            if _headings(cells, prose) is not None:
+                return cut
+    return ""
+
+
+def _bars(source: Source, group: Sequence[int]) -> bool:
+    """Return True if bars at both ends of lines are borders; else the cell before one is empty."""
+    if source.document is not None:
+        return True
+    return all(source.lines[number - 1].lstrip().startswith("|") for number in group)
+
+
+def _has_single_tabs(source: Source, group: Sequence[int]) -> bool:
+    """Return True if each tab begins a cell, so that one between two others is empty: no line has
+    more of them than the first one, which has no two side by side."""
+    first = source.lines[group[0] - 1]
+    most = first.count("\t")
+    return "\t\t" not in first and all(source.lines[n - 1].count("\t") <= most for n in group)
+
+
+def _cells(line: ScriptText, cut: str, bars: bool = True) -> list[Cell]:
     """Return the cells of a line, each with blanks stripped; empty ones as well."""
     content = line.content
     start, end = len(content) - len(content.lstrip()), len(content.rstrip())
-    if cut == "|":
+    if cut == "|" and bars:
         start += content[start:end].startswith("|")
         end -= content[start:end].endswith("|")
     pattern = _LEADER if cut == "." else _CUTS[cut]
@@ -482,15 +551,16 @@ def _with_roles(cells: Sequence[Cell], columns: Columns | None, cut: str) -> lis
     if columns is None or not cells:
         return list(cells)
     if cut != "  ":
-        roles = [role for _, role in columns] + [CellRole.OTHER] * len(cells)
-        return [replace(cell, role=role) for cell, role in zip(cells, roles, strict=False)]
+        known = zip(cells, columns, strict=False)
+        headed = [replace(c, role=role, column=i) for i, (c, (_, role)) in enumerate(known)]
+        return headed + list(cells[len(headed) :])
     source = cells[0].text.source
-    starts = [(_column(source, first), role) for first, role in columns]
+    starts = [(_column(source, first), i, role) for i, (first, role) in enumerate(columns)]
 
     def under(cell: Cell) -> Cell:
         at = _column(source, cell.text.first)
-        _, role = min(starts, key=lambda start: abs(start[0] - at))
-        return replace(cell, role=role)
+        _, column, role = min(starts, key=lambda start: abs(start[0] - at))
+        return replace(cell, role=role, column=column)
 
     return [under(cell) if cell.text.content else cell for cell in cells]
 

@@ -8,11 +8,12 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from argo_compiler.script.documents.signs import RULE, is_to_fill
+from argo_compiler.script.documents.signs import RULE, is_to_fill, place_in_order
 from argo_compiler.script.documents.source import Diagnostics, ScriptText, Source, quotes
 from argo_compiler.script.layout.asides import Asides, ask_of_remark
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.lexicon import expand
+from argo_compiler.script.sentences.words.loading import pattern
 from argo_compiler.script.sentences.words.prose import Prose
 
 COLUMN_HEADINGS = "column headings"
@@ -81,6 +82,9 @@ def tables(source: Source, understanding: Understanding, diagnostics: Diagnostic
                 below = _below(source, number, cut)
                 if headings is not None and any(is_to_fill(row.content) for row in below):
                     headings = None  # a sheet that a person fills in
+                below = _below(source, number, cut)
+                if headings is not None and rows.has_places(text, headings, cut, below):
+                    headings = None  # a sheet, whose order is asked about
                 if source.origin(number) is not None and not _is_list_of_tasks(headings):
                     headings = None
                 if headings is not None:
@@ -160,6 +164,20 @@ class _Rows:
         by_start = {at: holds or "nothing" for holds, at, _ in known}
         return [_Heading(by_start.get(at, "nothing"), at, scales[at]) for at, _ in cells]
 
+    def has_places(
+        self, text: ScriptText, headings: list[_Heading], cut: str, rows: Iterator[ScriptText]
+    ) -> bool:
+        """Return True if a column such as `Order` gives the rows another order."""
+        cells = dict(_cells(text, cut))
+        ordering = pattern(r"\b<ordering>\b")
+        named = [h for h in headings if ordering.search(cells[h.start].content)]
+        if len(named) != 1:
+            return False
+        found = [_by_column(row, headings, cut).get(named[0].holds) for row in rows]
+        places = [place_in_order(cell.content) for cell in found if cell is not None]
+        numbers = [place for place in places if place is not None]
+        return bool(numbers) and (named[0].holds == "action" or numbers != sorted(numbers))
+
     def begin(self, headings: list[_Heading], cut: str, rows: Iterator[ScriptText]) -> None:
         """Looks at the priorities of all rows: what each is worth hangs on the others."""
         column = next((heading for heading in headings if heading.holds == "priority"), None)
@@ -172,6 +190,9 @@ class _Rows:
     def sentence(self, text: ScriptText, headings: list[_Heading], cut: str) -> ScriptText:
         """The sentence of a row."""
         cells = _by_column(text, headings, cut)
+        named = cells.get("object") if "checkpoint" in cells else None
+        if named is not None and self.asides.orders_row(named):
+            ask_of_remark(cells.pop("object"), self.diagnostics)
         remark = cells.get("remark")
         if remark is not None and not (self.asides.asks(remark) or self.asides.bids(remark)):
             self._note(cells.pop("remark"))
@@ -225,7 +246,8 @@ class _Rows:
 
     def _note(self, aside: ScriptText) -> None:
         times = _TIMES.isdisjoint(self.asides.understanding.types(aside))
-        if not times or self.asides.corrects(aside) or self.asides.bids(aside):
+        ordered = self.asides.orders_row(aside)
+        if not times or ordered or self.asides.corrects(aside) or self.asides.bids(aside):
             ask_of_remark(aside, self.diagnostics)
             return
         if aside.content.lower() in _NOT_APPLICABLE:

@@ -10,7 +10,7 @@ from itertools import pairwise
 
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.il import EventKind
-from argo_compiler.script.proposals.composing import normal_end
+from argo_compiler.script.proposals.composing import PASSING_OVER, normal_end
 from argo_compiler.script.proposals.frames import Sentences
 from argo_compiler.script.proposals.mentions import Mention, Mentions
 from argo_compiler.script.proposals.open_text import ENDS, HOME, OpenText
@@ -36,7 +36,6 @@ _REACH = 2
 """words between a relation and its amount"""
 _OVER = frozenset([EventKind.ALL_CLEAR, EventKind.BATTERY_CHARGED, EventKind.CONNECTION_RESTORED])
 """events that only tell that another one is over"""
-_ALL_FAILURES = "If a reading fails, go on with the next checkpoint."
 
 
 @dataclass(frozen=True)
@@ -220,7 +219,7 @@ def _by_event(of: OpenText) -> Iterator[Sentences]:
     likely = [answer for kinds, answer in answers.items() if of.found.has(*kinds)]
     skips = event is EventKind.POSITIVE_OBSTACLE and of.found.has("leave_out", "GO_ON", "NEXT_STEP")
     if skips:
-        yield (_ALL_FAILURES,)
+        yield (PASSING_OVER,)
     for answer in dict.fromkeys(filter(None, (*likely, *answers.values()))):
         yield (f"{when}, {answer}.",)
 

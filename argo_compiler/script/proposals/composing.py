@@ -12,7 +12,7 @@ from itertools import pairwise
 
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.script.documents.source import RefusedError, ScriptText
-from argo_compiler.script.proposals.evidence import evidence
+from argo_compiler.script.proposals.evidence import evidence, missing_reading
 from argo_compiler.script.proposals.frames import Sentences, sentences_of
 from argo_compiler.script.proposals.known import Known, is_number
 from argo_compiler.script.proposals.mentions import (
@@ -66,6 +66,9 @@ _LIST = re.compile(r"\s*#?\w*\d(?:(?:\s*[,;/&+]\s*|\s+(?:and|und)\s+|\s+)#?\w*\d
 _BACK_TO_ITEM = re.compile(r"\s[a-z]\)?\W*$")
 """a letter at the end of a text may be the item to go back to"""
 _CUT_FIGURES = re.compile(r"(?<=\d)[ \t]+(?=\d)")
+_OF_PASSING = ("leave_out", "NEXT_STEP", "GO_ON", "pronoun", "checkpoints", "STEP", "NUMBER")
+"""kinds of mentions of `skip it` and `leave that one out`"""
+PASSING_OVER = "If a reading fails, go on with the next checkpoint."
 _MOST_CLAUSES = 14
 _NO_LISTS = frozenset([("IS",), ("TO",), ("UPTO",)])
 """types of words between two checkpoints that say more than that both are in a list"""
@@ -89,6 +92,8 @@ class Proposal:
     """what the text says otherwise than the site"""
     ignored: tuple[str, ...] = ()
     """words of a certain proposal that ask for nothing"""
+    complete: bool = False
+    """for an open text: whether nothing but its choices is to be offered"""
     certain: bool = False
     """whether every word of it is used, so that nobody has to confirm it"""
 
@@ -138,6 +143,10 @@ class Composer:
             return Proposal(doubt=said)
         if self._may_be_no_list(text, found.of("checkpoints")):
             return Proposal()
+        if denial := missing_reading(text.content, self.understanding.language.prose.form):
+            return Proposal(doubt=f"`{denial}` can mean that this is left out")
+        if self._passes_over(text):
+            return Proposal((PASSING_OVER,))
         if self._may_be_case(rephrased(text, self.understanding).text):
             return Proposal()
         before = self.known.state()
@@ -225,6 +234,16 @@ class Composer:
             return False
         generic = words[0].type != "KIND" or words[0].value[0] in (Kind.CHECKPOINT, Kind.GAUGE)
         return generic and (words[1].type == "FAILS" or words[1].value == "unreadable")
+
+    def _passes_over(self, text: ScriptText) -> bool:
+        """Return True for `gauge unreadable: skip it`, which leaves out no more than that one."""
+        head, colon, _ = text.content.partition(":")
+        if not (colon and self.is_failure(text[: len(head)])):
+            return False
+        found = mentions_in(text[len(head) + 1 :].strip(), self.understanding)
+        points = [m for m in found.of("checkpoints") if not _is_any(m)]
+        passing = found.has("leave_out", "NEXT_STEP") and found.only(*_OF_PASSING)
+        return passing and not (points or found.unknown)
 
     def _alike(self, text: ScriptText) -> ScriptText:
         """Return a condition that ends in `likewise` with the orders of the one before it."""

@@ -5,7 +5,7 @@ A piece that is only unknown is never set aside.
 
 import re
 import unicodedata
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from argo_compiler.script.documents.source import ScriptText
 from argo_compiler.script.proposals.mentions import OF_FORMS, Mentions, mentions_in
@@ -14,7 +14,7 @@ from argo_compiler.script.sentences.tree.places import DockLocation
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.language import Language
 from argo_compiler.script.sentences.words.loading import pattern
-from argo_compiler.script.sentences.words.prose import PhrasePattern, phrase_pattern
+from argo_compiler.script.sentences.words.prose import PhrasePattern, either, phrase_pattern
 
 STATEMENT = "a statement that names nothing of the mission"
 _SEPARATOR = re.compile(r"\W*([-=_*~])\1{2,}.*?\1{3,}\W*")
@@ -59,6 +59,9 @@ _IN_PLACE = (
 )
 """what a text mentions that only says that the robot does not dock in between"""
 
+_NAMED_BEFORE = r"(.*[^\W_][)\]]?)(?:\s*[-–—:,;=(]{1,3}\s*|\s+)"
+"""what stands before `N/A` in a cell"""
+
 
 def evidence(text: ScriptText, found: Mentions, language: Language, clause: bool = False) -> str:
     """Return why a piece, or a clause of one, has no effect; empty if nothing shows that it has
@@ -76,6 +79,18 @@ def is_name(content: str) -> bool:
     name, _, role = content.strip(" /-").partition(", ")
     plain = len(role.split()) <= _FEW_WORDS and role.replace(" ", "").isalpha() if role else True
     return plain and bool(_INITIALS.fullmatch(name) or _NAME.fullmatch(name))
+
+
+def missing_reading(content: str, form: Mapping[str, str]) -> str:
+    """Return `N/A`, or a dash, that stands behind a name where a reading belongs, `R12 - N/A`; not
+    one of several answers, `OK / Not OK / N/A`."""
+    found = re.fullmatch(
+        rf"{_NAMED_BEFORE}({either(form['nothing'])})[\s.)]*", content, re.IGNORECASE
+    )
+    answers = phrase_pattern(form["furniture"])
+    if found is None or any(answer.end() == found.end(1) for answer in answers.finditer(found[1])):
+        return ""
+    return found[2]
 
 
 def names_points(found: Mentions) -> bool:
@@ -233,6 +248,8 @@ def _has_no_field(text: ScriptText, found: Mentions, language: Language) -> bool
         return False
     value = text.content[label.end() :] if label is not None else ""
     form = language.prose.form
+    if pattern(r"\b<driving>\b").search(text.content) is not None:
+        return False  # `Speed: slow`
     counts = phrase_pattern(form["rounds_count"]).search(text.content) is not None
     short = 0 < len(value.split()) <= _MOST_OF_VALUE and not (counts or _ENDS.search(value))
     return short and found.only(*OF_FORMS - {"MEASURE", "BE_MEASURED", "question"})

@@ -14,6 +14,7 @@ from argo_compiler.script.proposals.composing import Composer
 from argo_compiler.script.proposals.evidence import is_name, names_points, row_evidence
 from argo_compiler.script.proposals.mentions import OF_FORMS, Mentions, mentions_in
 from argo_compiler.script.sentences.words.lexicon import expand
+from argo_compiler.script.sentences.words.loading import pattern
 from argo_compiler.script.sentences.words.prose import phrase_pattern
 from argo_compiler.script.sentences.words.without_effect import MISPLACED
 from argo_compiler.script.sentences.words.word import VERBS
@@ -57,6 +58,9 @@ _OBJECTS = frozenset(["KIND", "ALL", "HASH", "NUMBER", "IDENT"])
 """types of words behind the verb of an order"""
 _BRACKETS = re.compile(r"\([^()]*\)")
 _CALENDAR = re.compile(r"\b(?:week|wk|kw)\.? ?\d{1,2}\b", re.IGNORECASE)
+_STEP_MARK = re.compile(r"\s*(?:\d{1,3}[.):]|[a-z]\))\s*")
+_COMPOUND = re.compile(r"\w-[a-zäöüß]")
+"""two words in one, of which the second is no name"""
 _CODE = re.compile(r"\b[A-Z]{1,4}-?\d+\b|\b(?:rev|issue|page|form|no)\b", re.IGNORECASE)
 
 
@@ -297,7 +301,11 @@ class Neighbours:
         roles = phrase_pattern(self.form["positions"])
         if closed and roles.search(content) and len(content.split()) <= _LONGEST_ROLE:
             return mentions_in(text, self.understanding).only("PERSON", "NUMBER")
-        line = text.source.text[: text.first].rpartition("\n")[2] + content
+        line_start = text.source.text[: text.first].rpartition("\n")[2]
+        phases = pattern(r"\b<phases>\b")
+        if _STEP_MARK.fullmatch(line_start) or _COMPOUND.search(content) or phases.search(content):
+            return False  # `3. Close-out`
+        line = line_start + content
         initials = _INITIALS.match(line.strip()) is not None
         behind = _EXTENSION.search(content) or (_SIGNED if initials else _AT).search(content)
         name = text if behind is None else text[: behind.start()]

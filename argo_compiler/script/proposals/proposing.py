@@ -9,6 +9,7 @@ from itertools import chain, takewhile
 from typing import Any, TypeGuard, TypeVar
 
 from argo_compiler.base.catalog import Catalog
+from argo_compiler.script.documents.signs import place_in_order
 from argo_compiler.script.documents.source import Diagnostics, RefusedError, ScriptText
 from argo_compiler.script.layout.forms import CellRole, FormRow
 from argo_compiler.script.parsing.script import Piece, Script
@@ -23,13 +24,19 @@ from argo_compiler.script.proposals.clock import (
     windowed,
 )
 from argo_compiler.script.proposals.composing import Composer, Proposal
-from argo_compiler.script.proposals.frames import Sentences, floor_names
+from argo_compiler.script.proposals.frames import Sentences, floor_names, has_no_floor
 from argo_compiler.script.proposals.known import Known
-from argo_compiler.script.proposals.mentions import OF_FORMS, Mention, Mentions, mentions_in
+from argo_compiler.script.proposals.mentions import (
+    OF_FORMS,
+    Mention,
+    Mentions,
+    checkpoint_words,
+    mentions_in,
+)
 from argo_compiler.script.proposals.neighbours import Neighbours
 from argo_compiler.script.proposals.parts import MOST_TAKEN_APART
 from argo_compiler.script.proposals.round_fields import propose_rounds
-from argo_compiler.script.proposals.rows import only_floors, propose_row
+from argo_compiler.script.proposals.rows import naming, of_floor, only_floors, propose_row
 from argo_compiler.script.sentences.tree.nouns import AllOf, Noun, TheOne
 from argo_compiler.script.sentences.tree.orders import Measure, Sentence
 from argo_compiler.script.sentences.tree.script import ScriptStep
@@ -43,6 +50,7 @@ Made = dict[tuple[object, ...], tuple[Any, int]]
 """what was made of pieces, by what was known then, and how many of their characters were taken
 apart"""
 _Result = TypeVar("_Result")
+_REORDERED = "a row in the order that is chosen at the headings"
 _NUMBERED = re.compile(r"checkpoint ([0-9]+)")
 _RETURN = re.compile(r"Return to the docking station(?: in starting area ([0-9]+))?\.")
 
@@ -109,6 +117,12 @@ class _Proposer:
         self.sure = sure
         self.made = made
         self.known: tuple[object, ...] = ()
+        self.floor: Mention | None = None
+        """of the heading directly above, where Argo does not understand that as a sentence"""
+        self.reordered: set[int] = set()
+        """offsets of headings above rows that are read in another order"""
+        self.over_floor = False
+        """whether the piece is such a heading"""
 
     def all(self) -> dict[int, Proposal]:
         """Return the proposals of all pieces."""
@@ -126,6 +140,7 @@ class _Proposer:
             start = piece.text.first
             self.neighbours.note_heading(piece)
             self._note_section(piece)
+            self._note_floor(piece, i, measured)
             if start not in self.script.rows:
                 self.composer.known.listed = None
             named = measured.get(start, [])
@@ -140,14 +155,19 @@ class _Proposer:
                 proposal = Proposal(aside="a heading")
             elif named and self._is_spared(named, piece.text):
                 proposal = Proposal(aside="left out, as another line says")
+            elif named and self.floor is not None:
+                proposal = self._on_floor(piece.text, named, self.floor)
             if proposal is not None and self._is_left_out(proposal):
                 proposal = Proposal(aside="left out, as another line says")
             in_row = start in self.script.rows
-            if proposal is not None and proposal.is_open and (in_row or not any(proposal.choices)):
+            sought = proposal is not None and proposal.is_open and not proposal.complete
+            if proposal is not None and sought and (in_row or not any(proposal.choices)):
                 choices = self._choices(piece, proposal.choices)
                 proposal = replace(proposal, choices=choices)
             if proposal is not None:
-                proposal = self._with_chosen(piece, proposal) if proposal.is_open else proposal
+                if proposal.is_open:
+                    proposal = self._with_chosen(piece, proposal)
+                    self._note_reordered(piece, proposal)
                 self.found[start] = proposal
                 self._note_item(piece, proposal)
             else:
@@ -223,6 +243,59 @@ class _Proposer:
         ):
             self.composer.known.section = floors[0] if len(floors) == 1 else None
 
+    def _note_reordered(self, piece: Piece, proposal: Proposal) -> None:
+        """Note that a choice at the headings of a table says what all its rows ask for."""
+        row = self.script.rows.get(piece.text.first)
+        if row is not None and row.is_heading and proposal.sentences:
+            self.reordered |= {cell.text.first for cell in row.cells}
+
+    def _note_floor(self, piece: Piece, i: int, measured: Mapping[int, Sequence[Mention]]) -> None:
+        """Note the floor of a title, or of a line that Argo does not understand, which names no
+        more than that: it is a heading of the lines directly below it, which name checkpoints."""
+        start = piece.text.first
+        self.over_floor = False
+        if start in measured or start in self.script.rows:
+            return
+        found = mentions_in(piece.text, self.understanding)
+        below = self.script.pieces[i + 1 : i + 2]
+        headed = bool(below) and below[0].text.first in {*measured, *self.script.rows}
+        adjacent = headed and _line(below[0].text) == _line(piece.text) + 1
+        single = only_floors(found) and len(found.mentions) == 1 and not found.unknown
+        self.over_floor = start in self.unread and single and adjacent
+        titled = bool(piece.aside) and single
+        self.floor = found.mentions[0] if self.over_floor or titled else None
+        if self.floor is not None:
+            self.composer.known.section = self.floor
+
+    def _on_floor(
+        self, text: ScriptText, named: Sequence[Mention], floor: Mention
+    ) -> Proposal | None:
+        """Return what a line below the heading of a floor asks for: `all gauges` are those on this
+        floor. None if it names checkpoints on it."""
+        known = self.composer.known
+        nouns = [noun for mention in named for noun in mention.nouns]
+        with suppress(RefusedError):
+            checkpoints = [c for mention in named for c in of_floor(mention, floor, known)]
+            if not any(map(has_no_floor, nouns)):
+                floors = known.floors(floor_names(floor))
+                other = next((c for c in checkpoints if c.floor not in floors), None)
+                if other is None or any(
+                    m.has("place") for m in [mentions_in(text, self.understanding)]
+                ):
+                    return None
+                doubt = f"{other.name} is on floor {other.floor}"
+                return Proposal(
+                    choices=((f"Check {checkpoint_words(checkpoints)}.",), ()), doubt=doubt
+                )
+            check = f"Check {checkpoint_words(checkpoints)} in any order." if checkpoints else ""
+            found = mentions_in(text, self.understanding)
+            if check and found.only("checkpoints", "MEASURE", "measuring") and not found.unknown:
+                known.measured(checkpoints)
+                return Proposal((check,))
+            choices = ((check,), ()) if check else ((),)
+            return Proposal(choices=choices, doubt="only what is on the floor above can be meant")
+        return Proposal(doubt="it is not clear what is meant on the floor above")
+
     def _note_item(self, piece: Piece, proposal: Proposal) -> None:
         """Note which checkpoint a numbered row is about."""
         row = self.script.rows.get(piece.text.first)
@@ -241,14 +314,24 @@ class _Proposer:
         whole = self._whole(piece)
         if piece.text.first in self.rounds:
             return self.rounds[piece.text.first]
+        if self.over_floor:
+            return Proposal(aside="a heading")
         if reason := self.neighbours.reason(i, whole):
             return Proposal(aside=reason)
         at_time = self._at_time(whole)
         if at_time is not None:
             return at_time
         row = self.script.rows.get(piece.text.first)
-        if row is not None and row.is_heading and (order := self._column_of_order(row, i)):
-            return Proposal(choices=((),), doubt=f"`{order}` can give another order of the rows")
+        if (
+            row is not None
+            and row.is_heading
+            and (column := self._column_of_order(row)) is not None
+        ):
+            doubt = f"`{row.cells[column].text.content}` can give another order of the rows"
+            ordered = self._in_order(row, i, column)
+            return Proposal(choices=(*ordered, ()), doubt=doubt, complete=bool(ordered))
+        if row is not None and row.headed_at in self.reordered:
+            return Proposal(aside=_REORDERED)
         if row is not None:
             return self._once(piece, (), lambda: propose_row(row, self.composer, first=i == 0))
         made = self._once(piece, (), lambda: self.composer.propose(piece.text))
@@ -256,21 +339,48 @@ class _Proposer:
             return Proposal(doubt="this may be of the line above")
         return made
 
-    def _column_of_order(self, heading: FormRow, i: int) -> str:
-        """Return the heading of a column whose numbers give the rows below another order."""
+    def _column_of_order(self, heading: FormRow) -> int | None:
+        """Return the column whose numbers give the rows below another order; None if none does."""
+        starts = {cell.text.first for cell in heading.cells}
+        rows = [row for row in self.script.rows.values() if row.headed_at in starts]
+        for column, heading_cell in enumerate(heading.cells):
+            cells = [row.cell_in(column) for row in rows]
+            places = [place_in_order(c.text.content) if c is not None else None for c in cells]
+            numbers = [place for place in places if place is not None]
+            visits = any(c is not None and c.role is CellRole.ORDER for c in cells)
+            named = visits or pattern(r"\b<ordering>\b").search(heading_cell.text.content)
+            partly = visits and 0 < len(numbers) < len(places)
+            if named and (numbers != sorted(numbers) or partly):
+                return column
+        return None
+
+    def _in_order(self, heading: FormRow, i: int, column: int) -> tuple[Sentences, ...]:
+        """Return what the rows below headings ask for in the order of the numbers in a column;
+        nothing if it is not clear, or if other lines stand between the rows."""
+        starts = {cell.text.first for cell in heading.cells}
         below = (self.script.rows.get(p.text.first) for p in self.script.pieces[i + 1 :])
-        rows = [row.cells for row in takewhile(lambda row: row is not None, below) if row]
-        for k, cell in enumerate(heading.cells):
-            named = pattern(r"\b<ordering>\b").search(cell.text.content)
-            numbers = [row[k].text.content for row in rows if len(row) == len(heading.cells)]
-            if named and len(numbers) > 1 and all(map(str.isdecimal, numbers)):
-                order = [int(number) for number in numbers]
-                if order != sorted(order):
-                    return cell.text.content
-        return ""
+        rows = list(takewhile(lambda row: row is not None and row.headed_at in starts, below))
+        count = sum(row.headed_at in starts for row in self.script.rows.values())
+        placed_rows: dict[int, FormRow] = {}
+        for row in rows:
+            cell = row.cell_in(column) if row is not None else None
+            place = place_in_order(cell.text.content) if cell is not None else None
+            if row is not None and place is not None:
+                placed_rows[place] = row
+        if not 1 < len(placed_rows) == count:
+            return ()
+        sentences: list[str] = []
+        with self.composer.known.unchanged():
+            for place in sorted(placed_rows):
+                made = propose_row(placed_rows[place], self.composer)
+                if not made.sentences or made.unused:
+                    return ()
+                sentences += made.sentences
+        return (tuple(sentences),)
 
     def _choices(self, piece: Piece, likeliest: Sequence[Sentences]) -> tuple[Sentences, ...]:
-        whole, key = self._whole(piece), ("choices", *likeliest)
+        row = self.script.rows.get(piece.text.first)
+        whole, key = piece.text if row is None else naming(row), ("choices", *likeliest)
         return self._once(piece, key, lambda: choices_of(whole, self.composer, likeliest))
 
     def _once(self, piece: Piece, key: tuple[object, ...], make: Callable[[], _Result]) -> _Result:
@@ -354,6 +464,10 @@ def _is_kind(noun: Noun) -> TypeGuard[AllOf | TheOne]:
 def _checks(sentence: str) -> bool:
     """Return True for a sentence that measures something."""
     return sentence.startswith("Check ")
+
+
+def _line(text: ScriptText) -> int:
+    return text.source.line_at(text.first)
 
 
 def _start_area(script: Script) -> int | None:

@@ -11,12 +11,12 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 from argo_compiler.base.catalog import CheckpointInfo, CheckpointKind
-from argo_compiler.script.documents.signs import CLOCK
+from argo_compiler.script.documents.signs import CLOCK, place_in_order
 from argo_compiler.script.documents.source import RefusedError, ScriptText, join
 from argo_compiler.script.documents.tags import count_tag, tag_of
 from argo_compiler.script.layout.forms import SHEET_HEADINGS, Cell, CellRole, FormRow
 from argo_compiler.script.proposals.composing import RETURNING, Composer, Proposal
-from argo_compiler.script.proposals.evidence import is_name
+from argo_compiler.script.proposals.evidence import is_name, missing_reading
 from argo_compiler.script.proposals.frames import Sentences, has_no_floor, placed
 from argo_compiler.script.proposals.known import Known, is_number
 from argo_compiler.script.proposals.mentions import (
@@ -30,8 +30,9 @@ from argo_compiler.script.proposals.paraphrasing import ORDERS, reads, rephrased
 from argo_compiler.script.sentences.tree.nouns import AllOf, Nouns, TheOne
 from argo_compiler.script.sentences.tree.places import FloorName
 from argo_compiler.script.sentences.understanding import COMPARING
-from argo_compiler.script.sentences.words.lexer import all_words
+from argo_compiler.script.sentences.words.lexer import all_words, says_order
 from argo_compiler.script.sentences.words.lexicon import expand
+from argo_compiler.script.sentences.words.loading import pattern
 from argo_compiler.script.sentences.words.numbers import Figure
 from argo_compiler.script.sentences.words.prose import phrase_pattern
 from argo_compiler.script.sentences.words.without_effect import TOLD
@@ -66,6 +67,9 @@ _ALL_UNITS = frozenset().union(*_UNITS.values())
 _POSITIONS = ("half", "open", "closed")
 _OPEN, _CLOSED = 70.0, 20.0
 """degrees from which a valve's normal position counts as open, and up to which as closed"""
+_FEW_WORDS = 2
+_ORDER_WORDS = ("first", "last", "ORDINAL", "AT_BEGIN", "AT_END")
+"""kinds of mentions that say in which order rows are done"""
 _ALIKE = str.maketrans("il|058", "111osb")
 """signs that text recognition takes for others"""
 _IDLE_CELL = re.compile(r"[-–—_. \d,/%]*|[A-Za-z]?\d*[a-z]?[.):]?")
@@ -74,13 +78,15 @@ _TICKED_BOX = re.compile(r"[☑☒✓✔✗✘]|\[[xX*✓✔]\]")
 _CHECKPOINT = re.compile(r"(?:#|(?:CP|KP|C)[-_ ]?)?0*([1-9][0-9]{0,4})", re.IGNORECASE)
 """in a column of checkpoints"""
 _IDLE = OF_FORMS | {
-    *("checkpoints", "place", "UNIT", "LSQB", "RSQB", "LPAR_HOW", "first", "last", "everything"),
-    *("BOTH", "each", "FLOOR", "ORDINAL", "AREA", "FLOOR_NAME", "OUTSIDE", "EXACTLY", "leave_out"),
+    *("checkpoints", "place", "UNIT", "LSQB", "RSQB", "LPAR_HOW", "everything"),
+    *("BOTH", "each", "FLOOR", "AREA", "FLOOR_NAME", "OUTSIDE", "EXACTLY", "leave_out"),
     *("UNIT_S", "Y", "HASH", "OR", "OR_TEST", "HALF", "STRING", "GO", "start"),
 }
 """kinds of mentions that do not change how, when or whether the checkpoint of a row is read"""
 _BESIDE = OF_FORMS - {"MEASURE", "BE_MEASURED", "measuring"}
 """kinds of mentions that belong to the unknown words beside them: `alarm operator`"""
+_ACTING = ("home", "HOME", "ABORT", "WAIT", "PAUSE", "leave_out", "GO_ON", "NEXT_STEP")
+"""kinds of mentions that say what is done in a case"""
 _TICKED = "this row is ticked, or marked as done: it may be left out"
 
 
@@ -112,6 +118,8 @@ class _Row:
     """a cell with a kind alone, which is not what another row names"""
     window: str = ""
     """what a range may mean if it is one of minutes"""
+    ordered: bool = False
+    """whether a cell may say in which order it is read"""
     free: bool = False
     """whether it names all of a kind on a floor, whose order is free"""
 
@@ -165,6 +173,8 @@ def propose_row(row: FormRow, composer: Composer, first: bool = False) -> Propos
     if found.tag and _may_explain(row, found.tag):
         doubt = f"this can be a task, or only say what `{found.tag}` stands for"
         return Proposal(choices=((check,), ()), doubt=doubt)
+    if found.ordered and len(found.doubts) == 1:
+        return Proposal(doubt=found.doubts[0])
     if found.doubts:
         single = [(f"Check checkpoint {id}.",) for id in ids] if len(ids) > 1 else []
         manners = [found.window] if found.window else []
@@ -220,6 +230,29 @@ def _case(row: FormRow, composer: Composer) -> Proposal | None:
     text = composer.understanding.rewritten(join([case, done], " -> "))
     whole = reads(text, composer.understanding)
     return Proposal((sentence(text),)) if whole else composer.propose(text)
+
+
+def naming(row: FormRow) -> ScriptText:
+    """Return the text of a row without the numbers below headings, which name no checkpoint."""
+    idle = [cell for cell in row.cells if _is_bare_number(cell)]
+    return join([c.text for c in row.cells if c not in idle], " | ") if idle else row.place
+
+
+def _is_bare_number(cell: Cell) -> bool:
+    named = cell.role in (CellRole.CHECKPOINT, CellRole.NAME)
+    return cell.column is not None and not named and _BARE.fullmatch(cell.text.content) is not None
+
+
+def _is_unknown_case(row: FormRow, composer: Composer) -> bool:
+    """Return True for `Heavy rain | go home`: what is done in a case that nobody knows, and never
+    without that case."""
+    cells = [cell.text for cell in row.cells if cell.role is not CellRole.NUMBER]
+    if len(cells) < 2:
+        return False
+    case = mentions_in(cells[0], composer.understanding)
+    acts = [mentions_in(cell, composer.understanding) for cell in cells[1:]]
+    needed = [m for m in case.mentions if m.kind not in (*OF_FORMS, "FLOOR", "place")]
+    return bool(case.unknown) and not needed and any(act.has(*_ACTING) for act in acts)
 
 
 def only_floors(found: Mentions) -> bool:
@@ -287,6 +320,8 @@ def _without_checkpoint(row: FormRow, composer: Composer, first: bool) -> Propos
         return Proposal(aside="a heading")
     if row.computed:
         return Proposal(aside="a result that the sheet computes")
+    if plain and _is_unknown_case(row, composer):
+        return Proposal(choices=((),), doubt="Argo does not know this case", complete=True)
     if plain and len(row.cells) == 2 and _needed(row.place, composer):
         # `Robot starts from | starting area 2`, `Gas detected | return to the dock`
         for joint in (" ", ": ") if _needed(row.cells[0].text, composer) else (": ",):
@@ -304,8 +339,6 @@ def _without_checkpoint(row: FormRow, composer: Composer, first: bool) -> Propos
     dropped: tuple[str, ...] = ()
     if len(said) > 1 and ((first and _is_title(said[0], composer)) or _is_label(row, composer)):
         dropped, said = (said[0].content,), said[1:]
-        if mentions_in(said[0], composer.understanding).has(*RETURNING):
-            return Proposal(choices=((sentence(said[0]),), ()))  # `Heavy rain | go home`
     beside = [cell.text for cell in row.cells if cell.role not in roles]
     beside = [text for text in beside if not _IDLE_CELL.fullmatch(text.content)]
     asking = [text for text in beside if _asks(text, composer)]
@@ -367,6 +400,8 @@ def _is_title(text: ScriptText, composer: Composer) -> bool:
     """Return True if the first line of a sheet, or its first cell, can be the title: `WEEKLY
     WALK-DOWN Floors 5 and 6`, `TIME PLAN RUN 12`."""
     mentions = mentions_in(text, composer.understanding)
+    if pattern(r"\b<driving>\b").search(text.content) is not None:
+        return False  # `Speed | slow`
     areas = [m for m in mentions.of("place") if not isinstance(m.value, tuple)]
     if areas or mentions.has("checkpoints", "pronoun", "everything"):
         return False
@@ -425,6 +460,16 @@ def _read_sheet_cell(cell: Cell, found: _Row, composer: Composer) -> bool:
             return True
         case CellRole.FLOOR if _floors(cell.text, composer):
             return True
+        case CellRole.ORDER if nothing or place_in_order(text) is not None:
+            return True
+        case CellRole.ORDER:
+            found.doubts.append(_when(text))
+            found.ordered = True
+            return True
+        case CellRole.PRIORITY:
+            if not nothing:
+                found.doubts.append(f"`{text}` can say how important this is")
+            return True
         case CellRole.WINDOW:
             window = _RANGE.fullmatch(text)
             if window is None:
@@ -449,6 +494,10 @@ def _read_sheet_cell(cell: Cell, found: _Row, composer: Composer) -> bool:
         case CellRole.REMARK:
             return _read_remark(cell.text, found, composer)
     return False
+
+
+def _when(content: str) -> str:
+    return f"`{content}` can say when this is done"
 
 
 def _may_be_time(found: re.Match[str], composer: Composer) -> bool:
@@ -491,7 +540,10 @@ def _is_normal(text: str, form: Mapping[str, str]) -> bool:
 def _read_remark(text: ScriptText, found: _Row, composer: Composer) -> bool:
     found.times = _times(mentions_in(text, composer.understanding))
     if not _read_doubts(text.content, found, composer):
-        if _asks(text, composer):
+        if _orders(text, mentions_in(text, composer.understanding), composer):
+            found.doubts.append(_when(text.content))
+            found.ordered = True
+        elif _asks(text, composer):
             found.doubts.append(f"`{text.content}` can change what is done here")
         else:
             found.unused.append(text.content)
@@ -507,12 +559,13 @@ def _read_doubts(content: str, found: _Row, composer: Composer) -> bool:
     """Return True if a cell says that the row is left out, or may say so."""
     prose = composer.understanding.language.prose
     left = _without_fill(content, prose.form)
+    without = missing_reading(content, prose.form)
 
     def has(cues: Mapping[str, str], name: str) -> bool:
         return phrase_pattern(cues[name]).search(left) is not None
 
-    if phrase_pattern(prose.form["nothing"]).fullmatch(content):
-        found.doubts.append(f"`{content}` can mean that this is left out")
+    if without or phrase_pattern(prose.form["nothing"]).fullmatch(content):
+        found.doubts.append(f"`{without or content}` can mean that this is left out")
     elif has(prose.form, "leave_out") or has(prose.cues, "leave_out"):
         found.left_out = True
     elif has(prose.form, "done"):
@@ -529,7 +582,27 @@ def _asks(text: ScriptText, composer: Composer) -> bool:
     mentions = mentions_in(text, composer.understanding)
     if mentions.unknown and mentions.only("EVENT"):
         return False  # `lamp out of order`: of a third thing, as the checkpoint has its own cell
-    return not mentions.only("first", "last", "MEASURE", "ORDINAL", "courtesy")
+    return not mentions.only(*_ORDER_WORDS, "MEASURE", "courtesy")
+
+
+def _orders(text: ScriptText, mentions: Mentions, composer: Composer) -> bool:
+    """Return True if a text may say in which order a row is done: `first`, `3rd`, `then`; not of
+    `last calibration`, which names something else."""
+    content, lexicon = text.content, composer.understanding.language.lexicon
+    short = len(content.split()) <= _FEW_WORDS
+    if mentions.unknown and not (short or mentions.has("checkpoints")):
+        return False  # `tap the glass first`
+    if any(not _before_unknown(m, mentions, content) for m in mentions.of(*_ORDER_WORDS)):
+        return True
+    return says_order(content, lexicon)
+
+
+def _before_unknown(mention: Mention, mentions: Mentions, content: str) -> bool:
+    """Return True if a word that nobody knows stands directly behind a mention."""
+    return any(
+        mention.end <= word.start and not content[mention.end : word.start].strip()
+        for word in mentions.unknown
+    )
 
 
 def _without_fill(text: str, form: Mapping[str, str]) -> str:
@@ -569,7 +642,7 @@ def _read_cell(text: ScriptText, found: _Row, composer: Composer) -> None:
     for mention in named:
         kinds = [noun for noun in mention.nouns if has_no_floor(noun)]
         with suppress(RefusedError):
-            checkpoints = _of_floor(mention, section, composer.known)
+            checkpoints = of_floor(mention, section, composer.known)
             if any(isinstance(noun, TheOne) for noun in kinds) and len(checkpoints) != 1:
                 found.unclear = content
             found.free = not found.named and (section is not None or not kinds)
@@ -594,7 +667,12 @@ def _read_cell(text: ScriptText, found: _Row, composer: Composer) -> None:
         return
     unused = [*_unused(content, mentions, form)]
     found.unused += unused or _told(text, composer) or mentions.idle
-    others = [mention for mention in mentions.mentions if mention.kind not in _IDLE]
+    if _orders(text, mentions, composer):
+        found.doubts.append(_when(content))
+        found.ordered = True
+        return
+    found.unused += [content[m.start : m.end] for m in mentions.of(*_ORDER_WORDS)]
+    others = [m for m in mentions.mentions if m.kind not in (*_IDLE, *_ORDER_WORDS)]
     made = composer.propose(text).sentences if others and named else ()
     asked = content.rstrip().endswith("?")
     if made and not found.sentences:
@@ -618,7 +696,7 @@ def _after_row(text: ScriptText, id: int, composer: Composer) -> Iterator[Senten
     yield from (made,) if made else ()
 
 
-def _of_floor(mention: Mention, section: Mention | None, known: Known) -> Sequence[CheckpointInfo]:
+def of_floor(mention: Mention, section: Mention | None, known: Known) -> Sequence[CheckpointInfo]:
     """Return the checkpoints that a part of a row names; `all valves`, and `the valve` if it is the
     only one, are those on the floor of the heading above. What another row names is not meant."""
     nouns = mention.value

@@ -4,6 +4,7 @@ from io import BytesIO
 from pathlib import Path
 
 import pytest
+from docx.enum.style import WD_STYLE_TYPE
 from openpyxl.comments import Comment
 from openpyxl.styles import Font
 
@@ -467,3 +468,59 @@ def test_a_missing_extra_is_named_with_what_to_install(monkeypatch: pytest.Monke
     with pytest.raises(Unavailable, match=r"documents.*pip install") as refused:
         decode_document(workbook(), "round.xlsx")
     assert "\n" not in str(refused.value)
+
+
+def test_hidden_words_are_reported_with_their_place() -> None:
+    def fill(document) -> None:
+        hidden = document.styles.add_style("Inner", WD_STYLE_TYPE.CHARACTER)
+        hidden.font.hidden = True
+        document.add_paragraph("Check #1.")
+        document.add_paragraph("Check #4").add_run(" twice").font.hidden = True
+        document.add_paragraph("Check #5. ").add_run("Not today.", style="Inner")
+        table = document.add_table(rows=2, cols=2)
+        for cell, text in zip(table._cells, ("Valve", "Remark", "R31", ""), strict=True):
+            cell.text = text
+        table.cell(1, 1).paragraphs[0].add_run("skip").font.hidden = True
+
+    document = read(word(fill), "round.docx")
+    assert [(note.message, note.place) for note in document.notes] == [
+        ("`twice` is hidden, and is not read", "paragraph 2"),
+        ("`Not today.` is hidden, and is not read", "paragraph 3"),
+        ("`skip` is hidden, and is not read", "table 1, row 2, column 2"),
+    ]
+
+
+def test_a_hidden_row_of_a_text_document_is_asked_about(catalog: Catalog) -> None:
+    def fill(document) -> None:
+        table = document.add_table(rows=3, cols=2)
+        texts = ("Point", "Floor", "PG 1", "1", "R12", "2")
+        for cell, text in zip(table._cells, texts, strict=True):
+            cell.text = text
+        table.rows[2]._tr.get_or_add_trPr().append(element('<w:hidden w:val="1"/>'))
+
+    line = draft_of(word(fill), "round.docx", catalog).lines[-1]
+    assert (line.state, line.reason) == (LineState.OPEN, "this row is hidden in the document")
+
+
+def test_rows_of_a_table_have_bars_alike() -> None:
+    rows = (
+        ("Seq.", "Point", "Normal", "Remark"),
+        (10, "PG 1", "3-7", None),
+        (20, "R12", None, "x"),
+    )
+    lines = texts(read(workbook(rows), "round.xlsx"))
+    assert [line for line in lines if line] == [
+        "| Seq. | Point | Normal | Remark |",
+        "| 10 | PG 1 | 3-7 |  |",
+        "| 20 | R12 |  | x |",
+    ]
+
+
+def test_the_order_of_rows_in_files_is_asked_about(catalog: Catalog) -> None:
+    rows = (("Seq.", "Point", "If abnormal"), (20, "PG 1", None), (10, "R12", "return to dock"))
+    separated = "\n".join(",".join(str(cell or "") for cell in row) for row in rows)
+    for content, name in ((workbook(rows), "round.xlsx"), (separated.encode(), "round.csv")):
+        draft = draft_of(content, name, catalog)
+        assert draft.lines[0].reason == "`Seq.` can give another order of the rows"
+        assert draft.lines[0].state is LineState.OPEN
+        assert draft.lines[0].choices[0][0] == "Check checkpoint 5."

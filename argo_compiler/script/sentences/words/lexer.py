@@ -44,6 +44,10 @@ _FILLED = frozenset(["NUMBER", "STRING"])
 _PLACED = frozenset(["AT_END", "AT_BEGIN", "THERE", "INSTEAD"])
 """words that say where something stands in the script, or on the site"""
 
+_ORDERING = frozenset(["FIRST", "AT_END", "AT_BEGIN"])
+_RANKING = frozenset(["ORDINAL", "SEQUENCE", "COMES_NEXT", "HASTE"])
+"""words that say of the order, unless another word stands behind them: `third party`"""
+
 
 # A sentence is looked at several times: what it is, whether it makes sense, what it says.
 @lru_cache(maxsize=8192)
@@ -109,6 +113,18 @@ def _opening(whole: list[Word], found: list[Word]) -> list[Word]:
     if not first or any(w.type == "SEQUENCE" for w in whole if w.start > first[0].start):
         return []
     return first
+
+
+def says_order(content: str, lexicon: Lexicon) -> bool:
+    """Return True if a text may say in which order something is done: `first`, `3rd`, `then`; not
+    of `third party` or `then R25`, where such a word belongs to what stands behind it."""
+    words = all_words(content, lexicon)
+    behind = [*(word.type for word in words[1:]), ""]
+    return any(
+        (word.type in _ORDERING and after != "WORD")
+        or (word.type in _RANKING and after in ("", "SIGN", "COLON"))
+        for word, after in zip(words, behind, strict=True)
+    )
 
 
 def all_words(text: str, lexicon: Lexicon) -> list[Word]:

@@ -27,14 +27,17 @@ _RELATIONS = {
     "AT_LEAST": "at least",
     "AT_MOST": "at most",
 }
-_OPPOSITES = {"above": "at most", "below": "at least", "at least": "below", "at most": "above"}
+_OPPOSITES = {
+    **{"above": "at most", "below": "at least", "at least": "below", "at most": "above"},
+    **{"between": "outside", "outside": "from", "normal": "abnormal", "abnormal": "normal"},
+}
 _AMOUNTS = ("QUANTITY", "NUMBER")
 _IFS = ("IF", "UNLESS", "IF_ONLY")
-_NEGATIONS = ("NOT", "UNLESS")
+_NEGATIONS = ("NOT",)
 _MOST_SUBJECTS = 3
 """checkpoints of which each may be the one whose reading decides"""
 _TIMES = {1: "once", 2: "twice"}
-_COUNTED = (["KIND"], ["UNIT_S"], ["RETRY"], ["TIMES"], ["ROUNDS_OF"])
+_COUNTED = ("KIND", "UNIT_S", "RETRY", "TIMES", "ROUNDS_OF")
 """types of words behind a number that counts"""
 _REACH = 2
 """words between a relation and its amount"""
@@ -98,9 +101,13 @@ def _by_limit(of: OpenText, limit: _Limit) -> Iterator[Sentences]:
     if not (named or subjects):
         subjects = [one for one in known.memory.so_far.values() if limit.fits(one)][-1:]
     every = next(iter(of.lengths("DURATION")), None)
+    asked = _first_of(_IFS, of)  # `check R7 and PG 1, and if it is above 5 bar, go home`
+    ahead = [c for m in named if asked is not None and m.end <= asked for c in of.named_by(m)]
     for subject in subjects[:_MOST_SUBJECTS]:
         case = f"checkpoint {subject.id} is {limit.words}"
-        check = () if subject.id in known.memory.so_far else (f"Check checkpoint {subject.id}.",)
+        ids = [c.id for c in ahead] if subject in ahead else [subject.id]
+        read = [id for id in dict.fromkeys(ids) if id not in of.above]
+        check = (f"Check {of.words_of(read)}.",) if read else ()
         if every is not None and "UNTIL" in of.types:
             check_every = f"heck checkpoint {subject.id} every {every} until it is"
             last = _until(of, limit)
@@ -188,16 +195,34 @@ def _by_span(of: OpenText) -> Iterator[Sentences]:
 def _retries(of: OpenText) -> int:
     """Return how often a reading is tried again: `up to three attempts`, of which the first is
     none; 0 if a text does not say that."""
-    counts = [n for n in of.counts("NUMBER", "TIMES", "MOST_TIMES") if n is not None]
+    words = of.composer.understanding.words(of.text)
+    figures = [w.value for w in words if w.type in ("NUMBER", "TIMES", "MOST_TIMES")]
+    counts = [one.whole for one in figures if isinstance(one, Figure) and one.whole]
     tries = next((name for name in ("retrying", "trying") if _tells(name, of)), "")
     if len(counts) != 1 or not (tries or of.found.has("RETRY")) or len(of.demands.asked) != 1:
         return 0
-    again = tries != "trying" or of.found.has("RETRY", "MORE", "again")
+    again = tries != "trying" or of.found.has("MORE") or _tells("again", of)
     return counts[0] if again else counts[0] - 1
 
 
 def _limit(of: OpenText) -> _Limit | None:
-    """Return the limit of a text, if it has one: `over 6 bar`, `outside 40 to 50°`, `too high`."""
+    """Return the limit of a text, if it has one, also behind `unless`."""
+    limit = _stated_limit(of)
+    words = of.composer.understanding.words(of.text)
+    cases = [w for w in words if limit and w.start < limit.start and w.type in _IFS][-1:]
+    unless = any(one.type == "UNLESS" or one.value == "unless" for one in cases)
+    if limit is None or not unless:
+        return limit
+    relation, _, rest = limit.words.partition(" ")
+    if limit.amount:
+        relation, rest = limit.words.removesuffix(f" {limit.amount}"), limit.amount
+    opposite = _OPPOSITES.get(relation)
+    rest = rest.replace(" and ", " to ")
+    return None if opposite is None else replace(limit, words=f"{opposite} {rest}".strip())
+
+
+def _stated_limit(of: OpenText) -> _Limit | None:
+    """Return the limit that a text states: `over 6 bar`, `outside 40 to 50°`, `too high`."""
     words = of.composer.understanding.words(of.text)
     for i, word in enumerate(words):
         behind = words[i + 1 : i + 2 + _REACH]
@@ -215,16 +240,21 @@ def _limit(of: OpenText) -> _Limit | None:
             amount = _amount(amounts[0], of)
             words_of_it = f"{_relation(words, i)} {amount}"
             return _Limit(words_of_it, word.start, amounts[0].end, _unit(amounts[0]), amount)
+        elif word.type == "STATE" and word.value in ("normal", "abnormal") and i > 0:
+            negated = any(one.type == "NOT" for one in words[max(0, i - _REACH) : i])
+            state = _OPPOSITES[word.value] if negated else word.value
+            return _Limit(state, word.start, word.end)
     return _normal_limit(of)
 
 
 def _counts(word: Word, words: Sequence[Word], of: OpenText) -> bool:
     """Return True for a number that counts something: `at most 3 attempts`, `more than two
     valves`, `at least 5 but at most 8 minutes`."""
-    behind = [one.type for one in words if one.start >= word.end][:1]
+    behind = sorted((one.start, one.type) for one in words if one.start >= word.end)
+    next_type = behind[0][1] if behind else ""
     tries = of.found.has("RETRY") or _tells("trying", of) or _tells("retrying", of)
     return word.type == "NUMBER" and (
-        of.found.has("SPAN") or behind in _COUNTED or (tries and "IF" not in of.types)
+        of.found.has("SPAN") or next_type in _COUNTED or (tries and "IF" not in of.types)
     )
 
 
@@ -271,27 +301,28 @@ def _by_failure(of: OpenText) -> Iterator[Sentences]:
         named = [*known.memory.last]
     if not named:
         named, rest = _named_in(of.found, of), of.found.without("checkpoints")
-    ids = [*dict.fromkeys(c.id for c in named)]
+    ids = [*dict.fromkeys(c.id for c in reversed(named))]
     if len(ids) != 1 and not known.memory.so_far:
         return
     asked = _first_of(_IFS, of)  # `check R7, and if it can't be read, go home`
     ahead = of.found.of("checkpoints")[:1]
     checks = bool(ahead and asked is not None and ahead[0].end <= asked and len(ids) == 1)
     check = (f"Check checkpoint {ids[0]}.",) if checks and ids[0] not in of.above else ()
-    case = f"If checkpoint {ids[0]} fails" if len(ids) == 1 else "If a reading fails"
-    one = len(ids) == 1
+    cases = [f"If checkpoint {id} fails" for id in ids[:_MOST_SUBJECTS]]
+    cases += ["If a reading fails"] if len(ids) != 1 else []
     counts = of.counts("TIMES", "MORE", "MOST_TIMES", "NUMBER")
     times = _TIMES.get(counts[0] or 1, f"{counts[0]} times") if counts else "once"
     acts = [a for a in of.acts(rest) if not a.startswith("wait")]
-    likely = [(f"{case}, {act}.",) for act in acts]
-    acts = acts or [of.return_words, "abort the mission"] if one else acts
-    if of.found.has("RETRY", "again", "MORE") or _tells("trying", of):
-        again = f"{case}, try again {times}."
-        yield from ((*check, again, f"If it still fails, {act}.") for act in acts)
-        yield (*check, again)
-    yield from ((*check, *one) for one in likely)
-    yield (*check, f"{case}, go on with the next checkpoint.")
-    yield from ((*check, f"{case}, {act}.") for act in acts)
+    for case in cases:
+        likely = [(f"{case}, {act}.",) for act in acts]
+        others = acts or ([of.return_words, "abort the mission"] if len(ids) == 1 else [])
+        if of.found.has("RETRY", "again", "MORE") or _tells("trying", of):
+            again = f"{case}, try again {times}."
+            yield from ((*check, again, f"If it still fails, {act}.") for act in others)
+            yield (*check, again)
+        yield from ((*check, *one) for one in likely)
+        yield (*check, f"{case}, go on with the next checkpoint.")
+        yield from ((*check, f"{case}, {act}.") for act in others)
 
 
 def _first_of(types: Collection[str], of: OpenText) -> int | None:

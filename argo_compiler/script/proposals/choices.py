@@ -5,7 +5,7 @@ taken it. The likeliest comes first.
 """
 
 import re
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -161,7 +161,7 @@ def _by_acts(of: OpenText) -> Iterator[Sentences]:
     elif (
         not of.found.has("checkpoints", "EVENT")
         and of.found.has(*HOME, "END")
-        and not any(of.lengths("DURATION"))
+        and not any(of.lengths("DURATION", "MOST_TIME"))
     ):
         yield as_sentences([of.return_words])
 
@@ -178,21 +178,23 @@ def _by_mentions(of: OpenText) -> Iterator[Sentences]:
         named |= {c.id: c for c in found}
         alike = () if found else of.composer.known.alike(mention)
         yield from ((f"Check checkpoint {c.id}.",) for c in alike)
+    again = of.composer.known.memory.last if of.found.has("pronoun") and not named else ()
+    counts = [count for count in of.counts("TIMES") if count is not None and count > 1]
+    for checkpoint in (*named.values(), *again) if len(counts) == 1 else ():
+        if len(named) + len(again) == 1:
+            yield (f"Check checkpoint {checkpoint.id} {counts[0]} times.",)
     if 0 < len(named) <= _MOST_CHOSEN:
         words = checkpoint_words(list(named.values()))
         if len(named) > 1 and any(map(_is_of_kind, of.found.of("checkpoints"))):
             yield (f"Check {words} in any order.",)
         yield (f"Check {words}.",)
-        yield (f"{_sparing(named, of)} {words}.",)
+        yield of.leaving_out(list(named))
         for length in filter(None, of.lengths("DURATION")):
             limited = of.is_limited(of.found)
-            if not limited:
+            if not (limited or of.found.has("EVERY")):
                 yield (f"Wait for {length}.", f"Check {words}.")
             if limited or of.type_before(of.found.of("DURATION")[0]) == "IN":
                 yield (f"Check {words} not later than {length} after the start.",)
-        counts = [count for count in of.counts("TIMES") if count is not None and count > 1]
-        if len(named) == len(counts) == 1:
-            yield (f"Check {words} {counts[0]} times.",)
         if len(named) <= _FEW:
             yield from ((f"Check checkpoint {id}.",) for id in named)
 
@@ -242,6 +244,7 @@ def _by_header(of: OpenText) -> Iterator[Sentences]:
 def _homewards(of: OpenText, limits: Sequence[str]) -> Iterator[Sentences]:
     """Yield a return at a time: `go home at 30 minutes`; `finish by 20 minutes` is a limit."""
     times = of.found.of("DURATION")
+    ends = "END" in of.types  # `finish by 20 minutes`
     when = of.type_before(times[0]) if times else ""
     for limit in limits:
         if when in ("AT", "AFTER", "IN"):
@@ -249,6 +252,8 @@ def _homewards(of: OpenText, limits: Sequence[str]) -> Iterator[Sentences]:
         if when in ("AFTER", "IN"):
             length = of.lengths("DURATION")[0]
             yield (f"Wait for {length}.", f"{_RETURN}.")
+        if when not in ("AT", "AFTER", "IN"):
+            yield (limit,) if ends else (limit, f"{_RETURN}.")
 
 
 def _by_dashes(of: OpenText) -> Iterator[Sentences]:
@@ -280,11 +285,11 @@ def _by_figures(of: OpenText) -> Iterator[Sentences]:
     if ids and {*ids} <= {c.id for c in of.composer.known.catalog.checkpoints}:
         checkpoints = {c.id: c for c in of.composer.known.catalog.checkpoints}
         yield (f"Check {checkpoint_words([checkpoints[id] for id in ids])}.",)
-    if of.found.has("checkpoints", "place", "AREA"):
+    if of.areas or of.found.has("checkpoints", "place", "AREA"):
         return
     figures = {of.text.content[m.start : m.end] for m in of.found.of("NUMBER")}
     known = of.composer.known
-    steps = of.found.has("STEP") and figures <= known.items.keys()
+    steps = of.found.has("STEP", "swapping") and figures <= known.items.keys()
     items = {known.items[figure] for figure in figures if figure in known.items}
     alike = [
         c
@@ -293,15 +298,10 @@ def _by_figures(of: OpenText) -> Iterator[Sentences]:
     ]
     alike.sort(key=lambda c: (c.id not in items, c.id not in known.memory.so_far))
     for checkpoint in alike:
-        verb = "Check"
         if of.found.has("leave_out", "forbidding", "NOT", "correction", "DELETE", "past"):
-            verb = _sparing({checkpoint.id}, of)
-        yield (f"{verb} checkpoint {checkpoint.id}.",)
-
-
-def _sparing(ids: Collection[int], of: OpenText) -> str:
-    """Return how checkpoints are left out: those that are asked for above are deleted."""
-    return "Delete" if {*ids} <= {*of.above} else "Do not check"
+            yield of.leaving_out([checkpoint.id])
+        else:
+            yield (f"Check checkpoint {checkpoint.id}.",)
 
 
 _WAYS: tuple[_Way, ...] = (

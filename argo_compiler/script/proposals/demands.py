@@ -19,6 +19,7 @@ from argo_compiler.script.proposals.known import Known, is_number
 from argo_compiler.script.proposals.mentions import Mention, Mentions
 from argo_compiler.script.sentences.tree.nouns import AllOf, TheOne
 from argo_compiler.script.sentences.tree.places import AreaLocation, DockLocation
+from argo_compiler.script.sentences.words.amounts import Length
 from argo_compiler.script.sentences.words.numbers import Figure
 from argo_compiler.script.sentences.words.prose import phrase_pattern
 from argo_compiler.script.sentences.words.word import Word
@@ -36,6 +37,8 @@ _PARTING = ("AND_", "NEXT", "BUT", "JOINT", "ELSE", "COLON")
 """how types of words begin that part clauses"""
 _COMMA = re.compile(r"[,;.:!?]\s|\s[-–>]+\s")
 _RELATIONS = ("BEFORE", "AFTER", "EARLIEST")
+_TIMES = {1: ("once",), 2: ("twice",)}
+_STOP = re.compile("[,;.:!?-]")
 _ADJACENT = 5
 """characters between a word and the checkpoint that it is of, perhaps with an article"""
 _NUMBERED = re.compile(r"checkpoint (\d+)")
@@ -69,8 +72,10 @@ class Demands:
     """whether it names the area of the start"""
     returns: bool
     """whether it sends the robot back, or names a docking station"""
-    lengths: tuple[str, ...]
-    """its times"""
+    amounts: tuple[tuple[str, ...], ...]
+    """its times, and how often something is done; each in all words that a choice may have"""
+    swaps: bool
+    """whether two checkpoints change places"""
     spaced: bool
     """whether it has a time between two readings"""
 
@@ -79,6 +84,8 @@ class Demands:
         if self.conditional and not any(map(_CONDITIONAL.search, sentences)):
             return False
         if self.starts and not self.returns and any(map(_AT_AREA.match, sentences)):
+            return False
+        if self.swaps and not any(map(_EDIT.match, sentences)):
             return False
         if self.spaced and not any(sentence.startswith("Wait ") for sentence in sentences):
             return False
@@ -91,10 +98,10 @@ class Demands:
         said = " ".join(sentences)
         edits = any(map(_EDIT.match, sentences))
         lacking = set() if edits else {*self.asked, *self.spared} - {*_ids(said)}
-        times = sum(length not in said for length in self.lengths)
+        amounts = sum(not any(words in said for words in one) for one in self.amounts)
         ends = (self.starts and "Start " not in said, self.returns and not _END.search(said))
         left_out = 0 if self._spares(sentences) else len(self.spared) + len(self.asked)
-        return len(lacking) + times + sum(ends) + left_out
+        return len(lacking) + amounts + sum(ends) + left_out
 
     def _names(self, sentences: Sentences) -> bool:
         """Return True if a choice acts on no other checkpoints than the text names, and on none
@@ -136,7 +143,7 @@ class Demands:
 
 def demands_of(text: ScriptText, found: Mentions, known: Known) -> Demands:
     """Return the demands of a text."""
-    words = known.understanding.words(text)
+    words = sorted(known.understanding.words(text), key=lambda word: word.start)
     named = {m: named_by(m, words, known) for m in found.of("checkpoints")}
     types = {word.type for word in words} | {mention.kind for mention in found.mentions}
     told = types | {
@@ -175,9 +182,26 @@ def demands_of(text: ScriptText, found: Mentions, known: Known) -> Demands:
         conditional=in_known_case,
         starts=found.has("start", "START") and any(map(_is_area, found.of("place"))),
         returns=returns(found),
-        lengths=tuple(filter(None, (length_words(m.value) for m in found.of("DURATION")))),
+        amounts=tuple(_amounts(found)),
+        swaps=len(asked) != 1 and any(_is_of_points(m, text, found) for m in found.of("swapping")),
         spaced=found.has("SPAN"),
     )
+
+
+def _is_of_points(swapping: Mention, text: ScriptText, found: Mentions) -> bool:
+    """Return False for `swap the pump`."""
+    behind = [word.start for word in found.unknown if word.start >= swapping.end][:1]
+    between = [text.content[swapping.end : start] for start in behind]
+    return not any(len(some) <= _ADJACENT and not _STOP.search(some) for some in between)
+
+
+def _amounts(found: Mentions) -> Iterator[tuple[str, ...]]:
+    """Yield the words that choices may have for the times of a text: `twice` is `2 times`."""
+    for mention in found.of("DURATION", "MOST_TIME", "TIMES"):
+        if isinstance(mention.value, Length) and (words := length_words(mention.value)):
+            yield (words,)
+        elif isinstance(mention.value, Figure) and (count := mention.value.whole):
+            yield (f"{count} times", *_TIMES.get(count, ()))
 
 
 def _is_area(place: Mention) -> bool:
@@ -194,8 +218,9 @@ def named_by(mention: Mention, words: Sequence[Word], known: Known) -> list[Chec
     """Return the checkpoints that a part names; none if that is not clear: `two valves`."""
     with suppress(RefusedError):
         checkpoints = known.checkpoints([mention])
-        before = [word for word in words if word.end <= mention.start][-1:]
-        counts = [word.value for word in before if word.type == "NUMBER"]
+        before = [word for word in words if word.end <= mention.start]
+        last = max((word.end for word in before), default=0)
+        counts = [word.value for word in before if word.end == last and word.type == "NUMBER"]
         of_kind = all(isinstance(noun, AllOf | TheOne) for noun in mention.nouns)
         counted = of_kind and any(
             isinstance(count, Figure) and count.whole != len(checkpoints) for count in counts
@@ -229,8 +254,11 @@ def _all_named(
     named = found.of("checkpoints")
     if found.has("place") and not all(map(_is_labelled, named)):
         return None  # `on the top floor the level gauge`
-    numbers = {text.content[m.start : m.end] for m in found.of("NUMBER")}
-    wholes = [m.value.whole for m in found.of("NUMBER") if isinstance(m.value, Figure)]
+    words = known.understanding.words(text)
+    limits = (*_READINGS, "AND_AMOUNT")
+    figures = [m for m in found.of("NUMBER") if _type_before(m, words, text) not in limits]
+    numbers = {text.content[m.start : m.end] for m in figures}
+    wholes = [m.value.whole for m in figures if isinstance(m.value, Figure)]
     ids = [*ids, *(known.items[number] for number in numbers if number in known.items)]
     ids += [c.id for c in known.catalog.checkpoints if c.id in wholes]
     for mention in named:
@@ -268,7 +296,8 @@ def _left_out(
     named = found.of("checkpoints")
     kept = [m for m in named if _type_before(m, words, text) != "EXCEPT"]
     inside = [(m.start, m.end) for m in named]
-    joints = [word.start for word in words if word.type.startswith(_PARTING)]
+    parting = [w for w in words if w.type.startswith(_PARTING) or w.type in _IFS]
+    joints = [word.start for word in parting]
     commas = [comma.start() for comma in _COMMA.finditer(text.content)]
     cuts = sorted(at for at in (*joints, *commas) if not any(a < at < b for a, b in inside))
     left_out: list[Mention] = []

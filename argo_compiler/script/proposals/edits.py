@@ -29,10 +29,6 @@ def by_leaving_out(of: OpenText) -> Iterator[Sentences]:
     demands = of.demands
     if not demands.spared or demands.conditional:
         return
-    old = [id for id in demands.spared if id in of.above]
-    new = [id for id in demands.spared if id not in of.above]
-    left_out = [f"Delete {of.words_of(old)}."] if old else []
-    left_out += [f"Do not check {of.words_of(new)}."] if new else []
     asked = [id for id in demands.asked if id not in of.above]
     both = of.found.has("BUT", "MEASURE", "REPEAT", "in_place_of", "correction", "EXCEPT")
     ids = [c.id for mention in of.found.of("checkpoints") for c in of.named_by(mention)]
@@ -40,7 +36,7 @@ def by_leaving_out(of: OpenText) -> Iterator[Sentences]:
         both or not of.found.unknown or any(ids.count(id) > 1 for id in demands.spared)
     )  # `R7 and R12 - skip R12`
     checks = [f"Check {of.words_of(asked)}."] if asked and both else []
-    yield (*left_out, *checks)
+    yield (*of.leaving_out(demands.spared), *checks)
 
 
 def by_sequence(of: OpenText) -> Iterator[Sentences]:
@@ -59,7 +55,7 @@ def by_sequence(of: OpenText) -> Iterator[Sentences]:
 def by_swaps(of: OpenText) -> Iterator[Sentences]:
     """Yield how two of those above change places: `steps 2 and 3 are swapped`."""
     named = [id for id in dict.fromkeys(_named(of)) if id in of.above]
-    if not of.found.has("swapping") or len(named) != _BOTH:
+    if not of.demands.swaps or len(named) != _BOTH:
         return
     first, second = sorted(named, key=of.above.index)
     before_second = of.above[of.above.index(second) - 1]
@@ -115,7 +111,10 @@ def by_edits(of: OpenText) -> Iterator[Sentences]:
     id, others = ids[0], [one for one in ids[1:] if one in above]
     verb = "Move" if id in above else "Add"
     yield from _beside(of, f"{verb} checkpoint {id}", [one for one in others if one != id])
-    if of.found.has("BEFORE", "first", "AT_BEGIN") and id != above[0]:
+    begins = of.found.has("first", "AT_BEGIN") or (
+        of.found.has("BEFORE") and not of.demands.sequences
+    )
+    if begins and id != above[0]:
         yield (f"{verb} checkpoint {id} before checkpoint {above[0]}.",)
     if of.found.has("pronoun") and not others and not of.found.has("BETWEEN"):
         last = [c.id for c in known.memory.last[:1] if c.id != id]

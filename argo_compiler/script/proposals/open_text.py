@@ -60,16 +60,20 @@ class OpenText:
     @property
     def areas(self) -> list[int]:
         """The numbers of the areas that are named; also of `starting area is 2`."""
-        places = (mention.value for mention in self.found.of("place"))
-        docks = (one.area if isinstance(one, DockLocation) else one for one in places)
-        areas = [place.area for place in docks if isinstance(place, AreaLocation)]
-        numbers = [m for m in self.found.of("NUMBER") if isinstance(m.value, Figure)]
-        if not self.found.has("AREA"):  # `dock at 2`
-            docking = self.found.has("place", "DOCK", "HOME", "home")
-            numbers = [m for m in numbers if docking and self.type_before(m) in _AT]
-        wholes = [m.value.whole for m in numbers if isinstance(m.value, Figure)]
+        numbered = self.found.has("AREA")
+        docking = self.found.has("place", "DOCK", "HOME", "home")
+        areas: list[int | None] = []
+        for mention in self.found.of("place", "NUMBER"):
+            place = mention.value
+            if isinstance(place, DockLocation):
+                place = place.area
+            if isinstance(place, AreaLocation):
+                areas.append(place.area)
+            elif isinstance(place, Figure):
+                at = docking and self.type_before(mention) in _AT  # `dock at 2`
+                areas += [place.whole] if at or numbered else []
         known = self.composer.known.catalog
-        return areas or [n for n in wholes if n is not None and known.area(n)]
+        return [area for area in areas if area is not None and known.area(area)]
 
     @property
     def comes_back(self) -> bool:
@@ -116,6 +120,13 @@ class OpenText:
         catalog = {c.id: c for c in self.composer.known.catalog.checkpoints}
         return checkpoint_words([catalog[id] for id in ids])
 
+    def leaving_out(self, ids: Sequence[int]) -> Sentences:
+        """Return how checkpoints are left out: those that are asked for above are deleted."""
+        old = [id for id in ids if id in self.above]
+        new = [id for id in ids if id not in self.above]
+        pairs = (("Delete", old), ("Do not check", new))
+        return tuple(f"{verb} {self.words_of(some)}." for verb, some in pairs if some)
+
     def acts(self, mentions: Mentions, subject: CheckpointInfo | None = None) -> list[str]:
         """Return what a text asks for, in its order: to start, to wait, to check, to end or to
         return. `subject`: the checkpoint that `again` means."""
@@ -130,7 +141,7 @@ class OpenText:
                 waits = [] if named else waits
             elif mention.kind == "DURATION" and (length := length_words(mention.value)):
                 checked = bool(acts) and acts[-1].startswith("check")
-                if limited:
+                if limited or self.found.has("EVERY"):
                     continue  # `home within 45 min`
                 if self.type_before(mention) not in _WHEN:
                     acts.append(f"wait for {length}")

@@ -5,14 +5,22 @@ taken it. The likeliest comes first.
 """
 
 import re
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.script.documents.source import ScriptText
 from argo_compiler.script.proposals.cases import by_cases
 from argo_compiler.script.proposals.composing import Composer
-from argo_compiler.script.proposals.edits import by_corrections, by_edits
+from argo_compiler.script.proposals.edits import (
+    by_corrections,
+    by_edits,
+    by_leaving_out,
+    by_numbers,
+    by_sequence,
+    by_swaps,
+)
 from argo_compiler.script.proposals.frames import KINDS, Sentences, sentences_of
 from argo_compiler.script.proposals.mentions import (
     Mention,
@@ -23,6 +31,7 @@ from argo_compiler.script.proposals.open_text import HOME, OpenText, as_sentence
 from argo_compiler.script.proposals.paraphrasing import reads, rephrased, sentence
 from argo_compiler.script.proposals.parts import by_parts
 from argo_compiler.script.proposals.rounds import by_rounds
+from argo_compiler.script.proposals.taking import is_understood
 from argo_compiler.script.sentences.tree.nouns import AllOf, Pronoun, TheOne
 from argo_compiler.script.sentences.words.prose import phrase_pattern
 from argo_compiler.script.sentences.words.without_effect import MISPLACED
@@ -48,6 +57,7 @@ _LISTED = re.compile(r"(?<![\w.,#-])\d{1,3}(?:(?:\s*[,;/>+–-]\s*|\s+)\d{1,3}){
 _DASHED = re.compile(r"#?\d{1,3}(?:\s*[-–>]\s*#?\d{1,3}){2,}(?![\w.,]*\d)")
 """three or more numbers with dashes in between: a list, or ranges"""
 _RETURN = "Return to the docking station"
+_Way = Callable[[OpenText], Iterator[Sentences]]
 _ENDLESS = re.compile(r"(?:one |a round )?(?:every|alle) [\w.]+ \w+\.", re.IGNORECASE)
 _AREA = re.compile(r"(?<![\w#-])([^\W\d_])\s?([1-9])(?![\w-])")
 """an area by its initial: `A2`"""
@@ -66,11 +76,18 @@ def choices_of(
     text = _with_areas(text, composer)
     found = mentions_in(text, composer.understanding)
     open_text = OpenText(text, found, composer, (*composer.known.memory.so_far,))
+    with composer.known.unchanged():
+        demands = open_text.demands
+    others: dict[Sentences, None] = {}
     for way in _WAYS if len(text.content) <= _LONGEST else (_by_mentions,):
         with composer.known.unchanged():
-            made |= dict.fromkeys(filter(_is_possible, way(open_text)))
-    made.pop((sentence(text),), None)  # it is open as it is
-    return (*list(made)[:_MOST_CHOICES], ())
+            possible = filter(_is_possible, way(open_text))
+            others |= dict.fromkeys(one for one in possible if _has_sense(one, way, open_text))
+    others.pop((sentence(text),), None)  # it is open as it is
+    if demands.spared:
+        made = dict.fromkeys(filter(demands.met_by, made))
+    made |= dict.fromkeys(sorted(filter(demands.met_by, others), key=demands.missing))
+    return (*list(made)[: _MOST_CHOICES - 1], ())
 
 
 def _is_possible(sentences: Sentences) -> bool:
@@ -80,6 +97,16 @@ def _is_possible(sentences: Sentences) -> bool:
     return (
         bool(sentences) and not endless and not any(s.startswith(_RETURN) for s in sentences[:-1])
     )
+
+
+def _has_sense(sentences: Sentences, way: _Way, of: OpenText) -> bool:
+    """Return False for a choice in the words of the text that would stay open, or that reads what
+    may be no checkpoint: `Read one, then the other.`"""
+    if way not in (_by_pronouns, by_parts):
+        return True
+    types = (of.composer.understanding.types(of.text.replaced(one)) for one in sentences)
+    counts = any(("MEASURE", "NUMBER") in pairwise(one) for one in types)
+    return not counts and is_understood(sentences, of.composer.known)
 
 
 # ---- with pronouns replaced
@@ -131,7 +158,11 @@ def _by_acts(of: OpenText) -> Iterator[Sentences]:
     acts = of.acts(of.found, of.composer.known.last_named)
     if len(acts) > 1 and not of.found.has("IF", "UNLESS", "UNTIL", "ELSE", "EVENT"):
         yield as_sentences(acts)
-    elif not of.found.has("checkpoints", "EVENT") and of.found.has(*HOME, "END"):
+    elif (
+        not of.found.has("checkpoints", "EVENT")
+        and of.found.has(*HOME, "END")
+        and not any(of.lengths("DURATION", "MOST_TIME"))
+    ):
         yield as_sentences([of.return_words])
 
 
@@ -147,14 +178,23 @@ def _by_mentions(of: OpenText) -> Iterator[Sentences]:
         named |= {c.id: c for c in found}
         alike = () if found else of.composer.known.alike(mention)
         yield from ((f"Check checkpoint {c.id}.",) for c in alike)
+    again = of.composer.known.memory.last if of.found.has("pronoun") and not named else ()
+    counts = [count for count in of.counts("TIMES") if count is not None and count > 1]
+    for checkpoint in (*named.values(), *again) if len(counts) == 1 else ():
+        if len(named) + len(again) == 1:
+            yield (f"Check checkpoint {checkpoint.id} {counts[0]} times.",)
     if 0 < len(named) <= _MOST_CHOSEN:
         words = checkpoint_words(list(named.values()))
         if len(named) > 1 and any(map(_is_of_kind, of.found.of("checkpoints"))):
             yield (f"Check {words} in any order.",)
         yield (f"Check {words}.",)
-        yield (f"{_sparing(named, of)} {words}.",)
-        lengths = filter(None, of.lengths("DURATION"))
-        yield from ((f"Wait for {length}.", f"Check {words}.") for length in lengths)
+        yield of.leaving_out(list(named))
+        for length in filter(None, of.lengths("DURATION")):
+            limited = of.is_limited(of.found)
+            if not (limited or of.found.has("EVERY")):
+                yield (f"Wait for {length}.", f"Check {words}.")
+            if limited or of.type_before(of.found.of("DURATION")[0]) == "IN":
+                yield (f"Check {words} not later than {length} after the start.",)
         if len(named) <= _FEW:
             yield from ((f"Check checkpoint {id}.",) for id in named)
 
@@ -170,6 +210,10 @@ def _by_header(of: OpenText) -> Iterator[Sentences]:
         return
     lengths = [*filter(None, of.lengths("DURATION", "MOST_TIME"))]
     limits = [f"Maximum duration: {length}." for length in lengths]
+    homewards = of.found.has("home", "HOME", "END") or of.demands.returns
+    starts = of.found.has("start", "START")
+    if homewards and not of.areas:
+        yield from _homewards(of, limits)
     places: list[Sentences] = []
     if len(of.areas) > 1:
         first, last = of.areas[0], of.areas[-1]
@@ -178,8 +222,7 @@ def _by_header(of: OpenText) -> Iterator[Sentences]:
     for area in dict.fromkeys(of.areas):
         start, end = f"Start in starting area {area}.", f"End of the mission: starting area {area}."
         returned = f"Return to the docking station in starting area {area}."
-        homewards = of.found.has("home", "HOME", "END")
-        if homewards and not of.found.has("start", "START"):
+        if homewards and not starts:
             places += [(returned,), (start, end), (start,)]
         elif homewards:
             places += [(start, end), (start,), (returned,)]
@@ -188,9 +231,29 @@ def _by_header(of: OpenText) -> Iterator[Sentences]:
     for limit in limits:
         for place in places[:2]:
             yield (limit, *place) if place[0].startswith(_RETURN) else (*place, limit)
-    yield from places
+    if not (limits and starts and homewards):  # none of these is to be dropped
+        yield from places
+    if places and homewards:
+        return
     for length in lengths:
-        yield from ((f"Maximum duration: {length}.",), (f"Wait for {length}.",))
+        yield (f"Maximum duration: {length}.",)
+        if not (homewards or of.is_limited(of.found)):
+            yield (f"Wait for {length}.",)
+
+
+def _homewards(of: OpenText, limits: Sequence[str]) -> Iterator[Sentences]:
+    """Yield a return at a time: `go home at 30 minutes`; `finish by 20 minutes` is a limit."""
+    times = of.found.of("DURATION")
+    ends = "END" in of.types  # `finish by 20 minutes`
+    when = of.type_before(times[0]) if times else ""
+    for limit in limits:
+        if when in ("AT", "AFTER", "IN"):
+            yield (limit, "If the time is up, return to the docking station.")
+        if when in ("AFTER", "IN"):
+            length = of.lengths("DURATION")[0]
+            yield (f"Wait for {length}.", f"{_RETURN}.")
+        if when not in ("AT", "AFTER", "IN"):
+            yield (limit,) if ends else (limit, f"{_RETURN}.")
 
 
 def _by_dashes(of: OpenText) -> Iterator[Sentences]:
@@ -222,34 +285,34 @@ def _by_figures(of: OpenText) -> Iterator[Sentences]:
     if ids and {*ids} <= {c.id for c in of.composer.known.catalog.checkpoints}:
         checkpoints = {c.id: c for c in of.composer.known.catalog.checkpoints}
         yield (f"Check {checkpoint_words([checkpoints[id] for id in ids])}.",)
-    if of.found.has("checkpoints", "place", "AREA"):
+    if of.areas or of.found.has("checkpoints", "place", "AREA"):
         return
     figures = {of.text.content[m.start : m.end] for m in of.found.of("NUMBER")}
     known = of.composer.known
+    steps = of.found.has("STEP", "swapping") and figures <= known.items.keys()
     items = {known.items[figure] for figure in figures if figure in known.items}
     alike = [
         c
         for c in known.catalog.checkpoints
-        if c.id in items or {str(c.id), c.name.split()[-1]} & figures
+        if c.id in items or (not steps and {str(c.id), c.name.split()[-1]} & figures)
     ]
     alike.sort(key=lambda c: (c.id not in items, c.id not in known.memory.so_far))
     for checkpoint in alike:
-        verb = "Check"
         if of.found.has("leave_out", "forbidding", "NOT", "correction", "DELETE", "past"):
-            verb = _sparing({checkpoint.id}, of)
-        yield (f"{verb} checkpoint {checkpoint.id}.",)
+            yield of.leaving_out([checkpoint.id])
+        else:
+            yield (f"Check checkpoint {checkpoint.id}.",)
 
 
-def _sparing(ids: Collection[int], of: OpenText) -> str:
-    """Return how checkpoints are left out: those that are asked for above are deleted."""
-    return "Delete" if {*ids} <= {*of.above} else "Do not check"
-
-
-_WAYS: tuple[Callable[[OpenText], Iterator[Sentences]], ...] = (
+_WAYS: tuple[_Way, ...] = (
     _by_pronouns,
+    by_swaps,
+    by_numbers,
     by_corrections,
+    by_leaving_out,
     _by_dashes,
     by_edits,
+    by_sequence,
     by_cases,
     by_rounds,
     by_parts,

@@ -141,10 +141,10 @@ def _between_after(found: Mentions, known: Known) -> Sentences | None:
         ):
             return None
         known.measured(checked)
-        wait = f"Wait for {_seconds(least_s)}."
+        wait = f"Wait for {seconds_words(least_s)}."
         return (
             wait,
-            f"Check checkpoint {checked[0].id}, taking at most {_seconds(most_s - least_s)}.",
+            f"Check checkpoint {checked[0].id}, taking at most {seconds_words(most_s - least_s)}.",
         )
     return None
 
@@ -398,10 +398,11 @@ def length_words(value: object) -> str | None:
     assert isinstance(value, Length)
     if value.other is not None or not 0 < value.seconds < _LONGEST_S:
         return None
-    return _seconds(value.seconds)
+    return seconds_words(value.seconds)
 
 
-def _seconds(seconds: float) -> str:
+def seconds_words(seconds: float) -> str:
+    """Return a time in words of the mission language."""
     minutes = seconds / 60
     if minutes != int(minutes):
         return f"{seconds:g} s"

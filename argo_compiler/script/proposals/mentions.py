@@ -75,7 +75,7 @@ _APART = frozenset(
     [
         *("subject", "stating", "asking", "clause", "answer", "wondering", "people", "of_others"),
         *("needless", "likewise", "retracting", "too_high", "too_low", "in_case"),
-        *("by_then", "at_time", "latest", "failing", "trying"),
+        *("by_then", "at_time", "latest", "failing", "trying", "retrying"),
     ]
 )
 """cues that are no mentions, but part a text or tell statements"""

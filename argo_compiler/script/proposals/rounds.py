@@ -13,8 +13,8 @@ _DAY_MIN = 24 * 60
 
 def by_rounds(of: OpenText) -> Iterator[Sentences]:
     """Yield what a text asks for that counts rounds: `2 rounds, 30 min start to start`."""
-    if of.found.has("checkpoints"):
-        return
+    if of.found.has("checkpoints") or (of.found.has("pronoun") and of.found.has("MEASURE")):
+        return  # `read it twice`
     counts = of.counts("TIMES")
     lengths = [*filter(None, of.lengths("DURATION"))]
     clocks = [60 * int(m["hour"]) + int(m["minute"]) for m in CLOCK.finditer(of.text.content)]

@@ -209,3 +209,193 @@ def test_a_return_that_is_chosen_above_the_tasks_is_the_end(catalog: Catalog) ->
 def test_a_time_before_which_nothing_is_done_moves_no_checkpoint(catalog: Catalog) -> None:
     (*_, last) = draft_of(f"{BEFORE}hmm, R7 but not before 11:00, they are filling", catalog).lines
     assert last.choices[0] == ("Check checkpoint 11.",)
+
+
+@pytest.mark.parametrize(
+    ("above", "line", "choice"),
+    [
+        # what is left out stays so, also in a case that Argo does not know
+        ("Check pressure gauge 2.", "In case of fog, leave valve R9 out", "Do not check #19."),
+        ("Prüfe Manometer 2.", "Sollte Nebel sein, R9 auslassen", "Do not check #19."),
+        ("Prüfe Manometer 2.", "Ventil R25 lassen wir heute aus", "Do not check #4."),
+        ("Prüfe R31.", "R31 bei Sturm lassen wir weg", "Delete #10."),
+        ("Check R9.", "No need for PG 5 but do PG 6", "Do not check #8. Check #13."),
+        ("Prüfe R9.", "R31 statt R12", "Do not check #5. Check #10."),
+        (
+            "Check R9.",
+            "Leave all gauges on floor 3 alone apart from PG 4",
+            "Do not check #12.",
+        ),
+        (
+            "Prüfe R9.",
+            "Lass alle Füllstandsmesser in Ruhe außer Nr. 3",
+            "Do not check #2, #7, #16 and #20.",
+        ),
+        ("Check R9.", "Never more than two valves", ""),
+        ("Prüfe R9.", "Nie mehr als zwei Ventile prüfen", ""),
+        # what is left out in a case
+        (
+            "Check PG 4.",
+            "If PG 4 shows more than 8 bar, skip R31 and come straight home, mate",
+            "If #9 is above 8 bar, return to the docking station.",
+        ),
+        ("Check PG 1.", "If PG 1 is over 5, leave out R25, mate", "Check #4 unless #1 is above 5."),
+        (
+            "Prüfe Manometer 1.",
+            "Wenn Manometer 1 über 5 ist, R25 weglassen",
+            "Check #4 unless #1 is above 5.",
+        ),
+        ("Check PG 2.", "Unless PG 2 is above 4, skip R7, ey", "Check #11 unless #3 is at most 4."),
+        # two limits, two cases, retries
+        (
+            "Check PG 4.",
+            "If PG 4 still above 8 bar, redo every 10 min until it is below.",
+            "If #9 is above 8 bar, check #9 every 10 minutes until it is below 8 bar.",
+        ),
+        (
+            "Prüfe Manometer 4.",
+            "Liegt Manometer 4 noch über 8 bar, alle 10 min prüfen, bis es unter 7 bar liegt",
+            "If #9 is above 8 bar, check #9 every 10 minutes until it is below 7 bar.",
+        ),
+        (
+            "Check PG 2.",
+            "If it is between 2 and 4 bar, go on with R12, otherwise read PG 3 instead.",
+            "If #3 is between 2 and 4 bar, check #5. Otherwise, check #6.",
+        ),
+        (
+            "Prüfe Manometer 2.",
+            "Liegt er zwischen 2 und 4 bar, weiter mit R12, sonst stattdessen Manometer 3 ablesen.",
+            "If #3 is between 2 and 4 bar, check #5. Otherwise, check #6.",
+        ),
+        ("Check PG 1.", "Check R9 up to three attempts", "Check #19, retry twice."),
+        ("Check R9.", "R18 (no more than 2 retries)", "Check #14, retry twice."),
+        ("Prüfe R9.", "R18 (höchstens 2 Wiederholungen)", "Check #14, retry twice."),
+        ("Prüfe R9.", "R18, bis zu drei Versuche", "Check #14, retry twice."),
+        # failures
+        (
+            "Check R9 and R40.",
+            "If it can't be read, carry on with level gauge 5.",
+            "If #17 fails, check #20.",
+        ),
+        (
+            "Check R9.",
+            "Check level gauge 5, and if it can't be read either, go home.",
+            "Check #20. If #20 fails, return to the docking station.",
+        ),
+        (
+            "Prüfe R9.",
+            "Füllstandsmesser 5 prüfen, und wenn auch der nicht lesbar ist, heimfahren.",
+            "Check #20. If #20 fails, return to the docking station.",
+        ),
+        # areas and times
+        (
+            "Check R12.",
+            "dock at 2 again when done",
+            "Return to the docking station in starting area 2.",
+        ),
+        (
+            "Prüfe R12.",
+            "wenn fertig wieder an 2 andocken",
+            "Return to the docking station in starting area 2.",
+        ),
+        (
+            "",
+            "ok then pls start at area 2, do R40 and PG 8",
+            "Start in starting area 2. Check #17 and #18.",
+        ),
+        (
+            "Check R9.",
+            "robot leaves from area 2 and has to be back there after 30 minutes",
+            "Start in starting area 2. End of the mission: starting area 2. "
+            "Maximum duration: 30 minutes.",
+        ),
+        ("Check R9.", "Finish by 20 minutes", "Maximum duration: 20 minutes."),
+        (
+            "Prüfe R9.",
+            "Bei 30 Minuten heimfahren",
+            "Maximum duration: 30 minutes. If the time is up, return to the docking station.",
+        ),
+        ("", "Check PG 2 in 10 minutes", "Wait for 10 minutes. Check #3."),
+        (
+            "Check R9.",
+            "PG 3 by 20 minutes, mate",
+            "Check #6 not later than 20 minutes after the start.",
+        ),
+        (
+            "Check PG 6.",
+            "at least 5 but at most 8 minutes after pressure gauge 6, read pressure gauge 7",
+            "Wait for 5 minutes. Check #15, taking at most 3 minutes.",
+        ),
+        # order and numbers
+        ("Check R9.", "R7 not before R31", "Check #10. Check #11."),
+        ("Prüfe R31 und R7.", "R31 erst nach R7", "Move #10 after #11."),
+        ("Check R9.", "R40 before R18, mate", "Check #17. Check #14."),
+        ("Check PG 3.", "scratch that, number two, not three", "Replace #6 by #3."),
+        ("Prüfe Manometer 3.", "Quatsch, Nummer zwei, nicht drei", "Replace #6 by #3."),
+        (
+            "1. Check PG 1.\n2. Check R12.\n3. Check R7.",
+            "Step 2 and step 3 are swapped",
+            "Move #11 before #5.",
+        ),
+        (
+            "Prüfe R12, R7 und R9.",
+            "R12 und R9 sind vertauscht",
+            "Move #19 before #5. Move #5 after #11.",
+        ),
+        ("Check PG 1.", "Read it twice if possible", "Check #1 2 times."),
+    ],
+)
+def test_the_first_choice_means_what_the_line_asks_for(
+    above: str, line: str, choice: str, catalog: Catalog
+) -> None:
+    (*_, last) = draft_of(f"{above}\n{line}", catalog).lines
+    assert last.state is LineState.OPEN
+    assert " ".join(last.choices[0]) == choice.replace("#", "checkpoint ")
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "Check either R9 or R40.",
+        "Check checkpoint 1, if possible twice.",
+        "Every 15 minutes R9, mate",
+        "Read one of them, then skip the other.",
+        "Check seven and off we go, mate",
+        "If Foo is out of range, read it twice.",
+        "R9, then the one after that, mate",
+        "PG 4 - then PG 4 and PG 2, mate, why not",
+        "Prüfe entweder R9 oder R40.",
+        "Alle 15 Minuten R9, ey",
+        "R12 oder R7 oder R9 oder R40 oder R18 oder R31 oder R25 oder Manometer 1 oder 2 ablesen",
+        "Please read #1 #4 #5 #7 #8 #9 and 11, whatever, in 5 minutes, mate, or home",
+    ],
+)
+def test_each_choice_is_understood_once_it_is_taken(line: str, catalog: Catalog) -> None:
+    draft = draft_of(BEFORE + line, catalog)
+    open_lines = [one for one in draft.lines if one.state is LineState.OPEN]
+    assert open_lines
+    for one in open_lines:
+        assert len(one.choices) <= 9, "each has a key"
+        for number, choice in enumerate(one.choices, start=1):
+            taken = draft_of(draft.text, catalog, draft.choose(one.label, number))
+            (same,) = (line for line in taken.lines if line.label == one.label)
+            assert same.state is not LineState.OPEN, choice
+
+
+@pytest.mark.parametrize(
+    ("line", "never"),
+    [
+        ("If PG 3 is over 6 bar, leave out R7, mate", "If checkpoint 6 is above 6 bar, check"),
+        ("If PG 3 is over 6 bar, R7, mate", "Check checkpoint 11."),
+        ("Wenn Manometer 3 über 6 bar ist, R7 dazu, ey", "Check checkpoint 11."),
+        ("PG 3 has to be out, R7 stays in, mate", "Delete checkpoint 5."),
+        ("skip R7 as R31 is leaking, mate", "Check checkpoint 11."),
+        ("R7 bitte weglassen, R31 nicht, ey", "Check checkpoint 11."),
+        ("Limit 25 minutes, says Bob", "Wait for 25 minutes."),
+        ("Höchstens 25 Minuten, meint Bob", "Wait for 25 minutes."),
+    ],
+)
+def test_no_choice_says_what_the_line_does_not(line: str, never: str, catalog: Catalog) -> None:
+    draft = draft_of(f"Maximum duration: 40 min.\n{BEFORE}{line}", catalog)
+    (*_, last) = draft.lines
+    assert not any(" ".join(choice).startswith(never) for choice in last.choices)

@@ -737,20 +737,22 @@ def _overlap(span: tuple[int, int], others: Sequence[tuple[int, int]]) -> bool:
 
 def _unexplained(row: FormRow, named: Mapping[int, CheckpointInfo]) -> Iterator[str]:
     """Yield the numbers and letters of a row under headings that nobody knows, but for what the
-    site has: the number of the checkpoint, its floor, both ends of its normal range."""
+    site has: the number of the checkpoint, both ends of its normal range and, in a row without
+    headings, its floor; below `Team` a number is none."""
     known: set[str] = set()
+    floors = {str(one.floor) for one in named.values()}
     said = {cell.text.content.strip() for cell in row.cells}
     for one in named.values():
         ends = {f"{one.nominal.low:g}", f"{one.nominal.high:g}"}
         known |= {
             str(one.id),
-            str(one.floor),
             one.name.split()[-1],
             *(ends if ends <= said else ()),
         }
     for cell in row.cells[1:]:
         content = cell.text.content.strip()
-        if cell.role is CellRole.OTHER and _BARE.fullmatch(content) and content not in known:
+        explained = content in known or (cell.column is None and content in floors)
+        if cell.role is CellRole.OTHER and _BARE.fullmatch(content) and not explained:
             yield content
 
 

@@ -187,6 +187,12 @@ def test_a_floor_below_a_heading_has_to_be_that_of_the_site(sign: str, catalog: 
     assert "on floor 2" in draft.lines[2].reason
 
 
+@pytest.mark.parametrize("heading", ["Qty", "Team", "Retries", "Anzahl"])
+def test_a_number_below_an_unknown_heading_is_no_floor(heading: str, catalog: Catalog) -> None:
+    text = f"Point | Floor | {heading}\nR12 | 2 | 2\nR7 | 3 | 3"
+    assert states(text, catalog) == [ASIDE, PROPOSED, PROPOSED]
+
+
 @pytest.mark.parametrize("said", ["high", "1", "A", "niedrig"])
 def test_a_priority_in_a_sheet_is_never_passed_over(said: str, catalog: Catalog) -> None:
     text = f"Punkt | Ebene | Priorität\nVentil R12 | 2 | {said}\nVentil R7 | 3 |"

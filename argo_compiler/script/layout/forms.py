@@ -116,6 +116,7 @@ _CUTS = {
     ",": re.compile(","),
     "  ": re.compile(r"\s{2,}|\t"),
 }
+_QUOTED = re.compile(r'"[^"]*"')
 _LONGEST_HEADING = 5
 """words"""
 _FEWEST_SIGNS = {";": 1, ",": 2}
@@ -462,8 +463,9 @@ def _cut_of(line: str) -> str:
 
 
 def _is_pair(source: Source, group: Sequence[int], cut: str) -> bool:
-    """Return True for a single line of two cells with a bar between them."""
-    return bool(group) and cut == "|" and source.lines[group[0] - 1].strip(" |").count("|") == 1
+    """Return True for a single line of two cells with a bar between them, which no quotes hold."""
+    line = _QUOTED.sub("", source.lines[group[0] - 1]) if group else ""
+    return cut == "|" and line.strip(" |").count("|") == 1
 
 
 def _cut_of_headings(line: str, source: Source, number: int, prose: Prose) -> str:

@@ -361,7 +361,7 @@ def test_decisions_without_a_connection_are_sent_later(service: Served, browsers
         ann.open(f"/drafts/{id}")
         expect(line(ann, 3)).to_be_focused()
         proxy.cut()
-        ann.key("c")
+        line(ann, 3).press("c")
         expect_state(ann, 3, "understood")
         expect(ann.page.locator("argo-notices")).to_contain_text("doesn't respond")
         expect_saved(ann, "Saving …")

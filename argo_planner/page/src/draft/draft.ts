@@ -7,7 +7,7 @@ import { repeat } from "lit/directives/repeat.js";
 import type { Diagnostic, DraftState } from "../api/types";
 import { isTyping } from "../frame/keys";
 import { isLeft, isRefused, type LineAct, messagesByLine, nextLeft, type ShownLine } from "../model/draft-lines";
-import { mayPlan } from "../state/session";
+import { mayPlan, service } from "../state/session";
 import { world } from "../state/world";
 import { language, t } from "../texts";
 import { placeBefore, spokenPlace } from "../texts/place";
@@ -213,6 +213,7 @@ export class DraftView extends PageElement {
   override updated(): void {
     const dialog = this.renderRoot.querySelector("dialog");
     if (dialog?.open === false) dialog.showModal();
+    if (!isShown()) return;
     const goal = this.focusNext;
     this.focusNext = null;
     if (goal === "row") this.focusRow();
@@ -233,7 +234,7 @@ export class DraftView extends PageElement {
 
   override render() {
     const draft = openedDraft.value;
-    if (draft === null) return nothing;
+    if (draft === null || !isShown()) return nothing;
     const texts = t().draft;
     const may = mayPlan();
     const lines = shownLines.value;
@@ -597,6 +598,11 @@ export class DraftView extends PageElement {
 }
 
 const NONE: readonly Diagnostic[] = [];
+/** Return whether the draft is shown: keys would have no effect before it is known what the person may do. */
+function isShown(): boolean {
+  return openedDraft.value !== null && service.value !== null;
+}
+
 const NO_FIELDS: ReadonlyMap<string, string | null> = new Map();
 
 /** Return the index of the line that an event comes from; null: none. */

@@ -74,7 +74,7 @@ class _Reading:
 
 
 class _Context(NamedTuple):
-    """What `propose` takes beside the script and the pieces."""
+    """Arguments of `propose` beside the script and the pieces."""
 
     catalog: Catalog
     start_area: int | None
@@ -209,8 +209,9 @@ def _with_own_hint(error: Diagnostic, proposal: "Proposal | None") -> Diagnostic
 
 def _first_choice(error: Diagnostic, proposal: "Proposal | None") -> str:
     """Return the first choice for a text that makes no sense; empty if it has none."""
-    has_choice = error.code in _WITHOUT_SENSE and proposal is not None and proposal.choices
-    return " ".join(proposal.choices[0]) if has_choice and proposal is not None else ""
+    if error.code not in _WITHOUT_SENSE or proposal is None or not proposal.choices:
+        return ""
+    return " ".join(proposal.choices[0])
 
 
 def _spelling(error: Diagnostic) -> str:

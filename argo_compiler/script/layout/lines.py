@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
+from argo_compiler.script.documents.signs import place_in_order
 from argo_compiler.script.documents.source import ScriptText, Source, join, quotes
 from argo_compiler.script.sentences.words.loading import pattern
 
@@ -29,7 +30,7 @@ class ScriptLine:
     mark: LineMark = LineMark.NONE
     number: int | None = None
     rank: int | None = None
-    """which letter or number it begins with, from 1"""
+    """which letter it begins with, from 1"""
     first: bool = False
     """whether it is the first line of a paragraph"""
     marked: ScriptText | None = None
@@ -154,11 +155,10 @@ def _marked(text: ScriptText, indent: int) -> ScriptLine:
         rest = text[number.end() :].strip()
         if pattern(_FLOOR_ONLY).fullmatch(rest.content):
             return ScriptLine(text, indent)  # `1. Obergeschoss`
-        first = int(number[1])
-        return ScriptLine(rest, indent, LineMark.NUMBER, first, rank=first, marked=text)
+        return ScriptLine(rest, indent, LineMark.NUMBER, int(number[1]), marked=text)
     if letter := _LETTER.match(text.content):
-        rank = ord(letter[1].lower()) - ord("a") + 1 if len(letter[1]) == 1 else None
-        return ScriptLine(text[letter.end() :].strip(), indent, LineMark.LETTER, rank=rank)
+        rest, rank = text[letter.end() :].strip(), place_in_order(letter[1])
+        return ScriptLine(rest, indent, LineMark.LETTER, rank=rank)
     if number := _SUB_NUMBER.match(text.content):
         return ScriptLine(text[number.end() :].strip(), indent, LineMark.LETTER)
     return ScriptLine(text, indent)

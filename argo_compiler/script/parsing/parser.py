@@ -468,7 +468,7 @@ def _ask_of_marks(lines: Sequence[ScriptLine], lexicon: Lexicon, diagnostics: Di
     def rank(line: ScriptLine) -> int | None:
         head, colon, _ = line.text.content.partition(":")
         ordinal = ordinals.get(head.strip().lower()) if colon else None
-        return ordinal or (line.rank if line.mark is LineMark.LETTER else None)
+        return ordinal or line.rank
 
     for ranked, run in groupby(lines, key=lambda line: (rank(line) is not None, line.indent)):
         same = list(run)

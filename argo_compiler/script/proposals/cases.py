@@ -66,7 +66,7 @@ def by_cases(of: OpenText) -> Iterator[Sentences]:
     limit = _limit(of)
     if limit is not None:
         yield from _by_limit(of, limit)
-    elif of.found.has("FAILS") or "FAILS" in of.types or _tells("failing", of):
+    elif of.found.has("FAILS") or "FAILS" in of.types or of.tells("failing"):
         yield from _by_failure(of)
     elif times := _retries(of):
         yield from (
@@ -197,10 +197,10 @@ def _retries(of: OpenText) -> int:
     words = of.composer.understanding.words(of.text)
     figures = [w.value for w in words if w.type in ("NUMBER", "TIMES", "MOST_TIMES")]
     counts = [one.whole for one in figures if isinstance(one, Figure) and one.whole]
-    tries = next((name for name in ("retrying", "trying") if _tells(name, of)), "")
+    tries = next((name for name in ("retrying", "trying") if of.tells(name)), "")
     if len(counts) != 1 or not (tries or of.found.has("RETRY")) or len(of.demands.asked) != 1:
         return 0
-    again = tries != "trying" or of.found.has("MORE") or _tells("again", of)
+    again = tries != "trying" or of.found.has("MORE") or of.tells("again")
     return counts[0] if again else counts[0] - 1
 
 
@@ -251,7 +251,7 @@ def _counts(word: Word, words: Sequence[Word], of: OpenText) -> bool:
     valves`, `at least 5 but at most 8 minutes`."""
     behind = sorted((one.start, one.type) for one in words if one.start >= word.end)
     next_type = behind[0][1] if behind else ""
-    tries = of.found.has("RETRY") or _tells("trying", of) or _tells("retrying", of)
+    tries = of.found.has("RETRY") or of.tells("trying") or of.tells("retrying")
     return word.type == "NUMBER" and (
         of.found.has("SPAN") or next_type in _COUNTED or (tries and "IF" not in of.types)
     )
@@ -315,7 +315,7 @@ def _by_failure(of: OpenText) -> Iterator[Sentences]:
     for case in cases:
         likely = [(f"{case}, {act}.",) for act in acts]
         others = acts or ([of.return_words, "abort the mission"] if len(ids) == 1 else [])
-        if of.found.has("RETRY", "again", "MORE") or _tells("trying", of):
+        if of.found.has("RETRY", "again", "MORE") or of.tells("trying"):
             again = f"{case}, try again {times}."
             yield from ((*check, again, f"If it still fails, {act}.") for act in others)
             yield (*check, again)
@@ -341,12 +341,6 @@ def _behind_failure(of: OpenText) -> int:
 
 def _named_in(found: Mentions, of: OpenText) -> list[CheckpointInfo]:
     return [c for m in found.of("checkpoints") if _is_labelled(m) for c in of.named_by(m)]
-
-
-def _tells(name: str, of: OpenText) -> bool:
-    """Return True if a text has one of the phrases that say something of a case."""
-    phrases = of.composer.understanding.language.prose.cues[name]
-    return phrase_pattern(phrases).search(of.text.content) is not None
 
 
 def _by_event(of: OpenText) -> Iterator[Sentences]:

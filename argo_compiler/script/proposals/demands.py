@@ -54,7 +54,7 @@ _AT_AREA = re.compile(r"(?:Return|End of the mission).* starting area")
 
 @dataclass(frozen=True)
 class Demands:
-    """What a text names, leaves out and puts in order."""
+    """Checkpoints that a text names, leaves out and puts in order, with its case and times."""
 
     named: frozenset[int] | None
     """all checkpoints that may be meant; None if that is not clear"""
@@ -146,9 +146,7 @@ def demands_of(text: ScriptText, found: Mentions, known: Known) -> Demands:
     words = sorted(known.understanding.words(text), key=lambda word: word.start)
     named = {m: named_by(m, words, known) for m in found.of("checkpoints")}
     types = {word.type for word in words} | {mention.kind for mention in found.mentions}
-    told = types | {
-        name for name in ("failing", "too_high", "too_low") if _tells(name, text, known)
-    }
+    told = types | {name for name in ("failing", "too_high", "too_low") if tells(name, text, known)}
     if found.has("place"):  # `unless floor 3 is closed`
         told -= {"STATE"}
     reads = bool(told & (_READINGS | {"failing", "too_high", "too_low"}))
@@ -233,7 +231,7 @@ def _ids(sentence: str) -> list[int]:
     return [int(number) for number in _NUMBERED.findall(sentence)]
 
 
-def _tells(name: str, text: ScriptText, known: Known) -> bool:
+def tells(name: str, text: ScriptText, known: Known) -> bool:
     """Return True if a text has one of the phrases that say something of a case."""
     cues = known.understanding.language.prose.cues
     return phrase_pattern(cues[name]).search(text.content) is not None

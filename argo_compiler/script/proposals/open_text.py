@@ -7,7 +7,7 @@ from functools import cached_property
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.script.documents.source import ScriptText
 from argo_compiler.script.proposals.composing import Composer
-from argo_compiler.script.proposals.demands import Demands, demands_of, named_by, returns
+from argo_compiler.script.proposals.demands import Demands, demands_of, named_by, returns, tells
 from argo_compiler.script.proposals.frames import Sentences, length_words
 from argo_compiler.script.proposals.mentions import Mention, Mentions, checkpoint_words
 from argo_compiler.script.sentences.tree.places import AreaLocation, DockLocation
@@ -40,8 +40,12 @@ class OpenText:
 
     @cached_property
     def demands(self) -> Demands:
-        """What each choice has to respect."""
+        """Return the demands that each choice of the text has to respect."""
         return demands_of(self.text, self.found, self.composer.known)
+
+    def tells(self, name: str) -> bool:
+        """Return True if the text has one of the phrases of a cue, such as `trying`."""
+        return tells(name, self.text, self.composer.known)
 
     def counts(self, *kinds: str) -> list[int | None]:
         """Return the numbers of mentions of these kinds; None for one that is not clear."""
@@ -77,7 +81,7 @@ class OpenText:
 
     @property
     def comes_back(self) -> bool:
-        """Whether the text names one area, in which the robot starts and ends."""
+        """Return True if the text names one area, in which the robot starts and ends."""
         homewards = self.found.has("home", "HOME", "END")
         return self.found.has("start", "START") and homewards and len(self.areas) == 1
 

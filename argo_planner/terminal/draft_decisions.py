@@ -92,18 +92,26 @@ def acts_of(draft: "Draft", options: ActOptions) -> "DraftActs":
     from argo_compiler.script import DraftActs
 
     say = [_said(text) for text in options.say]
-    choose = [_chosen(text) for text in options.choose]
+    choose = [chosen for text in options.choose for chosen in _chosen(text)]
     named = {label for label, _ in (*say, *choose)}
     lists = (options.confirm, options.set_aside, options.undo)
     named |= {text for given in lists for text in _parts(given) if not _is_range(text)}
-    everything = [text.strip() for text in options.confirm] == ["all"]
+    undo = _labels(draft, options.undo, named)
+    if _is_all(options.undo):
+        decided = (one for one in draft.lines if one.act is not None)
+        undo = (one.label for one in decided if not {one.label, str(one.line)} & named)
+    confirm = None if _is_all(options.confirm) else tuple(_labels(draft, options.confirm, named))
     return DraftActs(
-        confirm=None if everything else tuple(_labels(draft, options.confirm, named)),
+        confirm=confirm,
         set_aside=tuple(_labels(draft, options.set_aside, named)),
         say=say,
         choose=choose,
-        undo=tuple(_labels(draft, options.undo, named)),
+        undo=tuple(undo),
     )
+
+
+def _is_all(texts: Iterable[str]) -> bool:
+    return [text.strip() for text in texts] == ["all"]
 
 
 def _said(text: str) -> tuple[str, tuple[str, ...]]:
@@ -115,11 +123,12 @@ def _said(text: str) -> tuple[str, tuple[str, ...]]:
     return label, (sentence,)
 
 
-def _chosen(text: str) -> tuple[str, int]:
-    label, _, number = (part.strip() for part in text.partition("="))
+def _chosen(text: str) -> Iterator[tuple[str, int]]:
+    labels, _, number = (part.strip() for part in text.partition("="))
     if not _is_number(number):
         raise Invalid(f"--choose {text}: write a line and the number of a choice, as in 4=1")
-    return label, int(number)
+    for label in _parts([labels]):
+        yield label, int(number)
 
 
 def _labels(draft: "Draft", texts: Iterable[str], named: set[str]) -> Iterator[str]:

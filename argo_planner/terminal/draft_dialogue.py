@@ -117,18 +117,24 @@ class _Dialogue:
                         return True
 
     def _say(self, line: DraftLine) -> bool:
-        """Read sentences that count instead of a line; return True if they are understood."""
-        print(f"say\nline {line.label}, in other words: ", end="", flush=True)
-        typed = read_line()
-        sentence = " ".join((typed or "").split())
-        if typed is None:
-            print()
-        if not sentence:
-            return False
-        if not sentence.isprintable():
-            print("the sentence has characters that can't be printed")
-            return False
-        return self._decide(line, DraftActs(say=((line.label, (sentence,)),)), "")
+        """Read sentences that count instead of a line, again as long as they are not understood.
+
+        Returns:
+            True if they count now; False after an empty line.
+        """
+        print("say")
+        while True:
+            print(f"line {line.label}, in other words: ", end="", flush=True)
+            typed = read_line()
+            sentence = " ".join((typed or "").split())
+            if typed is None:
+                print()
+            if not sentence:
+                return False
+            if not sentence.isprintable():
+                print("the sentence has characters that can't be printed")
+            elif self._decide(line, DraftActs(say=((line.label, (sentence,)),)), ""):
+                return True
 
     def _naming_nothing(self, line: DraftLine) -> Sequence[DraftLine]:
         """Return the lines that name nothing, if `line` is one of several."""

@@ -127,10 +127,11 @@ def test_what_is_said_and_not_understood_is_asked_for_again(
     before = draft(folder)
     terminal.type("sBefriend valve R7.\n")
     terminal.expect("line 4 of mail.txt: `Befriend valve R7.` is not understood")
-    terminal.expect(r"\? help: ")
+    terminal.expect("line 4, in other words: ")
     assert draft(folder) == before
-    terminal.type("s")
-    terminal.expect("in other words: ")
+    terminal.type("q or not\n")  # words, not keys
+    terminal.expect("is not understood")
+    terminal.expect("line 4, in other words: ")
     terminal.type("\x04")  # ends the sentence, and not the questions
     terminal.expect(r"\? help: ")
     terminal.type("1")

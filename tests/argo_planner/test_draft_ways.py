@@ -267,6 +267,17 @@ def test_all_and_ranges_leave_out_lines_that_another_option_names(script: Path) 
     acts = ("--confirm", "4-5", "--set-aside", "5", "--force")
     argo("import", script, "-o", mission, *acts, status=0)
     assert (script.parent / "a.txt.draft").read_text("utf-8").count("confirmed: ") == 1
+    argo("import", script, "-o", mission, "--undo", "all", "--force")
+    draft = (script.parent / "a.txt.draft").read_text(encoding="utf-8")
+    assert not any(decided in draft for decided in ("confirmed: ", "set aside by hand"))
+
+
+def test_one_choice_of_several_lines(script: Path) -> None:
+    write(script, f"{OPEN}Befriend valve R7.\n")
+    mission = script.parent / "m.json"
+    result = argo("import", script, "-o", mission, "--choose", "4,5=1", "--confirm", "all")
+    assert "line 5 of a.txt" not in f"{result.output}{result.exception}"
+    assert mission.exists()
 
 
 @pytest.mark.parametrize(

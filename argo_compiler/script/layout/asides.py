@@ -67,7 +67,13 @@ _COUNTED = frozenset(
 _AREA = ("AREA", "NUMBER")
 _FLOORS = frozenset([("FLOOR", "NUMBER"), ("ORDINAL", "FLOOR"), _AREA])
 """types of words, side by side, that name a floor or an area"""
-_OF_FLOOR = frozenset(["FLOOR", "NUMBER", "ORDINAL", "ON", "IN", "AT", "COLON", "SIGN"])
+_OF_FLOOR = frozenset(
+    [
+        *("FLOOR", "FLOOR_NAME", "NUMBER", "ORDINAL", "ON", "IN", "AT", "COLON", "SIGN"),
+        *("KIND", "ALL", "AND_NOUN", "AND_PLACE", "DASH"),
+    ]
+)
+"""words of these types alone say what is read and where, and are no headline"""
 _PARTICIPLE = re.compile(
     r"(?!required|selected|planned|scheduled|listed|numbered|unmanned|elevated|detailed|combined)"
     r"\w{4,}ed"
@@ -204,7 +210,7 @@ class Asides:
         if content.endswith(".") or not _COUNTED.isdisjoint(types) or _AREA in pairwise(types):
             return False
         if "FLOOR" in types and {*types} <= _OF_FLOOR:
-            return False  # `FLOOR 4`, over what is read there
+            return False  # `FLOOR 4`, over what is read there; `Floor 2, valves`
         if self.names_checkpoint(text) and not self._of_checkpoint(text):
             return False
         cues = self.prose.cues
@@ -228,6 +234,17 @@ class Asides:
             or ("HASH", "NUMBER") in pairwise(types)
             or self._has_name(text)
         )
+
+    def only_names(self, text: ScriptText) -> bool:
+        """Return True for a checkpoint's name without a verb, such as `R12` and `#4 valve R25`."""
+        types = {*self.understanding.types(text)}
+        return self.names_checkpoint(text) and types.isdisjoint({*VERBS, "IF", "UNLESS"})
+
+    def only_lists_kinds(self, text: ScriptText) -> bool:
+        """Return True for kinds and floors without a verb, such as `Floor 2 valves`."""
+        types = {*self.understanding.types(text)}
+        kinds = "KIND" in types and types <= _OF_FLOOR and not self.names_checkpoint(text)
+        return kinds and not text.content.endswith(":")
 
     def names_tasks(self, text: ScriptText) -> bool:
         """Return True if a text names a checkpoint, a floor, an area, a time or a count."""

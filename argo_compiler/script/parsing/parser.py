@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from itertools import groupby
+from itertools import chain, groupby, pairwise
 from types import MappingProxyType
 
 from argo_compiler.base.garbage_collector import collector_held
@@ -212,8 +212,8 @@ class _Parser:
         return found
 
     def _steps(self, items: Iterable[LineItem]) -> Iterator[ScriptStep]:
-        for item in items:
-            if self.stopped:
+        for item, below in pairwise(chain(items, (None,))):
+            if item is None or self.stopped:
                 return
             if self.diagnostics.errors > MOST_ERRORS:
                 self.stopped = True
@@ -223,7 +223,21 @@ class _Parser:
                 return
             step = self._step(item)
             if step is not None:
+                if step.sentences and self._may_be_heading(item, below):
+                    message = "this line can be a heading of those below it, or a command"
+                    hint = "write `Check` before it for a command, a colon behind it for a heading"
+                    self.diagnostics.error("ambiguous-title", message, item.text.span(), hint)
                 yield step
+
+    def _may_be_heading(self, item: LineItem, below: LineItem | None) -> bool:
+        """Return True for kinds without a verb, `Floor 2 valves`, over what may name some of
+        these."""
+        if item.line.mark is not LineMark.NONE or self._is_decided(item):
+            return False
+        over = below is not None and (
+            below.line.mark is not LineMark.NONE or self.asides.only_names(below.text)
+        )
+        return (over or bool(item.items)) and self.asides.only_lists_kinds(item.text)
 
     def _step(self, item: LineItem) -> ScriptStep | None:
         known = self.repeats.said(item.text) if self._is_plain(item) else None

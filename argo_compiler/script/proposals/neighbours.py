@@ -284,6 +284,12 @@ class Neighbours:
 
     # ---- names
 
+    def _is_plural(self, word: str) -> bool:
+        """Return True for several of what the language knows: `Pressures`."""
+        known = self.understanding.known | self.understanding.language.prose.words
+        ends = re.match(r"(.{3,}?)(?:s|e|en|n)$", word.lower())
+        return ends is not None and ends[1] in known
+
     def _is_signature(self, i: int, text: ScriptText) -> bool:
         """Return True for a name at the end of the script, below the end of a letter, or of one
         that the header names, and for the time behind initials."""
@@ -316,8 +322,11 @@ class Neighbours:
         if not whole or not {*self.understanding.types(name)} <= _OF_NAMES:
             return False
         words = {*_WORDS.findall(name.content)}
+        above = text.source.lines[: text.source.line_at(text.first) - 1]
+        apart = len(words) > 1 or initials or not above or not above[-1].strip()
+        apart = apart and not any(map(self._is_plural, words))
         return (
             closed
-            or i >= len(pieces) - _LAST
+            or (i >= len(pieces) - _LAST and apart)  # `Pressures` below `Check valve R7` is none
             or any(words <= {*_WORDS.findall(line)} and ":" in line for line in header)
         )

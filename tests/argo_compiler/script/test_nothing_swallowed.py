@@ -92,6 +92,12 @@ def conditions(text: str, catalog: Catalog) -> list[tuple[str | None, ConditionT
         ("Dear R31, then #12.", ""),
         ("Level gauges 1 to 5\nless: 3", "`less`"),
         ("#17, and the one after that.", "`the`"),
+        # kinds without a verb over what names some of them, and several of a value at the end
+        ("Floor 2 valves\n- R12\n- R25", "a heading of those below it, or a command"),
+        ("Ventile, Stockwerk 2\n- R12", "a heading of those below it, or a command"),
+        ("Gauges\nPG 3\n#8\nValves\nR12", "a heading of those below it, or a command"),
+        ("Check #1.\nPressures", "`Pressures`"),
+        ("Check #1.\n\nPressures", "`Pressures`"),
         # number and name side by side, and numbers that count
         ("#8, pressure gauge 8", "or only one of them"),
         ("Pressure gauge 8, #8, R7", "or only one of them"),
@@ -210,6 +216,17 @@ def test_what_is_asked_about(text: str, words: str, catalog: Catalog) -> None:
 def test_a_first_line_that_may_change_the_plan_is_no_title(title: str, catalog: Catalog) -> None:
     draft = import_script(f"{title}\n{START}Check #5.", catalog)
     assert draft.mission is None
+
+
+@pytest.mark.parametrize(
+    ("first", "checkpoints"),
+    [("Floor 2, valves", ["5"]), ("Valves floor 3", ["10", "11"]), ("Ventile, Etage 2", ["5"])],
+)
+def test_a_first_line_that_lists_kinds_on_a_floor_is_an_order(
+    first: str, checkpoints: list[str], catalog: Catalog
+) -> None:
+    mission = import_script(f"{first}\nCheck #9.", catalog, start_area=1).require_mission()
+    assert [task.object_id for task in mission.tasks if task.object_id] == [*checkpoints, "9"]
 
 
 @pytest.mark.parametrize(

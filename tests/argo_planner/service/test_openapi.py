@@ -54,9 +54,11 @@ def run_schemathesis(service: Served, folder: Path, *options: str) -> int:
 @pytest.mark.long
 def test_cases_with_links_are_answered_as_documented(service: Served, tmp_path: Path) -> None:
     """Parameters have values at and beyond their limits, at random, or from other answers."""
+    # The first import loads what all need; schemathesis waits 10 s for an answer.
+    service.client.post("/api/imports?filename=a.txt", content="Check valve R7.")
     paths = json.loads(DOCUMENT.read_text(encoding="utf-8"))["paths"].values()
     ids = sorted(one["operationId"] for methods in paths for one in methods.values())
     options = [word for id in sample(ids) for word in ("--include-operation-id", id)]
     at_limits = run_schemathesis(service, tmp_path, "--phases", "coverage", *options)
-    random = ("--phases", "fuzzing,stateful", "-n", str(examples(100)))
-    assert at_limits + run_schemathesis(service, tmp_path, *random) >= examples(10_000)
+    random = ("--phases", "fuzzing,stateful", "-n", str(examples(40)))
+    assert at_limits + run_schemathesis(service, tmp_path, *random) >= examples(4_000)

@@ -144,6 +144,7 @@ def test_a_text_that_is_not_understood_stays_in_its_field(draft: Person) -> None
     expect(line(draft, 6)).to_contain_text("`Photograph`")
 
 
+@pytest.mark.long
 def test_the_last_line_is_said_again_until_it_is_understood(draft: Person) -> None:
     draft.key("c", "c", "1", "e")
     draft.type("Chek the zorg.")
@@ -159,6 +160,7 @@ def test_the_last_line_is_said_again_until_it_is_understood(draft: Person) -> No
     expect(field).to_have_count(0)
 
 
+@pytest.mark.long
 def test_fields_of_several_lines_keep_their_texts(draft: Person) -> None:
     draft.key("e")
     draft.type("Read")
@@ -233,6 +235,7 @@ def test_a_change_by_somebody_else_is_not_overwritten(service: Served, draft: Pe
     expect_state(draft, 3, "set aside")
 
 
+@pytest.mark.long
 def test_two_people_see_the_decisions_of_each_other(
     service: Served, draft: Person, browsers
 ) -> None:
@@ -257,6 +260,7 @@ def test_two_people_see_the_decisions_of_each_other(
     expect(bert.page.locator("argo-notices")).to_contain_text("eine Mission gemacht")
 
 
+@pytest.mark.long
 def test_lines_that_name_nothing_are_listed_and_set_aside_together(service, shared_person) -> None:
     ann = shared_person
     named = "Photograph the pump\nCheck the zorg 7\nWave to the camera\nDo not hurry\n"
@@ -304,6 +308,7 @@ def test_the_choice_of_a_file_is_one_tab_stop(shared_person: Person) -> None:
         shared_person.key("Enter")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "make", "place"),
     [
@@ -339,18 +344,34 @@ def test_documents_become_missions(shared_person: Person, name: str, make, place
         ("blank.xlsx", lambda: workbook([]), "without text"),
         ("old.doc", lambda: b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600), "old Office"),
         ("empty.txt", lambda: b" \n", "is empty"),
-        ("large.txt", lambda: b"Check checkpoint 4.\n" * 1_700_000, "larger than"),
     ],
 )
 def test_a_wrong_file_gets_one_message(shared_person: Person, name: str, make, words: str) -> None:
-    ann = shared_person
-    choose_file(ann, name, make())
-    notice = ann.page.locator("argo-notices article.bad")
+    choose_file(shared_person, name, make())
+    expect_one_message(shared_person, name, words)
+
+
+def test_a_file_that_is_too_large_gets_one_message(shared_person: Person) -> None:
+    """It is made in the page, as a large one takes long from the test to the browser."""
+    shared_person.page.locator("argo-import input[type=file]").evaluate(
+        """input => {
+            const files = new DataTransfer();
+            files.items.add(new File([new Uint8Array(34_000_000).fill(32)], "large.txt"));
+            input.files = files.files;
+            input.dispatchEvent(new Event("change", { bubbles: true }));
+        }"""
+    )
+    expect_one_message(shared_person, "large.txt", "larger than")
+
+
+def expect_one_message(person: Person, name: str, words: str) -> None:
+    """Expect one message about a file, and close it."""
+    notice = person.page.locator("argo-notices article.bad")
     expect(notice).to_contain_text(words)
     expect(notice).to_have_count(1)
     expect(notice).to_contain_text(name)
-    ann.click(notice.get_by_role("button"))
-    expect(ann.page.locator("argo-home")).to_be_visible()
+    person.click(notice.get_by_role("button"))
+    expect(person.page.locator("argo-home")).to_be_visible()
 
 
 @pytest.mark.long
@@ -372,6 +393,7 @@ def test_decisions_without_a_connection_are_sent_later(service: Served, browsers
         ann.clear_connection_problems()
 
 
+@pytest.mark.long
 def test_the_draft_is_in_german(service: Served, browsers, address) -> None:
     bert = browsers.person(address, "bert", locale="de-DE")
     bert.open(f"/drafts/{upload(service)}")
@@ -389,6 +411,7 @@ def test_the_draft_is_in_german(service: Served, browsers, address) -> None:
     expect(bert.page.get_by_role("treeitem")).to_have_count(4)
 
 
+@pytest.mark.long
 def test_a_script_without_areas_is_completed_by_choosing_them(service, shared_person) -> None:
     script = "Start: area 1 or 2\nI'd like to have valve R25.\nCheck checkpoint 5.\n"
     shared_person.go(f"/drafts/{upload(service, script)}")
@@ -400,6 +423,7 @@ def test_a_script_without_areas_is_completed_by_choosing_them(service, shared_pe
     expect(shared_person.page.locator("#plan")).to_be_enabled()
 
 
+@pytest.mark.long
 def test_the_words_of_a_task_light_up(draft: Person) -> None:
     """In the list and in the imported text, by pointer and by keyboard."""
     draft.key("c", "c", "1", "x")

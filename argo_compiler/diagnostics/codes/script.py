@@ -57,8 +57,8 @@ SCRIPT = {
         "Write the exception at the end, or two sentences.",
     ),
     "script.ambiguous-floor": error(
-        "A number after a floor can be another floor or something else.",
-        "Write `floors 1 and 2`, or name the other thing.",
+        "What is meant by a floor, or by a number after it, is not clear.",
+        "Write `floors 1 and 2`, and the floor behind each thing that is read there.",
     ),
     "script.ambiguous-manner": error(
         "A clause can apply only to the last of several orders, or to each of them.",

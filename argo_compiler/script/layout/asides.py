@@ -235,16 +235,24 @@ class Asides:
             or self._has_name(text)
         )
 
+    def has_verb(self, text: ScriptText) -> bool:
+        """Return True if a word of a text says what is done, or in which case."""
+        return not {*self.understanding.types(text)}.isdisjoint({*VERBS, "IF", "UNLESS"})
+
     def only_names(self, text: ScriptText) -> bool:
         """Return True for a checkpoint's name without a verb, such as `R12` and `#4 valve R25`."""
-        types = {*self.understanding.types(text)}
-        return self.names_checkpoint(text) and types.isdisjoint({*VERBS, "IF", "UNLESS"})
+        start = min((word.start for word in self.understanding.words(text)), default=0)
+        before = text.content[:start].strip()
+        article = not before or phrase_pattern(self.prose.determiner).fullmatch(before)
+        return bool(article) and self.names_checkpoint(text) and not self.has_verb(text)
 
     def only_lists_kinds(self, text: ScriptText) -> bool:
-        """Return True for kinds and floors without a verb, such as `Floor 2 valves`."""
+        """Return True for kinds or floors that are read: `Floor 2 valves`, `Check the valves on
+        floor 2`, `Inspect floor 2`."""
         types = {*self.understanding.types(text)}
-        kinds = "KIND" in types and types <= _OF_FLOOR and not self.names_checkpoint(text)
-        return kinds and not text.content.endswith(":")
+        whole = "MEASURE" in types and bool(types & {"FLOOR", "FLOOR_NAME"})
+        listed = (whole or "KIND" in types) and types <= _OF_FLOOR | {"MEASURE"}
+        return listed and not self.names_checkpoint(text)
 
     def names_tasks(self, text: ScriptText) -> bool:
         """Return True if a text names a checkpoint, a floor, an area, a time or a count."""

@@ -219,6 +219,11 @@ class Lists:
             said = join([part for part in parts if part.content] or [said])
         types = self.understanding.types(said)
         fits = types[-1:] == ("KIND",) and types[:-1] in _HEADS
+        if "ALL" in types:
+            if found is None and not last[0].content.endswith(":"):
+                return None  # `Check all valves` is an order as well
+            every = next(w for w in self.understanding.words(said) if w.type == "ALL")
+            said = said.without(every.start, every.end)
         return _Head(last[0], said, found is not None) if fits else None
 
     def _is_label(self, text: ScriptText) -> bool:

@@ -221,31 +221,45 @@ class _Parser:
                 hint = "correct these first"
                 self.diagnostics.error("too-many-errors", message, item.text.span(0, 1), hint)
                 return
-            step = self._step(item)
+            step = self._step(item, self._stands_over_names(item, below))
             if step is not None:
-                if step.sentences and self._may_be_heading(item, below):
-                    message = "this line can be a heading of those below it, or a command"
-                    hint = "write `Check` before it for a command, a colon behind it for a heading"
-                    self.diagnostics.error("ambiguous-title", message, item.text.span(), hint)
                 yield step
 
-    def _may_be_heading(self, item: LineItem, below: LineItem | None) -> bool:
-        """Return True for kinds without a verb, `Floor 2 valves`, over what may name some of
-        these."""
-        if item.line.mark is not LineMark.NONE or self._is_decided(item):
+    def _stands_over_names(self, item: LineItem, below: LineItem | None) -> bool:
+        """Return True if an item ends with `Floor 2 valves` or `Check the valves on floor 2:` over
+        what may name some of these."""
+        first = item.items[0] if item.items else below
+        if first is None or self._is_decided(item):
             return False
-        over = below is not None and (
-            below.line.mark is not LineMark.NONE or self.asides.only_names(below.text)
-        )
-        return (over or bool(item.items)) and self.asides.only_lists_kinds(item.text)
+        last = sentences(item.text)[-1:]
+        if not last or not self.asides.only_lists_kinds(last[0]):
+            return False
+        if first.line.mark is LineMark.NONE and item.text.content.endswith("."):
+            return False  # a sentence, and not a heading
+        marked = first.line.mark is not LineMark.NONE and not self.asides.has_verb(last[0])
+        return marked or self.asides.only_names(first.text)
 
-    def _step(self, item: LineItem) -> ScriptStep | None:
-        known = self.repeats.said(item.text) if self._is_plain(item) else None
+    def _over_names(self, text: ScriptText, item: LineItem) -> list[Said]:
+        """Read kinds over names: a heading if a colon is behind them, else they can be both."""
+        if item.text.content.endswith(":"):
+            self._record(text, "a heading")
+            return []
+        said = self._piece(text, item, lambda s: self.reader.read(s, item))
+        if said and item.line.mark is LineMark.NONE:
+            message = "this line can be a heading of those below it, or a command"
+            hint = "write a mark such as `-` before it for a command, a colon behind it for a "
+            hint += "heading"
+            self.diagnostics.error("ambiguous-title", message, text.span(), hint)
+        return said
+
+    def _step(self, item: LineItem, over: bool) -> ScriptStep | None:
+        """Read an item. `over`: it stands over names of what it says."""
+        known = self.repeats.said(item.text) if self._is_plain(item) and not over else None
         if known is not None and self._is_said_below(item, known[0]):
             said, parts = known
             self.pieces += map(Piece, parts)
         else:
-            said = self._said(item)
+            said = self._said(item, over)
         said = on_floors(said, item.floors)
         inner = tuple(self._steps(item.items)) if item.items else ()
         if not said and not inner and item.line.number is None:
@@ -254,7 +268,7 @@ class _Parser:
             span=item.text.span(), number=item.line.number, sentences=tuple(said), steps=inner
         )
 
-    def _said(self, item: LineItem) -> list[Said]:
+    def _said(self, item: LineItem, over: bool = False) -> list[Said]:
         """What an item says; kept, if it says so wherever it stands."""
         if item.text.content == ROW:
             return self._row(item)
@@ -277,13 +291,15 @@ class _Parser:
                 continue
             fields, sentence = self._fields(sentence, item)
             said += fields
-            if sentence.content:
+            if over and sentence.last == parts[-1].last:
+                said += self._over_names(sentence, item)
+            elif sentence.content:
                 said += self._piece(sentence, item, lambda s: self.reader.read(s, item))
         whole = text is item.text and len(said) == len(parts)
         whole = whole and len(self.diagnostics.entries) == before
         plain = plain and whole and not self.understanding.unknown and self._is_plain(item)
         plain = plain and self.fields.count == read  # else it says more than its orders
-        plain = plain and self._is_said_below(item, said)
+        plain = plain and not over and self._is_said_below(item, said)
         if plain and not any(isinstance(s, Unread) for s in said):
             self.repeats.keep(text, said, lambda text, unknown: self._again(item, text, unknown))
         return said

@@ -228,12 +228,17 @@ def _stated_limit(of: OpenText) -> _Limit | None:
         amounts = [one for one in behind if one.type in _AMOUNTS]
         ranged = [one.type for one in words[i + 1 : i + 5] if one.type not in ("IN", "FROM")]
         outside = word.type == "NOT" and ranged[1:2] == ["TO"] and ranged[0] in _AMOUNTS
-        if outside or word.type == "BETWEEN":
-            spans = [one for one in words[i + 1 : i + 6] if one.type in _AMOUNTS][:2]
+        spread = word.type in _AMOUNTS and ranged[:1] in (["TO"], ["DASH"]) and "IF" in of.types
+        spread = spread and len(ranged) > 1 and ranged[1] in _AMOUNTS  # `if it reads 4 to 5 bar`
+        if outside or spread or word.type == "BETWEEN":
+            inside = words[i if spread else i + 1 : i + 6]
+            spans = [one for one in inside if one.type in _AMOUNTS][:2]
             if len(spans) == 2:
                 low, high = (_amount(one, of) for one in spans)
                 unit = _unit(spans[1])
-                range_ = f"outside {low} to {high}" if outside else f"between {low} and {high}"
+                range_ = f"between {low} and {high}"
+                if outside or spread:
+                    range_ = f"{'outside' if outside else 'from'} {low} to {high}"
                 return _Limit(range_, word.start, spans[1].end, unit)
         elif word.type in _RELATIONS and amounts and not _counts(amounts[0], words, of):
             amount = _amount(amounts[0], of)

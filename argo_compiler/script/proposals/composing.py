@@ -21,7 +21,7 @@ from argo_compiler.script.proposals.mentions import (
     mentions_in,
 )
 from argo_compiler.script.proposals.paraphrasing import reads, rephrased, sentence
-from argo_compiler.script.sentences.tree.nouns import Kind, Nouns, TheOne
+from argo_compiler.script.sentences.tree.nouns import AllOf, Kind, Nouns, TheOne
 from argo_compiler.script.sentences.understanding import Understanding
 from argo_compiler.script.sentences.words.prose import phrase_pattern
 
@@ -275,6 +275,7 @@ class Composer:
         towards = _TOWARDS if found.has("place") else frozenset()
         plain = bidden and found.joining <= {*_PLAIN, *towards, "courtesy"}
         whole = plain and not unused and not found.has(*_UNSURE)
+        whole = whole and not (found.has("MEASURE") and found.only("MEASURE", "place"))
         certain = whole and all(map(_LIKE_CHECKS.match, sentences))
         differences = tuple(dict.fromkeys(self.known.warnings))
         ignored = found.idle if certain else ()
@@ -337,7 +338,11 @@ class Composer:
         return text
 
     def _may_be_no_list(self, text: ScriptText, named: Sequence[Mention]) -> bool:
-        """Return True for `gauge four is #9`, `PG 1 to PG 4` and `PG 1 - PG 4`."""
+        """Return True for `gauge four is #9`, `PG 1 to PG 4`, `PG 1 - PG 4`, `all valves R12`."""
+        for a, b in pairwise(named):
+            whole = any(isinstance(noun, AllOf) for noun in a.nouns)
+            if whole and not text.content[a.end : b.start].strip():
+                return True
         between = {self.understanding.types(text[a.end : b.start]) for a, b in pairwise(named)}
         return bool(between & _NO_LISTS) or (len(named) == 2 and between == {("DASH",)})
 

@@ -10,7 +10,7 @@ from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import pairwise, product
 
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.script.documents.source import RefusedError, ScriptText
@@ -28,9 +28,14 @@ LEAVING_OUT = ("leave_out", "SPARE", "DELETE", "in_place_of")
 """kinds of mentions that leave out the checkpoint beside them"""
 _IFS = frozenset(["IF", "IF_ONLY", "UNLESS"])
 _READINGS = frozenset(
-    ["GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "OUTSIDE", "STATE", "FAILS", "EVENT"]
+    [
+        *("GREATER", "LESS", "AT_LEAST", "AT_MOST", "BETWEEN", "OUTSIDE", "STATE", "FAILS"),
+        *("EVENT", "QUANTITY"),
+    ]
 )
 """types of words of a case that the mission language has"""
+_SPREADS = frozenset(product(("NUMBER", "QUANTITY"), ("TO", "DASH"), ("NUMBER", "QUANTITY")))
+"""types of words of a range: `4 to 5 bar`"""
 _NO_DENIALS = _IFS | {"UNTIL", "FOCUS", "EARLIEST", "LATEST", "WITHIN", "EXCEPT", "AT_MOST"}
 """types of words that the cues of a denial cover as well: `if`, `only`, `not before`"""
 _PARTING = ("AND_", "NEXT", "BUT", "JOINT", "ELSE", "COLON")
@@ -149,7 +154,9 @@ def demands_of(text: ScriptText, found: Mentions, known: Known) -> Demands:
     told = types | {name for name in ("failing", "too_high", "too_low") if tells(name, text, known)}
     if found.has("place"):  # `unless floor 3 is closed`
         told -= {"STATE"}
-    reads = bool(told & (_READINGS | {"failing", "too_high", "too_low"}))
+    ordered = [word.type for word in words]
+    spread = not _SPREADS.isdisjoint(zip(ordered, ordered[1:], ordered[2:], strict=False))
+    reads = spread or bool(told & (_READINGS | {"failing", "too_high", "too_low"}))
     in_known_case = bool(types & _IFS) and reads
     left_out = _left_out(text, found, words, known, in_known_case)
     denied = [m for m in named if _is_denied(m, text, found, words)]

@@ -55,6 +55,9 @@ def by_sequence(of: OpenText) -> Iterator[Sentences]:
 def by_swaps(of: OpenText) -> Iterator[Sentences]:
     """Yield how two of those above change places: `steps 2 and 3 are swapped`."""
     named = [id for id in dict.fromkeys(_named(of)) if id in of.above]
+    both = of.found.has("pronoun", "BOTH") or of.counts("NUMBER") == [_BOTH]
+    if not named and both and of.found.only("swapping", "pronoun", "BOTH", "NUMBER", "MEASURE"):
+        named = [*of.above[-_BOTH:]]  # `swap the two`
     if not of.demands.swaps or len(named) != _BOTH:
         return
     first, second = sorted(named, key=of.above.index)

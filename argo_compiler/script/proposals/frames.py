@@ -243,6 +243,22 @@ def _checks(
     return tuple(f"Check checkpoint {c.id} {times} times." for c in checkpoints)
 
 
+def _floors(found: Mentions, known: Known) -> Sentences | None:
+    """`Inspect floor 2`: all that is there."""
+    places = found.of("place")
+    floors = [floor for place in places for floor in floor_names(place)]
+    plain = found.has("MEASURE") and found.only("MEASURE", "place") and not found.unknown
+    if not (plain and floors and all(map(floor_names, places))):
+        return None
+    with suppress(RefusedError):
+        numbers = known.floors(floors)
+        checkpoints = [c for c in known.catalog.checkpoints if c.floor in numbers]
+        if checkpoints:
+            known.measured(checkpoints)
+            return (f"Check {checkpoint_words(checkpoints)}.",)
+    return None
+
+
 def placed(
     named: Sequence[Mention], places: Sequence[Mention], known: Known
 ) -> list[CheckpointInfo] | None:
@@ -422,4 +438,5 @@ _FRAMES: tuple[Callable[[Mentions, Known], Sentences | None], ...] = (
     _spaced,
     _go,
     _check,
+    _floors,
 )

@@ -342,6 +342,13 @@ def test_a_time_before_which_nothing_is_done_moves_no_checkpoint(catalog: Catalo
             "R12 und R9 sind vertauscht",
             "Move #19 before #5. Move #5 after #11.",
         ),
+        ("Check PG 1.\nCheck R12.", "Swap the two", "Move #5 before #1."),
+        ("Prüfe PG 1.\nPrüfe R12.", "Vertausche die beiden", "Move #5 before #1."),
+        (
+            "Check PG 1.",
+            "If it reads 4 to 5 bar home",
+            "If #1 is from 4 to 5 bar, return to the docking station.",
+        ),
         ("Check PG 1.", "Read it twice if possible", "Check #1 2 times."),
     ],
 )

@@ -261,7 +261,8 @@ def test_what_stands_over_a_list(text: str, expected: list[str], catalog: Catalo
 
 
 def test_all_of_them_or_those_below(catalog: Catalog) -> None:
-    assert errors("Check all valves:\n- R12", catalog) == [(2, "R12")]
+    assert errors("Check all valves\n- R12", catalog) == [(1, "Check all valves")]
+    assert errors("Check all valves:\n- #3", catalog) == [(1, "valves:")]
 
 
 def test_a_step_that_only_leads_to_itself_is_an_error(catalog: Catalog) -> None:

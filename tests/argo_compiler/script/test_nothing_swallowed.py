@@ -96,6 +96,14 @@ def conditions(text: str, catalog: Catalog) -> list[tuple[str | None, ConditionT
         ("Floor 2 valves\n- R12\n- R25", "a heading of those below it, or a command"),
         ("Ventile, Stockwerk 2\n- R12", "a heading of those below it, or a command"),
         ("Gauges\nPG 3\n#8\nValves\nR12", "a heading of those below it, or a command"),
+        ("Check the valves on floor 2\n- R12", "a heading of those below it, or a command"),
+        ("Check all gauges on floor 1.\n- PG 1\n- PG 2", "a heading of those below it, or"),
+        ("Inspect floor 2\nR12\nPG 3", "a heading of those below it, or a command"),
+        ("Check on floor 1.", "what is read there"),
+        ("Take a reading on floor 2.\nCheck #1.", ""),
+        ("Check all valves\n#3", "a heading of those below it, or a command"),
+        ("Check all valves:\n- #3\n- R12", "there is no valve 3"),
+        ("All valves R12 and R25", ""),
         ("Check #1.\nPressures", "`Pressures`"),
         ("Check #1.\n\nPressures", "`Pressures`"),
         # number and name side by side, and numbers that count
@@ -245,6 +253,15 @@ def test_a_first_line_that_lists_kinds_on_a_floor_is_an_order(
         ("#8, pressure gauge 5, R7", ["8", "11"]),
         ("#8 and pressure gauge 8", ["8", "18"]),
         ("Floor 2: valves\nFloor 3: both valves", ["5", "10", "11"]),
+        # kinds and floors over a list are its heading
+        ("Check the valves on floor 2:\n- R12\n- R25", ["5", "4"]),
+        ("Valves and gauges on floor 2:\n- R12\n- PG 3", ["5", "6"]),
+        ("Inspect floor 2:\n- R12\n- PG 3", ["5", "6"]),
+        ("Prüfe Etage 2:\n- R12", ["5"]),
+        # floors as objects
+        ("Inspect floor 2.", ["5", "6", "7", "8"]),
+        ("Check floors 2 and 3 except R12.", ["6", "7", "8", "9", "10", "11", "12"]),
+        ("Prüfe das zweite Stockwerk.\nDanach #1.", ["5", "6", "7", "8", "1"]),
     ],
 )
 def test_what_is_read(text: str, checkpoints: list[str], catalog: Catalog) -> None:

@@ -101,7 +101,10 @@ def test_made_sentences_say_the_same_of_other_figures() -> None:
     makes = english_generator(draw)
     lines = (f"{text_of(makes.sentence())}." for _ in range(400))
     for line in lines:
-        if any(sign.isdigit() for sign in line) and "\n" not in line:
+        # Lines of several fields are rows of a sheet, and what `within` counts from hangs on
+        # whether a task stands above.
+        other = any(part in line for part in ("\n", ";,", " within "))
+        if any(sign.isdigit() for sign in line) and not other:
             _is_same_with_other_figures(line, draw)
 
 

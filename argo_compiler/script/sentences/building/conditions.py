@@ -265,6 +265,7 @@ def _is_named(test: Asked) -> bool:
 RULES: dict[str, Make] = {
     "compared": _compared,
     "between": _between,
+    "spread": lambda part: replace(_between(part), inclusive=True),
     "exactly": _exactly,
     "beyond": _compared,
     "predicate": _predicate,

@@ -16,8 +16,12 @@ from argo_compiler.script.sentences.tree.nouns import (
     Quantity,
     TheOne,
 )
+from argo_compiler.script.sentences.words.loading import pattern
 from argo_compiler.script.sentences.words.numbers import Figure
 from argo_compiler.script.sentences.words.word import Word
+
+_WHERE = r"\b<where>\s+$"
+"""before a floor: that something is done there, `check on floor 2`"""
 
 
 class Label(NamedTuple):
@@ -173,6 +177,16 @@ def _nouns(part: RulePart) -> Nouns:
     return Nouns(span=part.span, nouns=all_, but=tuple(but), either=either, parted=parted)
 
 
+def _whole_floors(part: RulePart) -> Nouns:
+    """`inspect floor 2`, `check floors 2 and 3 except valve R12`"""
+    floors, *exceptions = part.children
+    if pattern(_WHERE).search(part.text.content[: part.start]):
+        message = "it is not said what is read there"
+        part.error("ambiguous-floor", message, "write `check everything on floor 2`")
+    whole = AllOf(span=part.span, kind=Kind.CHECKPOINT, floors=floors, whole=True)
+    return _nouns(replace(part, children=(whole, *exceptions)))
+
+
 RULES: dict[str, Make] = {
     # `except valve R40`, behind how the others are measured
     "but": lambda part: Nouns(span=part.span, nouns=(), but=part.joined(list)),
@@ -188,5 +202,6 @@ RULES: dict[str, Make] = {
     "pronoun": _pronoun,
     "the_same": _pronoun,
     "nouns": _nouns,
+    "whole_floors": _whole_floors,
     "ends": _nouns,
 }

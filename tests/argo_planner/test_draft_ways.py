@@ -286,6 +286,10 @@ def test_one_choice_of_several_lines(script: Path) -> None:
         (["--say", "4", "Befriend valve R7."], "line 4 of .*: `Befriend valve R7.` is not under"),
         (["--say", "4", "Check valve R99."], "there is no valve R99 on umad"),
         (["--say", "4", "Check it again, sir"], "is not understood"),
+        (
+            ["--say", "4", "If #1 is above 9 psia, go home."],
+            "and `If #1 is above 9 psia, go home` is",
+        ),
         (["--say", "4", "Check \x07valve R7."], "characters that can't be printed"),
         (["--say", "4", "Check \udcff."], "characters that can't be printed"),
         (["--say", "44", "Check valve R7."], "has no line 44 with text"),
@@ -298,7 +302,7 @@ def test_one_choice_of_several_lines(script: Path) -> None:
         (["--undo", "x"], "has no line x"),
         (["--set-aside", "4", "--choose", "4=1"], "line 4 of .* is decided on twice"),
     ],
-    ids=range(14),
+    ids=range(15),
 )
 def test_an_act_that_is_impossible_changes_nothing(
     acts: list[str], message: str, script: Path

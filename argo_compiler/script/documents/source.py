@@ -46,6 +46,8 @@ class Source:
 
     expanded: "Mapping[int, ScriptText]" = field(default_factory=dict, compare=False)
     """lines in which short forms are replaced by what they stand for, by their numbers"""
+    decided: Mapping[int, Sequence[str]] = field(default_factory=dict, compare=False)
+    """sentences that a person has decided on for pieces, by the offsets at which these begin"""
 
     @classmethod
     def of(cls, script: str | Document, name: str) -> "Source":
@@ -87,7 +89,11 @@ class Source:
         return [start for start, _ in self._bounds]
 
     def said(self, first: Span, last: Span | None = None) -> str:
-        """The words from the beginning of one span to the end of the other in the same line."""
+        """Return the words from the beginning of one span to the end of the other in the same line;
+        of a piece that a person has decided on, its sentences."""
+        decided = self.decided.get(self._starts[first.line - 1] + first.column - 1)
+        if decided:
+            return " ".join(decided).rstrip(".")
         end = last if last is not None and last.line == first.line else first
         return self.lines[first.line - 1][first.column - 1 : end.column - 1 + end.length]
 

@@ -70,7 +70,7 @@ def parse(
     the checkpoints that have them. Raises DiagnosticError for what is no
     script at all.
     """
-    source = Source.of(text, source_name)
+    source = replace(Source.of(text, source_name), decided=decided)
     _require_size(source)
     diagnostics = Diagnostics(source)
     language = Language.of(source.text, places)

@@ -17,6 +17,8 @@ _OPEN = (
     "script.unfinished",
     "script.question",
     "script.endless-repeat",
+    "script.condition",
+    "script.unit",
 )
 """how codes of errors begin because of which a sentence stays open, whatever stands around it"""
 

@@ -361,6 +361,15 @@ def test_the_first_choice_means_what_the_line_asks_for(
 
 
 @pytest.mark.parametrize(
+    "line", ["If it is above 60 psia, go home.", "If it is above 20 °, go home."]
+)
+def test_no_choice_has_a_unit_that_does_not_fit(line: str, catalog: Catalog) -> None:
+    (*_, last) = draft_of(f"Check #1.\n{line}", catalog).lines
+    assert last.state is LineState.OPEN
+    assert last.choices == ((),)
+
+
+@pytest.mark.parametrize(
     "line",
     [
         "Check either R9 or R40.",

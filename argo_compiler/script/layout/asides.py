@@ -79,6 +79,7 @@ _PARTICIPLE = re.compile(
     r"\w{4,}ed"
 )
 """a word that may say in which state the listed points are: `isolated`"""
+_LIKE_NAME = re.compile(r"[A-Za-z]{1,3}[ -]\d+")
 _LONGEST_TITLE = 14
 """words"""
 _LONGEST_OCCASION = 10
@@ -166,6 +167,8 @@ class Asides:
         words = text.content.lower().rstrip(":").split()
         if self._lists_kind(text) or self._counts_rounds(text) or self.drives(text):
             return False  # `Gauges: all on floor 1`, `Rounds: 3`, `Speed: slow`
+        if _LIKE_NAME.fullmatch(text.content):
+            return False  # `R 18`, `Ma 6`
         if ".." in text.content or self.turns(text):
             return False  # `for i in 1..3`, `Floor 3, bottom to top`
         if text.content.endswith(":") and {*words} <= _phrases_of(self.prose.around_reactions):

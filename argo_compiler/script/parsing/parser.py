@@ -50,6 +50,12 @@ MAX_LINES = 120_000
 """of a script; one with more is refused unread"""
 
 BY_HAND = "set aside by a person"
+_ANSWERS = 2
+"""different letters before the lines of a list, `(y)` and `(n)`, that are no items"""
+_DITTO = re.compile(r"\s*(?:[\"”„″〃]|''|-\s*[\"”″]\s*-)(?=\s|[:;|,]|$)")
+"""a line, or its first cell, that repeats what is above"""
+_QUOTES = re.compile(r'[^\s:;|,]"|"[^\s:;|,]')
+"""a quotation mark beside a word"""
 _EDITS = ("ADD", "DELETE", "REPLACE", "MOVE")
 
 
@@ -166,6 +172,7 @@ class _Parser:
         sense = LineSense(self.understanding, self.asides, self.fields, width)
         lines = list(lines_of(texts))
         _ask_of_marks(lines, language.lexicon, self.diagnostics)
+        _ask_of_ditto(source, self.diagnostics)
         items = items_of(lines, sense, language.words)
         lists = Lists(self.understanding, self._record)
         steps = list(self._steps(lists.told(items)))
@@ -503,6 +510,10 @@ def _ask_of_marks(lines: Sequence[ScriptLine], lexicon: Lexicon, diagnostics: Di
     for ranked, run in groupby(lines, key=lambda line: (rank(line) is not None, line.indent)):
         same = list(run)
         ranks = [n for n in map(rank, same) if n is not None]
+        if ranked[0] and len({*ranks}) < len(ranks) and len({*ranks}) <= _ANSWERS:
+            message = "the marks before the lines can say which of them are meant"
+            hint = "leave out the lines that are not meant, and the marks"
+            diagnostics.error("ambiguous-step", message, same[0].text.span(), hint)
         if ranked[0] and ranks != sorted(ranks) and sorted(ranks) == list(range(1, len(ranks) + 1)):
             message = "the lines can be meant in the order of their marks, or as they are written"
             hint = "write them in the order in which they are done"
@@ -534,3 +545,13 @@ def _ordered(steps: Sequence[ScriptStep]) -> Iterator[Sentence]:
             ):
                 yield sentence
         yield from _ordered(step.steps)
+
+
+def _ask_of_ditto(source: Source, diagnostics: Diagnostics) -> None:
+    """Ask about lines that begin with a sign for the same as above."""
+    for number, line in enumerate(source.lines, start=1):
+        if number > 1 and _DITTO.match(line) and not _QUOTES.search(line):
+            message = "the sign at the beginning can repeat what stands above"
+            hint = "write out what it repeats"
+            span = source.line_text(number).strip().span()
+            diagnostics.error("not-understood", message, span, hint)

@@ -301,6 +301,9 @@ class SentenceReader:
         head = text[: text.content.index(",")]
         if self.asides.names_tasks(head) or self.asides.names(head):
             return None
+        types = self.understanding.types(head)
+        if "NUMBER" in types and "TIME_WORD" not in types:
+            return None  # `Ma 6, R18` may name two checkpoints
         parts = self._behind(text[len(head.content) + 1 :].strip())
         return _Title(head, parts=parts) if self.asides.is_title(head) and parts else None
 

@@ -73,6 +73,7 @@ def choices_of(
     if len(text.content) > _LONGEST_LOOKED_AT:
         return (*made, ())
     text = composer.understanding.rewritten(composer.understanding.figures(text))
+    text = composer.with_names(text)
     text = _with_areas(text, composer)
     found = mentions_in(text, composer.understanding)
     open_text = OpenText(text, found, composer, (*composer.known.memory.so_far,))

@@ -66,6 +66,8 @@ _LIST = re.compile(r"\s*#?\w*\d(?:(?:\s*[,;/&+]\s*|\s+(?:and|und)\s+|\s+)#?\w*\d
 _BACK_TO_ITEM = re.compile(r"\s[a-z]\)?\W*$")
 """a letter at the end of a text may be the item to go back to"""
 _CUT_FIGURES = re.compile(r"(?<=\d)[ \t]+(?=\d)")
+_CUT_NAME = re.compile(r"\b[A-Za-z]{1,3}([ \t-])\d+\b")
+"""letters and figures that may be one name"""
 _OF_PASSING = ("leave_out", "NEXT_STEP", "GO_ON", "pronoun", "checkpoints", "STEP", "NUMBER")
 """kinds of mentions of `skip it` and `leave that one out`"""
 PASSING_OVER = "If a reading fails, go on with the next checkpoint."
@@ -123,7 +125,7 @@ class Composer:
 
     def propose(self, text: ScriptText) -> Proposal:
         """Return what a sentence or a line proposes."""
-        text = self.understanding.rewritten(text)
+        text = self.with_names(self.understanding.rewritten(text))
         head, colon, names = text.content.partition(":")
         types = {*self.understanding.types(text[: len(head)])} if colon else set()
         listed = types in ({"KIND"}, {"VALUE"}) and _LIST.fullmatch(names) is not None
@@ -161,6 +163,13 @@ class Composer:
         if made is None and found.mentions:
             made = self._of_clauses(text, found)
         return made if made is not None else Proposal()
+
+    def with_names(self, text: ScriptText) -> ScriptText:
+        """Return a text with names of the site written as one word: `R 18`."""
+        for cut in reversed(list(_CUT_NAME.finditer(text.content))):
+            if cut[0].replace(cut[1], "").lower() in self.known.names:
+                text = text.without(*cut.span(1))
+        return text
 
     def _joined(self, text: ScriptText) -> Proposal | None:
         """Return what a text is with its figures put together, `#1 3` as `#13`, if then number and

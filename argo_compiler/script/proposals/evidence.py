@@ -250,6 +250,8 @@ def _has_no_field(text: ScriptText, found: Mentions, language: Language) -> bool
     form = language.prose.form
     if pattern(r"\b<driving>\b").search(text.content) is not None:
         return False  # `Speed: slow`
+    if label is not None and pattern(r"\b<ordering>\b").search(label[0]) is not None:
+        return False  # `Order: C, A, B`
     counts = phrase_pattern(form["rounds_count"]).search(text.content) is not None
     short = 0 < len(value.split()) <= _MOST_OF_VALUE and not (counts or _ENDS.search(value))
     return short and found.only(*OF_FORMS - {"MEASURE", "BE_MEASURED", "question"})

@@ -16,7 +16,7 @@ from argo_compiler.script.sentences.understanding import Understanding
 
 _SIDE_BY_SIDE = 3
 """characters between number and name of one checkpoint: `#8 - pressure gauge 5`"""
-_NO_STATE = frozenset(["understanding", "catalog", "_lookup", "warnings"])
+_NO_STATE = frozenset(["understanding", "catalog", "names", "_lookup", "warnings"])
 """attributes that do not change, or that each proposal begins anew"""
 State = tuple[Memory, CheckpointInfo | None, set[int], set[int], set[int]]
 
@@ -27,6 +27,8 @@ class Known:
     def __init__(self, understanding: Understanding, catalog: Catalog) -> None:
         self.understanding = understanding
         self.catalog = catalog
+        self.names = frozenset(w for c in catalog.checkpoints for w in c.name.lower().split())
+        """words of the names of checkpoints"""
         self._lookup = Lookup(catalog, understanding.diagnostics, None, None)
         self.memory = Memory()
         self.last_named: CheckpointInfo | None = None

@@ -98,6 +98,8 @@ class Neighbours:
         if row is not None and (row.doubt or row.box is not None or row.is_heading):
             return ""
         excludes = Asides(self.understanding).sets_aside(text)  # `Superseded by sheet 2`
+        excludes = excludes or self._over_fields(text)
+        excludes = excludes or self.composer.with_names(text) is not text  # `R 18`
         heads = self._is_section(text, found) or self._names_document(text)
         if not excludes and (heads or self._heads(text, found)):
             return "a heading"
@@ -230,6 +232,25 @@ class Neighbours:
             return found.only(*OF_FORMS, "OCCURS", "forbidding")
         section = phrase_pattern(prose.section).fullmatch(content)
         return section is not None and found.only(*OF_FORMS, "STEP")
+
+    def stands_over_points(self, i: int) -> bool:
+        """Return True for a line with a colon at its end over one that names checkpoints and has
+        no verb: `Team A takes:` over `#1, #4`."""
+        pair = self.script.pieces[i : i + 2]
+        if len(pair) < 2 or not pair[0].text.content.endswith(":"):
+            return False
+        lines = [self.script.source.line_at(piece.text.first) for piece in pair]
+        found = mentions_in(pair[1].text, self.understanding)
+        verb = found.has("MEASURE", "BE_MEASURED")
+        return lines[1] == lines[0] + 1 and names_points(found) and not verb
+
+    def _over_fields(self, text: ScriptText) -> bool:
+        """Return True for a line that is cut as the next one is: `what; times` over `R31; 2`."""
+        lines = self.script.source.lines
+        number = self.script.source.line_at(text.first)
+        pair = lines[number - 1 : number + 1]
+        counts = [[line.count(sign) for line in pair] for sign in ";|\t"]
+        return any(len(some) > 1 and some[0] == some[1] > 0 for some in counts)
 
     def _is_on_site(self, found: Mentions) -> bool:
         """Return True if a text names a checkpoint that the site has."""

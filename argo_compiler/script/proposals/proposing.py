@@ -337,6 +337,8 @@ class _Proposer:
         made = self._once(piece, (), lambda: self.composer.propose(piece.text))
         if made.aside and self._empties_heading(i):
             return Proposal(doubt="this may be of the line above")
+        if made.aside.startswith("a field") and self.neighbours.stands_over_points(i):
+            return Proposal(doubt="this may say who does what is below it")
         return made
 
     def _column_of_order(self, heading: FormRow) -> int | None:

@@ -106,6 +106,16 @@ def conditions(text: str, catalog: Catalog) -> list[tuple[str | None, ConditionT
         ("All valves R12 and R25", ""),
         ("Check #1.\nPressures", "`Pressures`"),
         ("Check #1.\n\nPressures", "`Pressures`"),
+        # marks of answers, signs for the same as above, the order of the lines
+        ("(y) pressure gauge 7\n(n) R18\n(y) pressure gauge 6", "which of them are meant"),
+        ('floor 2: pressure gauge 3\n   "   : pressure gauge 5\n   "   : R12', "repeat"),
+        ("Oben anfangen.\nEtage 1: #2\nEtage 3: #12", "`Oben`"),
+        ("Sheet is upside down, so last line first:\nR25\nR31", "`Sheet`"),
+        ("A. #1\nB. #6\nC. #9\nOrder: C, A, B", "is not a valid order"),
+        # columns with unknown headings, who does it, letters and figures
+        ("what; times\nR31; 2\n#20; 1", "`what`"),
+        ("Team A takes:\n#1, #4\nRobot takes:\n#14, #17", "who does what is below"),
+        ("Ma 6, R18, dann heim.", "`Ma`"),
         # number and name side by side, and numbers that count
         ("#8, pressure gauge 8", "or only one of them"),
         ("Pressure gauge 8, #8, R7", "or only one of them"),
@@ -258,6 +268,9 @@ def test_a_first_line_that_lists_kinds_on_a_floor_is_an_order(
         ("Valves and gauges on floor 2:\n- R12\n- PG 3", ["5", "6"]),
         ("Inspect floor 2:\n- R12\n- PG 3", ["5", "6"]),
         ("Prüfe Etage 2:\n- R12", ["5"]),
+        # a name with a blank in it
+        ("PG 6\nLG 2\nR 18", ["13", "7", "14"]),
+        ("R-12, R 7 and R31", ["5", "11", "10"]),
         # floors as objects
         ("Inspect floor 2.", ["5", "6", "7", "8"]),
         ("Check floors 2 and 3 except R12.", ["6", "7", "8", "9", "10", "11", "12"]),

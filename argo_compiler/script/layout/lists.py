@@ -218,13 +218,14 @@ class Lists:
             parts = said[: found.start()].strip(), said[found.end() :].strip()
             said = join([part for part in parts if part.content] or [said])
         types = self.understanding.types(said)
-        fits = types[-1:] == ("KIND",) and types[:-1] in _HEADS
+        if types[-1:] != ("KIND",) or types[:-1] not in _HEADS:
+            return None
         if "ALL" in types:
             if found is None and not last[0].content.endswith(":"):
                 return None  # `Check all valves` is an order as well
             every = next(w for w in self.understanding.words(said) if w.type == "ALL")
             said = said.without(every.start, every.end)
-        return _Head(last[0], said, found is not None) if fits else None
+        return _Head(last[0], said, found is not None)
 
     def _is_label(self, text: ScriptText) -> bool:
         return {*self.understanding.types(text)[:1]} <= _LABELS

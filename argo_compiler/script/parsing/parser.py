@@ -236,15 +236,18 @@ class _Parser:
         """Return True if an item ends with `Floor 2 valves` or `Check the valves on floor 2:` over
         what may name some of these."""
         first = item.items[0] if item.items else below
-        if first is None or self._is_decided(item):
+        content = item.text.content
+        step = item.line.mark is not LineMark.NONE and not content.endswith(":")
+        if first is None or step or self._is_decided(item):
             return False
+        marked = first.line.mark is not LineMark.NONE
+        if not marked and content.endswith("."):
+            return False  # a sentence, and not a heading
         last = sentences(item.text)[-1:]
         if not last or not self.asides.only_lists_kinds(last[0]):
             return False
-        if first.line.mark is LineMark.NONE and item.text.content.endswith("."):
-            return False  # a sentence, and not a heading
-        marked = first.line.mark is not LineMark.NONE and not self.asides.has_verb(last[0])
-        return marked or self.asides.only_names(first.text)
+        bare = marked and not self.asides.has_verb(last[0])
+        return bare or self.asides.only_names(first.text)
 
     def _over_names(self, text: ScriptText, item: LineItem) -> list[Said]:
         """Read kinds over names: a heading if a colon is behind them, else they can be both."""

@@ -11,6 +11,7 @@ from itertools import pairwise
 from argo_compiler.base.catalog import CheckpointInfo
 from argo_compiler.il import EventKind
 from argo_compiler.script.proposals.composing import PASSING_OVER, normal_end
+from argo_compiler.script.proposals.demands import SPREADS
 from argo_compiler.script.proposals.frames import Sentences, seconds_words
 from argo_compiler.script.proposals.mentions import Mention, Mentions
 from argo_compiler.script.proposals.open_text import ENDS, HOME, OpenText
@@ -228,8 +229,8 @@ def _stated_limit(of: OpenText) -> _Limit | None:
         amounts = [one for one in behind if one.type in _AMOUNTS]
         ranged = [one.type for one in words[i + 1 : i + 5] if one.type not in ("IN", "FROM")]
         outside = word.type == "NOT" and ranged[1:2] == ["TO"] and ranged[0] in _AMOUNTS
-        spread = word.type in _AMOUNTS and ranged[:1] in (["TO"], ["DASH"]) and "IF" in of.types
-        spread = spread and len(ranged) > 1 and ranged[1] in _AMOUNTS  # `if it reads 4 to 5 bar`
+        three = tuple(one.type for one in words[i : i + 3])
+        spread = three in SPREADS and "IF" in of.types  # `if it reads 4 to 5 bar`
         if outside or spread or word.type == "BETWEEN":
             inside = words[i if spread else i + 1 : i + 6]
             spans = [one for one in inside if one.type in _AMOUNTS][:2]

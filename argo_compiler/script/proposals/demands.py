@@ -34,7 +34,7 @@ _READINGS = frozenset(
     ]
 )
 """types of words of a case that the mission language has"""
-_SPREADS = frozenset(product(("NUMBER", "QUANTITY"), ("TO", "DASH"), ("NUMBER", "QUANTITY")))
+SPREADS = frozenset(product(("NUMBER", "QUANTITY"), ("TO", "DASH"), ("NUMBER", "QUANTITY")))
 """types of words of a range: `4 to 5 bar`"""
 _NO_DENIALS = _IFS | {"UNTIL", "FOCUS", "EARLIEST", "LATEST", "WITHIN", "EXCEPT", "AT_MOST"}
 """types of words that the cues of a denial cover as well: `if`, `only`, `not before`"""
@@ -155,7 +155,7 @@ def demands_of(text: ScriptText, found: Mentions, known: Known) -> Demands:
     if found.has("place"):  # `unless floor 3 is closed`
         told -= {"STATE"}
     ordered = [word.type for word in words]
-    spread = not _SPREADS.isdisjoint(zip(ordered, ordered[1:], ordered[2:], strict=False))
+    spread = not SPREADS.isdisjoint(zip(ordered, ordered[1:], ordered[2:], strict=False))
     reads = spread or bool(told & (_READINGS | {"failing", "too_high", "too_low"}))
     in_known_case = bool(types & _IFS) and reads
     left_out = _left_out(text, found, words, known, in_known_case)

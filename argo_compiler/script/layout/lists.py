@@ -47,6 +47,8 @@ class _Head:
     """what it says of each item: `Check pressure gauges`"""
     listing: bool
     """whether it says that a list follows"""
+    every: bool
+    """whether it says `all`, which the items do not repeat"""
 
 
 @dataclass(frozen=True)
@@ -154,6 +156,8 @@ class Lists:
             if item.text.content.endswith(":") and (item.items or listed):
                 self._drop_introduction(item)
             if head is not None and self._is_label(item.text):
+                if over is not None and head.every:
+                    self.record(head.text, "a heading")
                 over = self._without(over, head)
                 _put_before(head, item)
             elif head is not None and head.listing and item.line.mark is not LineMark.NONE:
@@ -195,7 +199,9 @@ class Lists:
         return item if item.text.content else None
 
     def _join_first(self, head: _Head, item: LineItem) -> None:
-        """Puts the sentence before the items that lie within its own one."""
+        """Put the sentence before the items that lie within its own one."""
+        if head.every:
+            self.record(head.text, "a heading")
         first, *others = item.items
         start = item.text[: len(item.text.content) - len(head.text.content)]
         item.text = join([*([start] if start.content else []), head.said, first.text])
@@ -220,12 +226,13 @@ class Lists:
         types = self.understanding.types(said)
         if types[-1:] != ("KIND",) or types[:-1] not in _HEADS:
             return None
-        if "ALL" in types:
+        every = "ALL" in types
+        if every:
             if found is None and not last[0].content.endswith(":"):
                 return None  # `Check all valves` is an order as well
-            every = next(w for w in self.understanding.words(said) if w.type == "ALL")
-            said = said.without(every.start, every.end)
-        return _Head(last[0], said, found is not None)
+            word = next(w for w in self.understanding.words(said) if w.type == "ALL")
+            said = said.without(word.start, word.end)
+        return _Head(last[0], said, found is not None, every)
 
     def _is_label(self, text: ScriptText) -> bool:
         return {*self.understanding.types(text)[:1]} <= _LABELS

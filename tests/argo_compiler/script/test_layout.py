@@ -265,6 +265,24 @@ def test_all_of_them_or_those_below(catalog: Catalog) -> None:
     assert errors("Check all valves:\n- #3", catalog) == [(1, "valves:")]
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Check all valves:\n- R12\n- R25",
+        "All valves:\n- R12\n- R25",
+        "All valves:\nR12\nR25",
+        "1. Check all of the valves:\n   - R12\n   - R25",
+        "Check #1. Then check all valves:\n- R12\n- R25",
+        "Prüfe alle Ventile:\n- R12\n- R25",
+    ],
+)
+def test_all_over_some_of_them_is_a_heading_with_a_warning(text: str, catalog: Catalog) -> None:
+    draft = draft_of(text, catalog)
+    aside = [line for line in draft.lines if line.state is LineState.SET_ASIDE]
+    assert [line.text[-1] for line in aside] == [":"]
+    assert measured_in(draft.require_mission())[-2:] == ["5", "4"]
+
+
 def test_a_step_that_only_leads_to_itself_is_an_error(catalog: Catalog) -> None:
     text = "Start in starting area 1\nGo to step 1\nCheck #1"
     assert errors(text, catalog) == [(2, "step 1")]

@@ -38,10 +38,7 @@ PATIENCE_S = 240
 expect.set_options(timeout=1000 * PATIENCE_S)
 
 # Messages of the browser's software renderer, and of refused requests, which the page itself shows.
-_IGNORED_MESSAGES = (
-    *("GL Driver Message", "Failed to load resource", "GPU stall"),
-    "WebSocket is closed before the connection is established",  # a view was left at once
-)
+_IGNORED_MESSAGES = ("GL Driver Message", "Failed to load resource", "GPU stall")
 
 
 @dataclass

@@ -35,7 +35,7 @@ export class LiveConnection<Message> {
     removeEventListener("online", this.retry);
     removeEventListener("offline", this.lost);
     clearTimeout(this.waiting);
-    this.socket?.close();
+    if (this.socket) closeOnceOpen(this.socket);
   }
 
   /** The browser is offline. The socket itself would notice this only minutes later. */
@@ -43,7 +43,7 @@ export class LiveConnection<Message> {
     const socket = this.socket;
     if (socket === null) return;
     this.socket = null;
-    socket.close();
+    closeOnceOpen(socket);
     this.ended();
   };
 
@@ -83,4 +83,10 @@ export class LiveConnection<Message> {
       this.handlers.onDeleted?.();
     };
   }
+}
+
+/** Close the socket, but not before it is open: browsers report that as an error. */
+function closeOnceOpen(socket: WebSocket): void {
+  if (socket.readyState === WebSocket.CONNECTING) socket.addEventListener("open", () => socket.close());
+  else socket.close();
 }

@@ -598,12 +598,12 @@ export class DraftView extends PageElement {
 }
 
 const NONE: readonly Diagnostic[] = [];
+const NO_FIELDS: ReadonlyMap<string, string | null> = new Map();
+
 /** Return whether the draft is shown: keys would have no effect before it is known what the person may do. */
 function isShown(): boolean {
   return openedDraft.value !== null && service.value !== null;
 }
-
-const NO_FIELDS: ReadonlyMap<string, string | null> = new Map();
 
 /** Return the index of the line that an event comes from; null: none. */
 function indexOf(event: Event): number | null {

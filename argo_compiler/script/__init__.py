@@ -10,6 +10,7 @@ __all__ = [
     "Draft",
     "DraftActs",
     "DraftLine",
+    "DurationReading",
     "IncompleteDraft",
     "LineDecision",
     "LineState",
@@ -24,6 +25,7 @@ __all__ = [
     "read_decisions",
     "read_document",
     "read_draft",
+    "read_duration",
     "read_script",
     "resolve_script",
 ]
@@ -52,6 +54,7 @@ if TYPE_CHECKING:
         read_draft,
     )
     from argo_compiler.script.drafts.making import import_script
+    from argo_compiler.script.durations import DurationReading, read_duration
     from argo_compiler.script.parsing.parser import parse
     from argo_compiler.script.resolve.importing import Resolved, resolve_script
     from argo_compiler.script.write.protocol import format_script
@@ -77,6 +80,7 @@ else:
             ],
             "drafts.draft_file": ["StoredDraft", "draft_text", "read_decisions", "read_draft"],
             "drafts.making": ["import_script"],
+            "durations": ["DurationReading", "read_duration"],
             "parsing.parser": ["parse"],
             "resolve.importing": ["Resolved", "resolve_script"],
             "write.protocol": ["format_script"],

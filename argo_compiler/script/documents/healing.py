@@ -131,6 +131,11 @@ def _plain(line: ScriptText) -> ScriptText:
     return line[: len(line.content.rstrip())]
 
 
+def plain_signs(text: str) -> str:
+    """Return a text of one line with plain signs in place of typographic ones: `20′` as `20'`."""
+    return "".join(map(_sign, text))
+
+
 @lru_cache(maxsize=1024)
 def _sign(character: str, is_mark: bool = False) -> str:
     if character == "*":

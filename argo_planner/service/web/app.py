@@ -16,6 +16,7 @@ from argo_planner.service.runs.state import RunMessage
 from argo_planner.service.web import (
     commands,
     drafts,
+    durations,
     evaluations,
     jobs,
     live,
@@ -118,6 +119,7 @@ def make_app(open_service: OpenService) -> FastAPI:
     app.openapi = partial(_make_document, app)  # type: ignore[method-assign]
     parts = (
         page, missions, drafts, versions, commands, jobs, evaluations, world, runs, live,
+        durations,
     )  # fmt: skip
     for part in (router, *(one.router for one in parts), runs.socket_router):
         app.include_router(part)

@@ -218,18 +218,50 @@ def test_a_place_added_after_other_tasks_is_a_waypoint(ann, service, plan) -> No
     assert service.mission(plan)["tasks"][-1]["action"] == "WAYPOINT"
 
 
-def test_a_form_accepts_durations_with_units_and_refuses_other_text(ann, service, plan) -> None:
+def test_a_form_reads_durations_as_scripts_do(ann, service, plan) -> None:
     ann.key("Escape")
     field = ann.page.get_by_label("Maximum duration")
-    field.fill("soon")
-    field.press("Enter")
-    expect(ann.page.get_by_role("alert")).to_contain_text("1:30 or 10 min")
-    expect(field).to_have_value("soon")
-    field.fill("12 min 30")
-    field.press("Enter")
-    expect(ann.page.get_by_role("alert")).to_have_count(0)
-    expect(field).to_have_value("12 min 30 s")
-    assert service.mission(plan)["max_duration"] == 750
+    texts = {"1:30 h": 5400, "2:00 h": 7200, "1h30": 5400, "eine halbe Stunde": 1800}
+    for text, seconds in texts.items():
+        field.fill(text)
+        field.press("Enter")
+        expect(field).not_to_have_value(text)
+        expect(ann.page.get_by_role("alert")).to_have_count(0)
+        assert service.mission(plan)["max_duration"] == seconds
+
+
+def test_a_form_asks_about_a_duration_with_several_meanings(ann, service, plan) -> None:
+    ann.key("Escape")
+    field = ann.page.get_by_label("Maximum duration")
+    question = ann.page.get_by_role("alert")
+    duration = service.mission(plan)["max_duration"]
+    for text, answers, chosen, seconds in (
+        ("22:00", ["22 min", "22 h"], "22 h", 79200),
+        ("10", ["10 s", "10 min", "10 h"], "10 min", 600),
+        ("12 min 30", ["12 min 30 s"], "12 min 30 s", 750),
+    ):
+        field.fill(text)
+        field.press("Tab")
+        expect(question.get_by_role("button")).to_have_text(answers)
+        expect(field).to_have_value(text)
+        assert service.mission(plan)["max_duration"] == duration
+        question.get_by_role("button", name=chosen).click()
+        expect(question).to_have_count(0)
+        expect(field).to_have_value(chosen)
+        duration = service.mission(plan)["max_duration"]
+        assert duration == seconds
+
+
+def test_a_form_refuses_text_that_is_no_duration(ann, service, plan) -> None:
+    ann.key("Escape")
+    before = service.mission(plan)["max_duration"]
+    field = ann.page.get_by_label("Maximum duration")
+    for text in ("1:90", "soon"):
+        field.fill(text)
+        field.press("Enter")
+        expect(ann.page.get_by_role("alert")).to_contain_text("10 min or 1:30 h")
+        expect(field).to_have_value(text)
+    assert service.mission(plan)["max_duration"] == before
 
 
 @pytest.mark.long

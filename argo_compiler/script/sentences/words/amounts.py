@@ -34,6 +34,8 @@ class Length:
     first: str = ""
     """how the first reading is written so that there is no doubt"""
     second: str = ""
+    clock_parts: int = 0
+    """number of its parts if it is written as a clock, else 0: `1:30` has 2, `1:30:00` has 3"""
 
 
 def _told(number: float, unit: float) -> str:
@@ -47,12 +49,12 @@ def read_clock(said: str) -> Length | None:
     if any(part >= 60 for part in parts[1:]):
         return None
     if len(parts) == 3:
-        return Length(parts[0] * 3600.0 + parts[1] * 60 + parts[2])
+        return Length(parts[0] * 3600.0 + parts[1] * 60 + parts[2], clock_parts=3)
     minutes, rest = parts
     length = minutes * 60.0 + rest
     first, second = f"{minutes} min {rest} s", f"{minutes} h {rest} min"
     other = None if minutes >= 24 else length * 60
-    return Length(length, other=other, first=first, second=second)
+    return Length(length, other=other, first=first, second=second, clock_parts=2)
 
 
 def read_glued(said: str) -> Length | None:
@@ -103,12 +105,13 @@ def _length(figure: Figure, unit: float) -> Length:
 
 
 def _of_clock(length: Length, unit: float) -> Length | None:
-    """`1:30 h` is hours and minutes, `1:30 min` minutes and seconds."""
-    if length.unit != 1.0 or unit not in (60.0, 3600.0):
-        return None
-    if unit == 60.0:
-        return Length(length.seconds)
-    return Length(length.seconds * 60 if length.other is None else length.other)
+    """`1:30 h` is hours and minutes, `1:30 min` minutes and seconds, `1:30:00 h` all three."""
+    match length.clock_parts, unit:
+        case (2, 60.0) | (3, 3600.0):
+            return Length(length.seconds)
+        case 2, 3600.0:
+            return Length(length.seconds * 60 if length.other is None else length.other)
+    return None
 
 
 def total(first: Word, second: Word) -> Word | None:

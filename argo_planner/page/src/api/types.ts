@@ -65,6 +65,7 @@ type WebhookMessage<name extends keyof webhooks> =
 export type RoomMessage = WebhookMessage<"mission">;
 export type RunMessage = WebhookMessage<"robot">;
 
+export type DurationReading = Schemas["DurationReading"];
 export type DraftState = Schemas["DraftState"];
 export type DraftSummary = Schemas["DraftSummary"];
 export type DraftedLine = Schemas["DraftedLine"];

@@ -11,8 +11,14 @@ export interface Option {
   readonly label: string;
 }
 
-/** Saves the typed or chosen value. Returns the reason of a refusal, or null if it was saved. */
-export type Commit = (value: string) => Promise<string | null> | string | null;
+/** A question about a text that can be read in several ways. Each answer is a text without doubt. */
+export interface Question {
+  readonly text: string;
+  readonly answers: readonly string[];
+}
+
+/** Saves the typed or chosen value. Returns the reason of a refusal, a question, or null if it was saved. */
+export type Commit = (value: string) => Promise<string | Question | null> | string | Question | null;
 
 let count = 0;
 
@@ -59,6 +65,15 @@ export class FormField extends PageElement {
       color: var(--bad);
       font-size: 12px;
     }
+    .answers {
+      display: flex;
+      flex-wrap: wrap;
+      gap: 4px;
+      margin-top: 4px;
+    }
+    .answers button {
+      color: var(--text);
+    }
     .note {
       flex: none;
       color: var(--dim);
@@ -77,10 +92,10 @@ export class FormField extends PageElement {
   @property({ attribute: false }) commit: Commit = () => null;
   @property({ type: Boolean }) disabled = false;
   @state() private typed: string | null = null;
-  @state() private wrong: string | null = null;
+  @state() private wrong: string | Question | null = null;
   @state() private overtaken = false;
-  /** Whether the typed value is being saved. */
-  private taking = false;
+  /** The saving of the typed value that goes on. */
+  private saving: Promise<void> | null = null;
   private readonly id_ = `field-${++count}`;
 
   override willUpdate(changes: Map<string, unknown>): void {
@@ -88,6 +103,13 @@ export class FormField extends PageElement {
       this.overtaken = this.typed !== this.value;
       if (!this.overtaken) this.forget();
     }
+  }
+
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    // Leaving a field saves it: this one is gone because what it belonged to is gone.
+    if (this.typed !== null && this.wrong === null && this.saving === null)
+      showNotice("warn", t().forms.notSaved(this.label), { details: [this.typed] });
   }
 
   override render() {
@@ -140,22 +162,42 @@ export class FormField extends PageElement {
         ${field}${this.kind === "check" ? label : nothing}
         ${this.note ? html`<span class="note">${this.note}</span>` : nothing}
       </div>
-      ${this.wrong !== null
-        ? html`<p class="wrong" role="alert" id=${`${this.id_}-wrong`}>${this.wrong}</p>`
-        : this.overtaken
-          ? html`<p class="wrong" role="alert" id=${`${this.id_}-wrong`}>
-              ${t().forms.overtaken(this.value)}
-              <button @click=${this.forget}>${t().forms.takeTheirs}</button>
-            </p>`
-          : nothing}`;
+      ${this.wrong !== null || this.overtaken
+        ? html`<div class="wrong" role="alert" id=${`${this.id_}-wrong`}>${this.complaint()}</div>`
+        : nothing}`;
+  }
+
+  private complaint() {
+    if (this.wrong === null)
+      return html`${t().forms.overtaken(this.value)} <button @click=${this.forget}>${t().forms.takeTheirs}</button>`;
+    if (!isQuestion(this.wrong)) return this.wrong;
+    const { text, answers } = this.wrong;
+    return html`${text}
+      <div class="answers">
+        ${answers.map((answer) => html`<button @click=${() => this.answer(answer)}>${answer}</button>`)}
+      </div>`;
+  }
+
+  private answer(text: string): void {
+    void this.take(text);
+    this.focus();
   }
 
   override focus(): void {
     this.renderRoot.querySelector<HTMLElement>("input, select, textarea")?.focus();
   }
 
+  /** Save what is typed. Returns whether nothing is left unsaved; otherwise the field gets the focus. */
+  async settle(): Promise<boolean> {
+    if (this.typed !== null && !isQuestion(this.wrong)) await this.take(this.typed);
+    if (this.typed === null) return true;
+    this.focus();
+    return false;
+  }
+
   private onInput(event: Event): void {
     this.typed = valueOf(event);
+    if (isQuestion(this.wrong)) this.wrong = null;
   }
 
   private onChange(event: Event): void {
@@ -164,7 +206,7 @@ export class FormField extends PageElement {
 
   private onKey(event: KeyboardEvent): void {
     if (event.key === "Enter" && this.kind !== "long") void this.take(valueOf(event));
-    else if (event.key === "Escape" && this.typed !== null && !this.taking) this.forget();
+    else if (event.key === "Escape" && this.typed !== null && this.saving === null) this.forget();
     else return;
     event.preventDefault();
     event.stopPropagation();
@@ -176,21 +218,30 @@ export class FormField extends PageElement {
     this.overtaken = false;
   };
 
-  private async take(typed: string): Promise<void> {
-    if (typed === this.value) return this.forget();
-    if (this.taking && typed === this.typed) return; // Enter saves it, and the loss of focus would save it again
+  /** Save a text. A text that is being saved is not saved twice: Enter saves it, and then the loss of focus. */
+  private take(typed: string): Promise<void> {
+    if (typed === this.value) this.forget();
+    else if (this.saving === null || typed !== this.typed) {
+      const saving = this.save(typed).finally(() => {
+        if (this.saving === saving) this.saving = null;
+      });
+      this.saving = saving;
+    }
+    return this.saving ?? Promise.resolve();
+  }
+
+  private async save(typed: string): Promise<void> {
     this.typed = typed;
     this.overtaken = false;
-    this.taking = true;
-    let wrong: string | null;
-    try {
-      wrong = await this.commit(typed);
-    } finally {
-      this.taking = false;
-    }
-    if (wrong !== null && !this.isConnected) showNotice("bad", `${this.label}: ${wrong}`, { details: [typed] });
+    const wrong = await this.commit(typed);
+    if (wrong !== null && !this.isConnected)
+      showNotice("bad", `${this.label}: ${isQuestion(wrong) ? wrong.text : wrong}`, { details: [typed] });
     if (this.typed !== typed) return;
     if (wrong === null) this.forget();
     else this.wrong = wrong;
   }
+}
+
+function isQuestion(wrong: string | Question | null): wrong is Question {
+  return wrong !== null && typeof wrong !== "string";
 }

@@ -1,6 +1,8 @@
 /** Fields that forms consist of: numbers, times, choices, poses. */
 
+import { Refusal, Unreached } from "../api/client";
 import type { Pose } from "../api/types";
+import { readDuration } from "../state/durations";
 import { mayPlan } from "../state/session";
 import { world } from "../state/world";
 import { t } from "../texts";
@@ -8,7 +10,7 @@ import { html } from "../ui/element";
 import { figure } from "../ui/figures";
 import type { Commit, FormField, Option } from "./field";
 import "./field";
-import { readTime, writeTime } from "./times";
+import { writeTime } from "./times";
 
 export interface FieldOptions {
   readonly note?: string | undefined;
@@ -84,12 +86,22 @@ export function speedField(label: string, value: Given, commit: TakeNumber) {
   return numberField(label, value, take, { note: "m/s", placeholder: Number.isFinite(most) ? String(most) : "" });
 }
 
-/** Render a field for a time (s); empty means null. */
+/** Render a field for a duration (s); empty means null. The service reads it as it reads durations in scripts. */
 export function timeField(label: string, value: Given, commit: TakeNumber, options: FieldOptions = {}) {
-  const take = (text: string) => {
+  const take = async (text: string) => {
     if (text.trim() === "") return commit(null);
-    const time = readTime(text);
-    return time === null ? t().forms.noTime : commit(time);
+    const texts = t().forms;
+    let read;
+    try {
+      read = await readDuration(text);
+    } catch (error) {
+      if (error instanceof Unreached) return t().frame.notReached;
+      if (error instanceof Refusal) return texts.noTime;
+      throw error;
+    }
+    if (read.seconds !== null) return commit(read.seconds);
+    if (read.possible.length === 0) return texts.noTime;
+    return { text: texts.whichTime(text.trim()), answers: read.possible.map(writeTime) };
   };
   const shown = value === null || value === undefined ? "" : writeTime(value);
   return field("text", label, shown, take, { placeholder: t().forms.likeTime, ...options });

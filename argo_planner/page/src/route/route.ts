@@ -1,6 +1,8 @@
 /** The requirements of the best order, and the search for it. */
 
-import { readTime, writeTime } from "../forms/times";
+import type { FormField } from "../forms/field";
+import { timeField } from "../forms/parts";
+import { writeTime } from "../forms/times";
 import { parts } from "../run/parts";
 import { edit } from "../state/commands";
 import { missionHasErrors, tasksAfterStart, mission } from "../state/plan";
@@ -35,9 +37,18 @@ export class RoutePanel extends PageElement {
         align-items: center;
       }
       .window {
-        grid-template-columns: minmax(0, 1fr) 82px 82px auto;
+        grid-template-columns: minmax(0, 1fr) minmax(0, 1fr) auto;
+        align-items: start;
       }
-      .window input,
+      .window argo-field {
+        margin-bottom: 0;
+      }
+      .window button {
+        margin-top: 18px;
+      }
+      .window select {
+        grid-column: 1 / -1;
+      }
       .line select {
         min-width: 0;
       }
@@ -49,6 +60,9 @@ export class RoutePanel extends PageElement {
 
   @state() private pairsAsked: Asked["before"] = [];
   @state() private windows: Asked["windows"] = [];
+  @state() private budget: number | null = null;
+  @state() private earliest: number | null = null;
+  @state() private latest: number | null = null;
 
   override render() {
     const texts = t().route;
@@ -66,11 +80,10 @@ export class RoutePanel extends PageElement {
         <details>
           <summary>${texts.requirements}</summary>
           <div class="inner">
-            <label>
-              ${texts.budget}
-              <input name="budget" placeholder="20 min" @change=${this.tidy} />
+            <div id="budget">
+              ${timeField(texts.budget, this.budget, (budget) => this.take({ budget }))}
               <span class="reason">${texts.budgetHint}</span>
-            </label>
+            </div>
             ${this.pairs()} ${this.times()} ${this.solvers()}
           </div>
         </details>
@@ -129,9 +142,8 @@ export class RoutePanel extends PageElement {
       </ul>
       <div class="line window">
         ${this.choice("what", texts.what)}
-        <input id="earliest" aria-label=${texts.earliest} placeholder=${texts.earliest} @change=${this.tidy} />
-        <input id="latest" aria-label=${texts.latest} placeholder=${texts.latest} @change=${this.tidy} />
-        ${iconButton("add", texts.add, this.addWindow, { look: "" })}
+        ${timeField(texts.earliest, this.earliest, (earliest) => this.take({ earliest }))}
+        ${timeField(texts.latest, this.latest, (latest) => this.take({ latest }))} ${iconButton("add", texts.add, this.addWindow, { look: "" })}
       </div>
     </section>`;
   }
@@ -164,27 +176,32 @@ export class RoutePanel extends PageElement {
       this.pairsAsked = [...this.pairsAsked, [first, second]];
   }
 
-  private addWindow(): void {
+  private async addWindow(): Promise<void> {
+    if (!(await this.settled(".window argo-field"))) return;
     const what = this.value("what");
-    const earliest = readTime(this.value("earliest")) ?? 0;
-    const latest = readTime(this.value("latest"));
+    const earliest = this.earliest ?? 0;
+    const latest = this.latest;
     if (what === "" || (earliest === 0 && latest === null)) return;
     if (latest !== null && latest <= earliest) return;
     this.windows = [...this.windows.filter((one) => one.what !== what), { what, earliest, latest }];
+    this.take({ earliest: null, latest: null });
+  }
+
+  /** Keep times of the form. Returns null: none is refused. */
+  private take(times: { budget?: number | null; earliest?: number | null; latest?: number | null }): null {
+    Object.assign(this, times);
+    return null;
+  }
+
+  /** Save what is typed in the fields. Returns whether nothing is left unsaved. */
+  private async settled(selector: string): Promise<boolean> {
+    for (const field of this.renderRoot.querySelectorAll<FormField>(selector))
+      if (!(await field.settle())) return false;
+    return true;
   }
 
   private value(id: string): string {
     return this.renderRoot.querySelector<HTMLInputElement>(`#${id}`)?.value ?? "";
-  }
-
-  /** Format the time in a field as it was understood, or mark it as invalid. */
-  private tidy(event: Event): void {
-    const field = event.target as HTMLInputElement;
-    const read = readTime(field.value);
-    const wrong = field.value.trim() !== "" && read === null;
-    field.setCustomValidity(wrong ? " " : "");
-    field.setAttribute("aria-invalid", String(wrong));
-    if (read !== null) field.value = writeTime(read);
   }
 
   private whyNot(): string | null {
@@ -194,12 +211,13 @@ export class RoutePanel extends PageElement {
     return missionHasErrors.value ? texts.hasErrors : null;
   }
 
-  private search(event: SubmitEvent): void {
+  private async search(event: SubmitEvent): Promise<void> {
     event.preventDefault();
     const form = new FormData(event.target as HTMLFormElement);
+    if (!(await this.settled("argo-field"))) return;
     const known = new Set(tasksAfterStart.value);
     const asked: Asked = {
-      budget: readTime(form.get("budget") as string),
+      budget: this.budget,
       before: this.pairsAsked.filter((pair) => pair.every((name) => known.has(name))),
       windows: this.windows.filter(({ what }) => known.has(what)),
     };

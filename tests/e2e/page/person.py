@@ -92,6 +92,20 @@ class Person:
         target.focus()
         expect(target).to_be_focused()
 
+    def focused(self) -> str:
+        """Return the label or the text of the focused element; empty: nothing has the focus."""
+        return str(
+            self.evaluate(
+                """() => {
+                    let at = document.activeElement;
+                    while (at?.shadowRoot?.activeElement) at = at.shadowRoot.activeElement;
+                    if (at === null || at === document.body) return "";
+                    const label = at.labels?.[0]?.innerText ?? at.getAttribute("aria-label");
+                    return (label ?? at.innerText).trim();
+                }"""
+            )
+        )
+
     @property
     def save_status(self) -> Any:
         """Locator of the text that states if all edits are saved."""

@@ -104,6 +104,77 @@ def test_the_deletion_of_a_task_in_a_form_is_reported_with_the_typed_text(
     expect(ann.page.get_by_role("log")).to_contain_text("0.2")
 
 
+def test_a_name_that_is_typed_stays_in_its_field_while_others_rename(
+    browsers, address, plan, service
+) -> None:
+    ann = open_mission(browsers, address, plan, "Ann")
+    ann.click(row(ann, "A1"))
+    name = ann.page.get_by_label("Name", exact=True)
+    name.fill("")
+    ann.type("Stairs ")
+    rename = {"kind": "rename_task", "name": "A1", "new_name": "Bobs"}
+    assert service.command(plan, "*", rename, client=service.as_("Bob")).status_code == 200
+    expect(ann.page.get_by_role("alert")).to_contain_text("Bobs")
+    expect(row(ann, "Bobs")).to_have_attribute("aria-selected", "true")
+    expect(name).to_be_focused()
+    ann.type("north")
+    ann.key("Enter")
+    expect_order(ann, "START", "Stairs north", "B2", "C4")
+    expect(name).to_be_focused()
+    expect(name).to_have_value("Stairs north")
+    assert service.mission(plan)["designation"] != "north"
+
+
+def test_a_name_that_is_typed_in_the_list_stays_there_while_others_rename(
+    browsers, address, plan, service
+) -> None:
+    ann = open_mission(browsers, address, plan, "Ann")
+    ann.click(row(ann, "A1"))
+    ann.key("F2")
+    ann.type("gmnow ")
+    rename = {"kind": "rename_task", "name": "A1", "new_name": "Bobs"}
+    assert service.command(plan, "*", rename, client=service.as_("Bob")).status_code == 200
+    details = ann.page.get_by_role("tabpanel", name="Details")
+    expect(details.get_by_label("Name", exact=True)).to_have_value("Bobs")
+    ann.type("gmnow")
+    ann.key("Enter")
+    expect_order(ann, "START", "gmnow gmnow", "B2", "C4")
+
+
+def test_what_is_typed_after_the_deletion_of_the_task_goes_nowhere(
+    browsers, address, plan, service
+) -> None:
+    ann = open_mission(browsers, address, plan, "Ann")
+    ann.click(row(ann, "A1"))
+    ann.page.get_by_label("Name", exact=True).fill("Stairs ")
+    before = service.mission(plan)
+    gone = {"kind": "remove_task", "name": "A1"}
+    ann.key("n")
+    assert service.command(plan, "*", gone, client=service.as_("Bob")).status_code == 200
+    expect(ann.page.get_by_role("log")).to_contain_text("Bob has deleted or renamed A1")
+    ann.key("o")
+    ann.type("orth m")
+    ann.key("Enter", "Delete")
+    expect_order(ann, "START", "B2", "C4")
+    expect(ann.page.get_by_role("log")).to_contain_text("Stairs n")
+    now = service.mission(plan)
+    assert now["designation"] == before["designation"]
+    assert [task["name"] for task in now["tasks"]] == ["START", "B2", "C4"]
+
+
+def test_the_focus_stays_after_a_rename(browsers, address, plan) -> None:
+    ann = open_mission(browsers, address, plan, "Ann")
+    ann.click(row(ann, "B2"))
+    name = ann.page.get_by_label("Name", exact=True)
+    name.fill("Stairs")
+    name.press("Tab")
+    following = ann.focused()
+    expect_order(ann, "START", "A1", "Stairs", "C4")
+    ann.page.wait_for_timeout(100)
+    assert ann.focused() == following == "Checkpoint"
+    expect(row(ann, "Stairs")).to_have_attribute("aria-selected", "true")
+
+
 def test_a_key_after_the_deletion_of_the_mission_creates_nothing(
     browsers, address, plan, service
 ) -> None:

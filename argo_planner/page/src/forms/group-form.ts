@@ -1,9 +1,9 @@
 /** The form of a group: its rounds, and what ends them. */
 
 import type { Group } from "../api/types";
-import { groupKey, ownName } from "../model/outline";
+import { ownName } from "../model/outline";
 import { edit, editFromForm } from "../state/commands";
-import { mission, select } from "../state/plan";
+import { mission } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { t } from "../texts";
 import { html } from "../ui/element";
@@ -23,13 +23,8 @@ export function groupForm(group: Group) {
   const saveUntil = (change: (was: Group["until"]) => Group["until"]) =>
     setOf((was) => ({ until: change(was.until) }));
   const tasks = (mission.value?.tasks ?? []).map(({ name }) => ({ value: name, label: name }));
-  const rename = async (name: string) => {
-    const own_name = name.trim();
-    const wrong = await editFromForm(() => [{ kind: "rename_group", name: group.name, own_name }]);
-    const outer = group.name.slice(0, group.name.length - ownName(group.name).length);
-    if (wrong === null) select([groupKey(outer + own_name)]);
-    return wrong;
-  };
+  const rename = (name: string) =>
+    editFromForm(() => [{ kind: "rename_group", name: group.name, own_name: name.trim() }]);
   return html`<h2>${texts.group}</h2>
     ${textField(texts.name, ownName(group.name), rename)}
     ${countField(texts.rounds, group.max_repeat_count || null, (count) =>

@@ -5,6 +5,7 @@ import { keyed } from "lit/directives/keyed.js";
 import type { Task } from "../api/types";
 import { isTaskKey, nameOfKey } from "../model/outline";
 import { editFromForm } from "../state/commands";
+import { identityOf } from "../state/identity";
 import { mission, planId, selection, tasksByName } from "../state/plan";
 import { t } from "../texts";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
@@ -96,7 +97,7 @@ export class PropertiesPanel extends PageElement {
       return task ? [task] : [];
     });
     const whole = () => keyed(planId.value, headerForm(open));
-    if (tasks.length > 1) return html`${keyed(keys.join("\n"), severalForm(tasks))}`;
+    if (tasks.length > 1) return html`${keyed(keys.map(identityOf).join(), severalForm(tasks))}`;
     if (key === undefined) return html`${whole()}`;
     const name = nameOfKey(key);
     const task = tasks[0];
@@ -107,7 +108,7 @@ export class PropertiesPanel extends PageElement {
     else if (key.startsWith("group:") && group) form = groupForm(group);
     else if (reaction) form = reactionForm(reaction);
     else return html`${whole()}`;
-    return html`${keyed(key, form)}`;
+    return html`${keyed(identityOf(key), form)}`;
   }
 }
 

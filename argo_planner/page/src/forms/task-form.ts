@@ -1,9 +1,8 @@
 /** The form of a task. */
 
 import type { Task, TimeWindow, Transition, WaitRule } from "../api/types";
-import { taskKey } from "../model/outline";
 import { edit, editFromForm } from "../state/commands";
-import { tasksAfterStart, select, tasksByName } from "../state/plan";
+import { tasksAfterStart, tasksByName } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { lookAt } from "../state/view";
 import { checkpointsById } from "../state/world";
@@ -39,13 +38,8 @@ export function taskForm(task: Task) {
         ...(typeof fields === "function" ? fields(currentTask(task)) : fields),
       },
     ]);
-  const rename = async (name: string) => {
-    const wrong = await editFromForm(() => [
-      { kind: "rename_task", name: task.name, new_name: name.trim() },
-    ]);
-    if (wrong === null) select([taskKey(name.trim())]);
-    return wrong;
-  };
+  const rename = (name: string) =>
+    editFromForm(() => [{ kind: "rename_task", name: task.name, new_name: name.trim() }]);
   return html`<div class="title">
       <h2>${t().words.action[task.action]}</h2>
       ${task.object_id || task.pose

@@ -77,20 +77,16 @@ function emptiedGroups(open: Mission, gone: readonly string[]): string[] {
 }
 
 /** Rename a task or a group and select it. Returns whether it has the new name. */
-export async function renameRow(row: Row, name: string): Promise<boolean> {
+export function renameRow(row: Row, name: string): Promise<boolean> {
   if (row.kind === "task") {
     const old = row.task.name;
-    if (name === "" || name === old) return true;
-    const done = await edit({ kind: "rename_task", name: old, new_name: name });
-    if (done) select([taskKey(name)]);
-    return done;
+    if (name === "" || name === old) return Promise.resolve(true);
+    return edit({ kind: "rename_task", name: old, new_name: name });
   }
   const whole = row.group.name;
   const old = ownName(whole);
-  if (name === "" || name === old) return true;
-  const done = await edit({ kind: "rename_group", name: whole, own_name: name });
-  if (done) select([groupKey(whole.slice(0, whole.length - old.length) + name)]);
-  return done;
+  if (name === "" || name === old) return Promise.resolve(true);
+  return edit({ kind: "rename_group", name: whole, own_name: name });
 }
 
 /** Return the selected tasks as text; null: none are selected. */

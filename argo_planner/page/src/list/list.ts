@@ -6,6 +6,7 @@ import { repeat } from "lit/directives/repeat.js";
 
 import { isTyping } from "../frame/keys";
 import { nameOfKey, type Row } from "../model/outline";
+import { identityOf } from "../state/identity";
 import { planId, select, selection, tasksByName } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { lookAt, pointedName, tool } from "../state/view";
@@ -73,8 +74,8 @@ export class MissionList extends PageElement {
   @query("argo-add") private readonly adding!: AddTasks;
   @state() private top = 0;
   @state() private height = 800;
-  /** The row that is being renamed, and the initial text of its field. */
-  @state() private naming: { readonly key: string; readonly text: string } | null = null;
+  /** What is being renamed, and the initial text of the field in its row. */
+  @state() private naming: { readonly identity: string; readonly text: string } | null = null;
   private readonly drag: RowDrag = new RowDrag(this);
   private resized = new ResizeObserver(([entry]) => {
     if (entry) this.height = entry.contentRect.height;
@@ -158,13 +159,13 @@ export class MissionList extends PageElement {
         >
           ${repeat(
             shown.slice(first, last),
-            (row) => row.key,
+            (row) => identityOf(row.key),
             (row, index) =>
               rowView(row, first + index, {
                 chosen: chosen.has(row.key),
                 lit: pointedName.value === nameOfKey(row.key),
                 folded: folded.value.has(row.key),
-                name: this.naming?.key === row.key ? this.naming.text : null,
+                name: this.naming?.identity === identityOf(row.key) ? this.naming.text : null,
                 of: shown.length,
                 marks: marksOf(row),
                 may,
@@ -245,19 +246,19 @@ export class MissionList extends PageElement {
   }
 
   private beginNaming(row: Row): void {
-    if (mayPlan()) this.naming = { key: row.key, text: nameOf(row) };
+    if (mayPlan()) this.naming = { identity: identityOf(row.key), text: nameOf(row) };
   }
 
   /** Save the typed name. If it is refused, the field opens again with the text. */
   private readonly onNamed = async (row: Row, name: string, byKey: boolean): Promise<void> => {
-    if (this.naming?.key !== row.key) return; // the field loses the focus because it is removed
+    if (this.naming?.identity !== identityOf(row.key)) return; // the field loses the focus because it is removed
     this.naming = null;
     if (byKey) this.tree.focus();
     if (!(await renameRow(row, name))) this.nameAgain(row, name);
   };
 
   private nameAgain(row: Row, text: string): void {
-    this.naming ??= { key: row.key, text };
+    this.naming ??= { identity: identityOf(row.key), text };
   }
 
   private readonly onCopy = (event: ClipboardEvent): void => {

@@ -1,12 +1,18 @@
 /** The rows of the list: all of them, the visible ones, and their selection. */
 
-import { computed, signal } from "@preact/signals-core";
+import { computed, effect, signal, untracked } from "@preact/signals-core";
 
 import { outline, visibleRows, type Row } from "../model/outline";
+import { renamedKeys, renames } from "../state/identity";
 import { mission, select, selection } from "../state/plan";
 
 /** Keys of the folded groups. */
 export const folded = signal<ReadonlySet<string>>(new Set());
+
+effect(() => {
+  const renamed = renames.value;
+  untracked(() => (folded.value = new Set(renamedKeys(folded.value, renamed))));
+});
 
 export const allRows = computed<readonly Row[]>(() =>
   mission.value === null ? [] : outline(mission.value),

@@ -18,8 +18,10 @@ import type {
   VersionSummary,
 } from "../api/types";
 import { applyChange } from "../model/change";
+import { renamesBetween } from "../model/renames";
 import { groupKey, isTaskKey, nameOfKey, reactionKey, taskKey } from "../model/outline";
 import { t } from "../texts";
+import { followRenames, renamedKeys } from "./identity";
 import { showNotice } from "./notices";
 import { isMe } from "./session";
 import { resetView } from "./view";
@@ -117,6 +119,7 @@ export function closePlan(): void {
   resetView();
   live?.close();
   live = null;
+  followRenames(new Map(), () => false);
   batch(() => {
     planId.value = null;
     planName.value = "";
@@ -173,10 +176,15 @@ export function takeRevision(made: Revision): void {
   recent.push(made);
   if (recent.length > MOST_RECENT) recent.shift();
   batch(() => {
-    mission.value = applyChange(before, made.change);
+    const after = applyChange(before, made.change);
+    const renamed = renamesBetween(before, after);
+    mission.value = after;
     revision.value = made.number;
     lastRevision.value = made;
-    pruneSelection(isMe(made.author) ? null : made.author);
+    if (renamed.size > 0) selection.value = renamedKeys(selection.value, renamed);
+    const keys = pruneSelection(isMe(made.author) ? null : made.author);
+    followRenames(renamed, (key) => keys.has(key));
+    if (renamed.size > 0) sendSelection();
   });
 }
 
@@ -236,8 +244,8 @@ function takeMembers(members: readonly Member[]): void {
   others.value = members.filter((member) => member.client !== self);
 }
 
-/** Remove deleted items from the selection, and report who deleted them. */
-function pruneSelection(by: string | null): void {
+/** Remove deleted items from the selection, and report who deleted them. Returns the keys of all items. */
+function pruneSelection(by: string | null): ReadonlySet<string> {
   const open = mission.value;
   const keys = new Set([
     ...(open?.tasks ?? []).map((task) => taskKey(task.name)),
@@ -245,10 +253,11 @@ function pruneSelection(by: string | null): void {
     ...(open?.reactions ?? []).map((reaction) => reactionKey(reaction.event)),
   ]);
   const there = selection.value.filter((key) => keys.has(key));
-  if (there.length === selection.value.length) return;
+  if (there.length === selection.value.length) return keys;
   const lost = selection.value.filter((key) => !keys.has(key)).map(nameOfKey);
   if (by !== null) showNotice("warn", t().frame.wentAway(by, lost.slice(0, 5).join(", ")));
   select(there);
+  return keys;
 }
 
 function sendSelection(): void {

@@ -1,7 +1,5 @@
 """Durations outside scripts, in fields of forms: read with the words and signs of scripts."""
 
-from math import isfinite
-
 from argo_compiler.base.model import Model
 from argo_compiler.il import MAX_TIME_S
 from argo_compiler.script.documents.healing import plain_signs
@@ -23,7 +21,7 @@ class DurationReading(Model):
     seconds: float | None
     """s, if the text has exactly one meaning"""
     possible: tuple[float, ...]
-    """s; what the text can mean otherwise: two meanings or more, or what a person has to confirm"""
+    """s; all that the text can mean, if it has several meanings"""
 
 
 def read_duration(text: str) -> DurationReading:
@@ -31,21 +29,16 @@ def read_duration(text: str) -> DurationReading:
 
     `1:30 h`, `1h30`, `half an hour` and `1 Stunde 30` have one meaning. `1:30` and `10` can be read
     in two and three ways; a text that is no duration, such as `1:90`, in none. Texts that are
-    longer than `LONGEST_TEXT` are none. What it can mean is at most `MAX_TIME_S`.
+    longer than `LONGEST_TEXT` are none. What a text can mean is at most `MAX_TIME_S`.
     """
-    found: list[float] = []
+    found: set[float] = set()
     if len(text) <= LONGEST_TEXT:
         for language in Language.all(()):
-            words = words_of(plain_signs(text).strip(" ."), language.lexicon)
-            if len(words) == 1 and words[0].type == "DURATION" and _is_sure(words[0].value):
-                return DurationReading(seconds=words[0].value.seconds, possible=())
-            found += _possible(words)
-    possible = sorted({seconds for seconds in found if seconds <= MAX_TIME_S})
+            found.update(_possible(words_of(plain_signs(text).strip(" ."), language.lexicon)))
+    possible = sorted(seconds for seconds in found if seconds <= MAX_TIME_S)
+    if len(possible) == 1:
+        return DurationReading(seconds=possible[0], possible=())
     return DurationReading(seconds=None, possible=tuple(possible))
-
-
-def _is_sure(length: Length) -> bool:
-    return length.other is None and isfinite(length.seconds)
 
 
 def _possible(words: list[Word]) -> list[float]:

@@ -221,7 +221,7 @@ def test_a_place_added_after_other_tasks_is_a_waypoint(ann, service, plan) -> No
 def test_a_form_reads_durations_as_scripts_do(ann, service, plan) -> None:
     ann.key("Escape")
     field = ann.page.get_by_label("Maximum duration")
-    texts = {"1:30 h": 5400, "2:00 h": 7200, "1h30": 5400, "eine halbe Stunde": 1800}
+    texts = {"1:30 h": 5400, "2:00 h": 7200, "1h30": 5400, "eine halbe Stunde": 1800, "10m": 600}
     for text, seconds in texts.items():
         field.fill(text)
         field.press("Enter")
@@ -238,7 +238,6 @@ def test_a_form_asks_about_a_duration_with_several_meanings(ann, service, plan) 
     for text, answers, chosen, seconds in (
         ("22:00", ["22 min", "22 h"], "22 h", 79200),
         ("10", ["10 s", "10 min", "10 h"], "10 min", 600),
-        ("12 min 30", ["12 min 30 s"], "12 min 30 s", 750),
     ):
         field.fill(text)
         field.press("Tab")

@@ -25,6 +25,32 @@ def test_the_page_and_its_files_are_served(service, monkeypatch, tmp_path) -> No
     assert "immutable" in script.headers["cache-control"]
 
 
+def test_files_are_compressed_for_clients_that_accept_it(service, monkeypatch, tmp_path) -> None:
+    (tmp_path / "assets").mkdir()
+    (tmp_path / "index.html").write_text("<!doctype html>", encoding="utf-8")
+    text = "let a = 1;\n" * 1_000
+    (tmp_path / "assets" / "index-1234.js").write_text(text, encoding="utf-8")
+    monkeypatch.setattr(page, "page_folder_path", lambda: tmp_path)
+    for accepted, encoding in (
+        ("gzip, deflate, br", "gzip"),
+        ("br;q=1.0, gzip;q=0.5", "gzip"),
+        ("*", "gzip"),
+        ("gzip;q=0", None),
+        ("br", None),
+        ("", None),
+    ):
+        answer = service.client.get("/assets/index-1234.js", headers={"accept-encoding": accepted})
+        assert answer.text == text
+        assert answer.headers.get("content-encoding") == encoding, accepted
+        assert answer.headers["vary"] == "accept-encoding"
+        assert "max-age=31536000" in answer.headers["cache-control"]
+        if encoding:
+            assert int(answer.headers["content-length"]) < len(text) / 10
+    small = service.client.get("/", headers={"accept-encoding": "gzip"})
+    assert small.text == "<!doctype html>"
+    assert "content-encoding" not in small.headers
+
+
 def test_a_file_that_the_page_does_not_have_is_not_found(service) -> None:
     for name in ("nothing.js", "..%2f..%2fpyproject.toml", "%2e%2e%2findex.html"):
         answer = service.client.get(f"/assets/{name}")

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 ROUTE = "route"
 """Name of the drive that uses travel times alone and has no world."""
+KINEMATIC = "kinematic"
+"""Name of the fastest drive that has a world."""
 REMOTE = "remote"
 """Name of the drive of a robot that connects to the planning service."""
 
@@ -36,7 +38,7 @@ def _tracked(world: "World", robot: "RobotSpec", friction: float) -> "Drive":
 WORLD_DRIVES: ExtensionPoint[Callable[["World", "RobotSpec", float], "Drive"]] = ExtensionPoint(
     "argo.drives",
     "drive",
-    {"kinematic": _kinematic, "tracked": _tracked},
+    {KINEMATIC: _kinematic, "tracked": _tracked},
     function_problem,
     reserved=(ROUTE, REMOTE),
 )

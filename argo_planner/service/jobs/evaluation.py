@@ -33,7 +33,7 @@ from argo_env.evaluation.store import RowStore, read_rows
 from argo_env.evaluation.worlds import NO_VARIATION, Variation
 from argo_env.faults.kinds import AnyFault
 from argo_env.planning.opening import OpenedSite, open_site
-from argo_env.run.drives_and_sensors import IDEAL, ROUTE
+from argo_env.run.drives_and_sensors import IDEAL, KINEMATIC, ROUTE
 from argo_env.worker_processes import context_with
 from argo_planner.service.jobs.evaluation_status import EvaluationStanding, RunCount
 from argo_planner.service.processes.job_process import ReportProgress
@@ -50,7 +50,8 @@ _LONGEST_RUN = 600.0  # s of wall time; a longer run counts as one whose process
 class EvaluationAsked(Model):
     """Request for an evaluation: the worlds in which a mission is to be run, and the run setup."""
 
-    drive: str = Field(default=ROUTE, max_length=40)
+    drive: str | None = Field(default=None, max_length=40)
+    """drive of the runs; None: `kinematic` if a fault or the sensor needs a world, else `route`"""
     sensor: str = Field(default=IDEAL, max_length=40)
     worlds: int = Field(default=100, ge=1, le=MOST_WORLDS)
     """number of worlds; each case is run in each world"""
@@ -66,6 +67,14 @@ class EvaluationAsked(Model):
     """requirements such as `success >= 0.98`; the evaluation stops when they are decided"""
     width: float | None = Field(default=None, gt=0, lt=1)
     """width of the rate's interval, 0 to 1, at which the evaluation stops; None: no such limit"""
+
+    @property
+    def used_drive(self) -> str:
+        """The drive of the runs: the given one, or the one that the faults and the sensor need."""
+        if self.drive is not None:
+            return self.drive
+        needs_world = self.sensor != IDEAL or any(fault.needs_world for fault in self.faults)
+        return KINEMATIC if needs_world else ROUTE
 
     @field_validator("require")
     @classmethod
@@ -113,7 +122,7 @@ class EvaluationSpec(Model):
             site,
             faults=sets,
             seeds=range(asked.first_seed, asked.first_seed + asked.worlds),
-            drive=asked.drive,
+            drive=asked.used_drive,
             sensor=asked.sensor,
             worlds=asked.variation,
             require=asked.require,

@@ -9,6 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 from datetime import UTC, datetime
 from pathlib import Path
 from threading import Event
+from typing import Any
 
 import pytest
 
@@ -352,8 +353,8 @@ def test_invalid_requests_are_refused_before_anything_runs(service: Served, id: 
         ({"without_faults": False}, "nothing is to be run"),
         ({"worlds": 10_000, "faults": FAULTS * 20}, "too many"),
         ({"drive": "boat"}, "no drive `boat`"),
-        ({"sensor": "camera"}, "choose the sensor `ideal` or another drive"),
-        ({"faults": [{"kind": "brick"}]}, "choose another drive"),
+        ({"drive": "route", "sensor": "camera"}, "choose the sensor `ideal` or another drive"),
+        ({"drive": "route", "faults": [{"kind": "brick"}]}, "choose another drive"),
         ({"variation": {"speed": [0.9, 0.5]}}, "give the smaller value first"),
         ({"variation": {"values": {"999": {"drift": [0, 1]}}}}, "no checkpoint 999"),
         ({"variation": {"values": {"1": {"start": [1, 1e300]}}}}, "checkpoint 1"),
@@ -367,6 +368,20 @@ def test_invalid_requests_are_refused_before_anything_runs(service: Served, id: 
     viewer = service.as_("eve", SECRETS[AccessRole.VIEW])
     refused = viewer.post(f"/api/missions/{id}/evaluations", json={}, headers={"if-match": "*"})
     assert refused.status_code == 403
+
+
+@pytest.mark.parametrize(
+    ("asked", "drive"),
+    [
+        ({}, "route"),
+        ({"faults": [{"kind": "low_battery"}]}, "route"),
+        ({"faults": [{"kind": "low_battery"}, {"kind": "gas_leak"}]}, "kinematic"),
+        ({"sensor": "camera"}, "kinematic"),
+        ({"drive": "tracked", "faults": [{"kind": "gas_leak"}]}, "tracked"),
+    ],
+)
+def test_the_drive_that_is_not_given_follows_the_faults(asked: dict[str, Any], drive: str) -> None:
+    assert EvaluationAsked.model_validate(asked).used_drive == drive
 
 
 @pytest.mark.long

@@ -153,3 +153,26 @@ def test_invalid_ranges_are_reported_before_an_evaluation_starts(
         "enter both values, the smaller one first"
     )
     assert len(jobs(service)) == before
+
+
+@pytest.mark.long
+def test_the_drive_follows_the_faults_and_a_refusal_stays(browsers, address, plan, service) -> None:
+    ann = open_evaluation(browsers, address, plan)
+    page = ann.page
+    page.get_by_text("Evaluation settings").click()
+    form = page.locator("argo-evaluate-start")
+    form.locator("argo-faults select").select_option("gas_leak")
+    form.locator("select[name=drive]").select_option("route")
+    form.locator("select[name=worlds]").select_option("20")
+    ann.click(page.locator("#evaluate"))
+    expect(form.get_by_role("alert")).to_contain_text("choose another drive")
+    expect(page.locator("argo-notices article")).to_have_count(0)
+    form.locator("select[name=drive]").select_option("")
+    with page.expect_request("**/evaluations") as sent:
+        ann.click(page.locator("#evaluate"))
+    assert sent.value.post_data_json["drive"] is None
+    expect(page.locator("argo-evaluate-result")).to_contain_text("runs")
+    expect(form.get_by_role("alert")).to_have_count(0)
+    ann.wait_until(
+        lambda: all(one["state"] != "running" for one in jobs(service)), "the evaluation ends"
+    )

@@ -5,8 +5,8 @@ import { batch, computed, effect, signal } from "@preact/signals-core";
 import { responseData, client, Refusal, Unreached } from "../api/client";
 import type { operations } from "../api/schema";
 import type { EvaluationAsked, EvaluationJob, FailedRun } from "../api/types";
-import { dependOn } from "../scene/depend-on";
-import { allAnswered } from "../state/commands";
+import { dependOn } from "../state/depend-on";
+import { tryWithPlan } from "../state/commands";
 import { withErrorNotice } from "../state/notices";
 import { connected, jobs, planId, revision, takeJob } from "../state/plan";
 import { showReplay } from "../state/run";
@@ -101,18 +101,20 @@ export async function deleteEvaluation(job: string): Promise<void> {
   });
 }
 
-/** Start an evaluation of the mission in its present state. */
-export async function startEvaluation(asked: Partial<EvaluationAsked>): Promise<void> {
-  const id = planId.value;
-  if (id === null) return;
-  await allAnswered();
-  chosenId.value = null;
-  await takeAnswer(() =>
-    client.POST("/api/missions/{id}/evaluations", {
+/** Start an evaluation of the mission in its present state. Returns why it has not begun; null: it has. */
+export async function startEvaluation(asked: Partial<EvaluationAsked>): Promise<string | null> {
+  const refused = await tryWithPlan(async (id) => {
+    const begun = client.POST("/api/missions/{id}/evaluations", {
       params: { path: { id }, header: { "If-Match": `"${revision.value}"` } },
       body: asked as unknown as Body,
-    }),
-  );
+    });
+    const job = await responseData(begun);
+    if (planId.value !== id) return;
+    chosenId.value = null;
+    takeJob(job);
+  });
+  if (refused !== null) void refreshEvaluations();
+  return refused;
 }
 
 export async function cancelEvaluation(id: string): Promise<void> {

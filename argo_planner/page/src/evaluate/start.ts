@@ -50,10 +50,6 @@ export class EvaluateStart extends PageElement {
       .one {
         grid-template-columns: minmax(0, 1fr) 68px;
       }
-      .wrong {
-        color: var(--bad);
-        font-size: 12px;
-      }
     `,
   ];
 
@@ -89,7 +85,7 @@ export class EvaluateStart extends PageElement {
             ${texts.width}
             <input name="width" type="number" min="1" max="99" step="any" placeholder="5" />
           </label>
-          ${choice(t().run.drive, "drive", withExtensions(DRIVES, t().run.drives, "drive"))}
+          ${choice(t().run.drive, "drive", [["", texts.neededDrive] as const, ...withExtensions(DRIVES, t().run.drives, "drive")], "")}
           <label>
             ${texts.firstSeed}
             <input name="seed" type="number" min="0" max="2147483648" step="1" value="0" required />
@@ -148,7 +144,7 @@ export class EvaluateStart extends PageElement {
     const asked = {
       worlds: Number(form.get("worlds")),
       first_seed: Number(form.get("seed")),
-      drive: form.get("drive") as string,
+      drive: (form.get("drive") as string) || null,
       faults: this.faults.map((kind) => ({ kind })),
       without_faults: this.faults.length === 0 || form.has("ideal"),
       require: share("require") > 0 ? [`success >= ${share("require")}`] : [],
@@ -156,8 +152,9 @@ export class EvaluateStart extends PageElement {
       variation,
     };
     this.starting = true;
-    await startEvaluation(asked as unknown as Partial<EvaluationAsked>);
+    this.wrong = await startEvaluation(asked as unknown as Partial<EvaluationAsked>);
     this.starting = false;
+    if (this.wrong !== null) return;
     await new Promise(requestAnimationFrame);
     // The result stands above the form.
     const root = this.getRootNode() as ShadowRoot;

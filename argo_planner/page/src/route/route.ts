@@ -60,6 +60,7 @@ export class RoutePanel extends PageElement {
 
   @state() private pairsAsked: Asked["before"] = [];
   @state() private windows: Asked["windows"] = [];
+  @state() private wrong: string | null = null;
   @state() private budget: number | null = null;
   @state() private earliest: number | null = null;
   @state() private latest: number | null = null;
@@ -76,7 +77,8 @@ export class RoutePanel extends PageElement {
           </button>
           ${choice(texts.timeLimit, "limit", LIMITS.map((s) => [s, writeTime(s)]), 10)}
         </div>
-        ${why === null ? nothing : html`<p class="reason">${why}</p>`} ${this.fixed()}
+        ${why === null ? nothing : html`<p class="reason">${why}</p>`}
+        ${this.wrong === null ? nothing : html`<p class="wrong" role="alert">${this.wrong}</p>`} ${this.fixed()}
         <details>
           <summary>${texts.requirements}</summary>
           <div class="inner">
@@ -222,6 +224,7 @@ export class RoutePanel extends PageElement {
       windows: this.windows.filter(({ what }) => known.has(what)),
     };
     const solver = form.get("solver");
-    void search(Number(form.get("limit")), asked, typeof solver === "string" && solver !== "" ? [solver] : []);
+    this.wrong = null;
+    this.wrong = await search(Number(form.get("limit")), asked, typeof solver === "string" && solver !== "" ? [solver] : []);
   }
 }

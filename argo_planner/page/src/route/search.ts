@@ -5,7 +5,7 @@ import { batch, computed, effect, signal } from "@preact/signals-core";
 import { responseData, client, Refusal, Unreached } from "../api/client";
 import type { operations } from "../api/schema";
 import type { OrderJob } from "../api/types";
-import { commandId, allAnswered, withPlan } from "../state/commands";
+import { commandId, allAnswered, tryWithPlan } from "../state/commands";
 import { showNotice, showError, withErrorNotice } from "../state/notices";
 import { connected, jobs, planId, revision, takePlanState, takeJob } from "../state/plan";
 import { comparedPreview } from "../state/preview";
@@ -77,8 +77,9 @@ async function previewOrder(id: string): Promise<void> {
   }
 }
 
-export async function search(seconds: number, asked: Asked, solvers: readonly string[]): Promise<void> {
-  await withPlan(async (id) => {
+/** Start a search. Returns why it has not begun; null: it has. */
+export function search(seconds: number, asked: Asked, solvers: readonly string[]): Promise<string | null> {
+  return tryWithPlan(async (id) => {
     const body = { time_limit: seconds, requirements: asked, solvers } as unknown as SearchAsked;
     const begun = await responseData(client.POST("/api/missions/{id}/orders", { params: { path: { id } }, body }));
     if (planId.value !== id) return;

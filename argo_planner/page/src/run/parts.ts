@@ -66,6 +66,10 @@ export const parts = css`
     color: var(--dim);
     font-size: 12px;
   }
+  .wrong {
+    color: var(--bad);
+    overflow-wrap: anywhere;
+  }
   .inner {
     display: grid;
     grid-template-columns: minmax(0, 1fr);

@@ -38,6 +38,7 @@ export class RunStart extends PageElement {
   ];
 
   @state() private starting = false;
+  @state() private wrong: string | null = null;
   @state() private values: ReadonlyMap<number, number> = new Map();
   @state() private faults: readonly string[] = [];
 
@@ -57,6 +58,7 @@ export class RunStart extends PageElement {
         ${choice(texts.speed, "speed", SPEEDS.map((speed) => [speed, speedName(speed)]), readSpeed(storedSetting("speed") ?? "1"))}
       </div>
       ${reason === null ? nothing : html`<p class="reason" id="reason">${reason}</p>`}
+      ${this.wrong === null ? nothing : html`<p class="wrong" role="alert">${this.wrong}</p>`}
       <details>
         <summary>${texts.how}</summary>
         <div class="inner">
@@ -162,7 +164,8 @@ export class RunStart extends PageElement {
       faults: this.faults.map((kind) => ({ kind })) as unknown as RunAsked["faults"],
     };
     this.starting = true;
-    await startRun(asked);
+    this.wrong = null;
+    this.wrong = await startRun(asked);
     this.starting = false;
   }
 }

@@ -6,7 +6,7 @@ import { responseData, client, newId, delay, Refusal, Unreached } from "../api/c
 import type { CommandDone, Edit, Revision } from "../api/types";
 import { changedNames, changedHeaderFields } from "../model/change";
 import { t } from "../texts";
-import { messageOf, showNotice, showError, withErrorNotice } from "./notices";
+import { messageOf, showNotice, showError, reasonOfFailure, withErrorNotice } from "./notices";
 import { revisionsSince, planId, revision, takePlanState, takeRevision } from "./plan";
 
 /** An edit of which optional fields may be left out. */
@@ -54,6 +54,14 @@ export async function withPlan(work: (id: string) => Promise<unknown>): Promise<
   if (id === null) return false;
   await allAnswered();
   return withErrorNotice(() => work(id));
+}
+
+/** As `withPlan`, but returns the reason of a failure, for the place that it is about; null: it succeeded. */
+export async function tryWithPlan(work: (id: string) => Promise<unknown>): Promise<string | null> {
+  const id = planId.value;
+  if (id === null) return null;
+  await allAnswered();
+  return reasonOfFailure(() => work(id));
 }
 
 /** Make edits, all of them or none. Returns whether they were made; otherwise a notice gives the reason. */

@@ -4,7 +4,7 @@ import { signal } from "@preact/signals-core";
 
 import { responseData, client, newId, Refusal, retryUntilReached } from "../api/client";
 import type { RequestState, RunAsked, RunRequestBody } from "../api/types";
-import { allAnswered, withPlan } from "./commands";
+import { allAnswered, tryWithPlan } from "./commands";
 import { showError } from "./notices";
 import { revision } from "./plan";
 import { quietRequests, run, takeState } from "./run";
@@ -16,10 +16,9 @@ const PATIENCE_MS = 3_000;
 const PATIENCE_TO_STOP_MS = 60_000;
 const STOPS: ReadonlySet<string> = new Set(["pause", "stop", "stop_by_hand"]);
 
-/** Start a run of the mission in its present state. Returns whether it has begun; otherwise a notice gives
- * the reason. */
-export function startRun(asked: Partial<RunAsked>): Promise<boolean> {
-  return withPlan(async (id) => {
+/** Start a run of the mission in its present state. Returns why it has not begun; null: it has. */
+export function startRun(asked: Partial<RunAsked>): Promise<string | null> {
+  return tryWithPlan(async (id) => {
     const begun = await responseData(
       client.POST("/api/missions/{id}/runs", {
         params: { path: { id }, header: { "If-Match": `"${revision.value}"` } },

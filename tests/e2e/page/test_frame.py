@@ -128,14 +128,14 @@ def test_no_text_of_the_strip_is_cut(browsers, address, service, monkeypatch) ->
     ann = browsers.person(address)
     script = SCRIPT.with_name("protocol_3.txt").read_text(encoding="utf-8")
     ann.open(f"/missions/{service.imported(script)}")
-    bounds = ann.page.locator("argo-totals .bounds")
-    for language, label in (("en", "All executions:"), ("de", "Alle Abläufe:")):
+    totals = ann.page.locator("argo-totals")
+    for language, label in (("en", "Each task once:"), ("de", "Jede Aufgabe einmal:")):
         ann.page.locator("argo-settings select").evaluate(
             "(select, to) => { select.value = to; select.dispatchEvent(new Event('change')) }",
             language,
         )
-        expect(bounds).to_contain_text(label)
-        expect(bounds.locator("button")).to_have_count(2)
+        expect(totals).to_contain_text(label)
+        expect(totals.locator(".totals button")).to_have_count(2)
         for width in WIDTHS:
             ann.page.set_viewport_size({"width": width, "height": 850})
             assert ann.evaluate(CUT_TEXTS) == [], f"{language}, {width} px"
@@ -181,3 +181,67 @@ def test_the_focus_is_never_lost(ann) -> None:
         ann.key("Enter")
         expect(ann.page.locator("argo-notices article")).to_have_count(0)
         ann.focus(ann.page.get_by_role("tree"))
+
+
+SHOWN = """() => {
+    const found = [];
+    const walk = (node) => {
+        if (node.nodeType === Node.TEXT_NODE && node.data.trim() !== "")
+            found.push(node.data.trim());
+        if (node.nodeType !== Node.ELEMENT_NODE) return;
+        if (node.matches("style, argo-scene, [hidden]")) return;
+        if (node.matches("input, select, textarea")) found.push([node.value, node.checked]);
+        if (node.matches("details, [aria-expanded]")) found.push([node.open, node.ariaExpanded]);
+        for (const part of (node.shadowRoot ?? node).childNodes) walk(part);
+    };
+    walk(document.querySelector("argo-app"));
+    return found;
+}"""
+"""all texts and values that the page shows, but for the scene"""
+
+
+@pytest.mark.long
+def test_a_mission_looks_the_same_after_another_one(browsers, address, service) -> None:
+    """Typed settings, folded groups and the camera of one mission are not those of the next."""
+    text = "Start in starting area 1.\nPatrol floor 1 twice.\nCheck #9.\n"
+    first, second = service.imported(text), service.imported(text.replace("#9", "#12"))
+
+    def look(person) -> tuple[list[str], ...]:
+        person.wait_for_scene()
+        expect(person.page.locator("#total-time")).to_be_visible()
+        expect(person.page.locator("argo-totals .totals button")).to_have_count(2)
+        found = []
+        for panel in ("properties", "script", "route", "evaluate", "run", "properties"):
+            person.page.locator(f"#tab-{panel}").click()
+            person.page.wait_for_timeout(300)
+            found.append(person.evaluate(SHOWN))
+        return *found, person.evaluate("() => window.argo.camera()")
+
+    bob = browsers.person(address, "bob")
+    bob.open(f"/missions/{second}")
+    alone = look(bob)
+    bob.context.close()
+    browsers.people.remove(bob)
+
+    ann = browsers.person(address, "bob")
+    ann.open(f"/missions/{first}")
+    look(ann)
+    page = ann.page
+    page.locator("argo-list .fold").first.click()
+    page.get_by_role("treeitem").first.click()
+    ann.key("v")
+    page.locator("#tab-route").click()
+    page.get_by_text("Requirements", exact=True).click()
+    page.locator("argo-route").get_by_label("Maximum duration").fill("soon")
+    page.locator("#tab-run").click()
+    page.get_by_text("Run settings").click()
+    page.locator("argo-run-start argo-faults select").select_option("gas_leak")
+    page.locator("#tab-evaluate").click()
+    page.get_by_text("Evaluation settings").click()
+    page.locator("argo-evaluate-start argo-faults select").select_option("gas_leak")
+    page.locator("argo-evaluate-start select[name=worlds]").select_option("1000")
+    page.get_by_label("Floor 2", exact=True).click()
+    ann.key("Control+c")
+    ann.go(f"/missions/{second}")
+    expect(page.locator("argo-list")).to_contain_text("#12")
+    assert look(ann) == alone

@@ -5,6 +5,8 @@ from typing import Any
 import pytest
 from playwright.sync_api import expect
 
+from tests.argo_planner.service.served import ALL
+from tests.e2e.page.person import Proxy
 from tests.e2e.page.test_list import expect_order, open_mission, plan, row
 
 __all__ = ["plan"]
@@ -71,3 +73,30 @@ def test_the_run_of_another_mission_does_not_offer_tasks_of_this_one(
     expect(ann.page.locator("argo-run-hand #task")).to_have_count(0)
     service.post(f"/api/runs/{run}/requests", kind="stop", id="end").raise_for_status()
     ann.wait_until(lambda: runs(service)[0]["status"] == "ended", "the run ends")
+
+
+@pytest.mark.long
+def test_without_a_connection_the_state_of_the_robot_is_unknown(browsers, plan, service) -> None:
+    run = service.run(plan, speed=0.5).json()["id"]
+    with Proxy(service.address) as proxy:
+        ann = open_mission(browsers, f"http://{proxy.address}/?token={ALL}", plan)
+        ann.page.locator("#tab-run").click()
+        band = panel(ann).locator("#mode")
+        badge = ann.page.locator("argo-run-badge")
+        expect(band).to_have_attribute("data-mode", "autonomous")
+        known = band.locator(".word").inner_text()
+        proxy.cut()
+        expect(band).to_have_attribute("data-mode", "unknown")
+        expect(band.locator(".word")).to_contain_text("Unknown since")
+        expect(band.locator(".what")).to_contain_text(f"No connection. Last known: {known}")
+        expect(badge).to_contain_text("Unknown since")
+        colours = "e => ['--tone', '--dim'].map((n) => getComputedStyle(e).getPropertyValue(n))"
+        tone, dim = band.evaluate(colours)
+        assert tone == dim
+        panel(ann).locator("argo-run-events").scroll_into_view_if_needed()
+        expect(band).to_be_in_viewport(ratio=1)
+        proxy.restore()
+        expect(band).to_have_attribute("data-mode", "autonomous")
+        expect(badge).to_contain_text(known)
+        ann.clear_connection_problems()
+    service.post(f"/api/runs/{run}/requests", kind="stop", id="end").raise_for_status()

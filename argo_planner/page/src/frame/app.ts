@@ -1,6 +1,7 @@
 /** The whole page: it opens the mission that the address names, and lays out the panels. */
 
 import { signal } from "@preact/signals-core";
+import { keyed } from "lit/directives/keyed.js";
 
 import { delay, retryUntilReached } from "../api/client";
 import "../draft/draft";
@@ -37,6 +38,14 @@ const PANELS: readonly (readonly [Panel, Icon])[] = [
   ["run", "play"],
 ];
 
+const PANEL_VIEWS: Readonly<Record<Panel, () => unknown>> = {
+  properties: () => html`<argo-properties></argo-properties>`,
+  script: () => html`<argo-script></argo-script>`,
+  route: () => html`<argo-route></argo-route>`,
+  evaluate: () => html`<argo-evaluate></argo-evaluate>`,
+  run: () => html`<argo-run></argo-run>`,
+};
+
 @customElement("argo-app")
 export class ArgoApp extends PageElement {
   static override styles = css`
@@ -60,6 +69,9 @@ export class ArgoApp extends PageElement {
     argo-scene {
       min-height: 0;
       min-width: 0;
+    }
+    .loading {
+      padding: 16px; /* shown until the scene is there, which is the largest part of the page */
     }
     argo-strip {
       grid-column: 2;
@@ -232,10 +244,13 @@ export class ArgoApp extends PageElement {
 
   private planning() {
     const shown = panel.value;
+    // What a person has typed or folded in one mission is not shown in the next one. The scene, which takes long to
+    // load, stays and resets itself.
+    const ofMission = (part: unknown) => keyed(planId.value, part);
     return html`<main>
-      <argo-list></argo-list>
-      <argo-scene></argo-scene>
-      <argo-strip></argo-strip>
+      ${ofMission(html`<argo-list></argo-list>`)}
+      <argo-scene><p class="dim loading">${t().scene.loading}</p></argo-scene>
+      ${ofMission(html`<argo-strip></argo-strip>`)}
       <aside>
         <div role="tablist" @keydown=${this.onTabKey}>
           ${PANELS.map(
@@ -253,11 +268,7 @@ export class ArgoApp extends PageElement {
           )}
         </div>
         <div role="tabpanel" id="panel" aria-labelledby=${`tab-${shown}`} tabindex="-1">
-          ${shown === "properties" ? html`<argo-properties></argo-properties>` : null}
-          ${shown === "script" ? html`<argo-script></argo-script>` : null}
-          ${shown === "route" ? html`<argo-route></argo-route>` : null}
-          ${shown === "evaluate" ? html`<argo-evaluate></argo-evaluate>` : null}
-          ${shown === "run" ? html`<argo-run></argo-run>` : null}
+          ${ofMission(PANEL_VIEWS[shown]())}
         </div>
       </aside>
     </main>`;

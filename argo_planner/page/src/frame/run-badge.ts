@@ -1,10 +1,10 @@
 /** The robot's state in the top bar, with a button that pauses it. */
 
-import { isUnderWay, shownMode } from "../model/run-mode";
+import { isUnderWay } from "../model/run-mode";
 import { modeWords } from "../run/mode-words";
 import { sendRequest, pendingRequests } from "../state/requests";
 import { planId } from "../state/plan";
-import { run, runIsOn } from "../state/run";
+import { presentMode, run, runIsOn } from "../state/run";
 import { mayOperate } from "../state/session";
 import { panel } from "../state/view";
 import { t } from "../texts";
@@ -21,6 +21,11 @@ export class RunBadge extends PageElement {
       border-radius: 6px;
       font-size: 13px;
     }
+    .run.unknown {
+      border-style: dashed;
+      border-left-color: var(--dim);
+      background: var(--sunken);
+    }
     .run.supervised {
       border-left-color: var(--person);
     }
@@ -29,7 +34,7 @@ export class RunBadge extends PageElement {
   override render() {
     const state = run.value;
     if (state === null || !runIsOn.value) return nothing;
-    const mode = shownMode(state);
+    const mode = presentMode(state);
     const texts = t().run;
     const show = () => {
       if (planId.value === null) location.hash = `#/missions/${state.plan}`;

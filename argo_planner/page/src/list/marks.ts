@@ -4,6 +4,7 @@ import { computed, effect, signal } from "@preact/signals-core";
 
 import type { Diagnostic, Group, Task, World } from "../api/types";
 import { changedNames } from "../model/change";
+import { shownText } from "../model/shown-text";
 import { groupKey, taskKey, type Row } from "../model/outline";
 import { analysis, missionHasErrors, findings, lastRevision, others, planId, tasksByName } from "../state/plan";
 import { missionSentences } from "../state/sentences";
@@ -121,7 +122,7 @@ const sentences = computed(() => {
   for (const entry of missionSentences.value?.reading.entries ?? []) {
     if (entry.part !== "task" && entry.part !== "round") continue;
     const key = entry.part === "task" ? taskKey(entry.name) : groupKey(entry.name);
-    const text = entry.sentences.join("; ");
+    const text = shownText(entry.sentences.join("; "));
     found.set(key, found.has(key) ? `${found.get(key) ?? ""}; ${text}` : text);
   }
   return found;

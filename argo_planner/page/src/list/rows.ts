@@ -3,15 +3,25 @@
 import { computed, effect, signal, untracked } from "@preact/signals-core";
 
 import { outline, visibleRows, type Row } from "../model/outline";
+import { dependOn } from "../state/depend-on";
 import { renamedKeys, renames } from "../state/identity";
-import { mission, select, selection } from "../state/plan";
+import { mission, planId, select, selection } from "../state/plan";
 
 /** Keys of the folded groups. */
 export const folded = signal<ReadonlySet<string>>(new Set());
 
+/** Key of the row from which Shift extends the selection. */
+let anchor: string | null = null;
+
 effect(() => {
   const renamed = renames.value;
   untracked(() => (folded.value = new Set(renamedKeys(folded.value, renamed))));
+});
+
+effect(() => {
+  dependOn(planId);
+  folded.value = new Set();
+  anchor = null;
 });
 
 export const allRows = computed<readonly Row[]>(() =>
@@ -42,9 +52,6 @@ export function unfoldAround(key: string): void {
 export function rowOf(key: string | undefined): Row | undefined {
   return shownRows.value.find((row) => row.key === key);
 }
-
-/** The row from which Shift extends the selection. */
-let anchor: string | null = null;
 
 /** Select a row; with `extend` all rows from the anchor to it, with `toggle` in addition to the selection. */
 export function chooseRow(row: Row, extend: boolean, toggle: boolean): void {

@@ -3,6 +3,7 @@
 import type { Entry } from "../api/types";
 
 export type Outcome = "done" | "failed" | "stopped" | "by hand" | "skipped";
+export type Control = "autonomous" | "paused" | "supervised" | "ended";
 export type Reading = NonNullable<Entry["reading"]>;
 type Vector5 = readonly [number, number, number, number, number];
 
@@ -19,6 +20,8 @@ export interface Moment {
   readonly outcomes: ReadonlyMap<string, Outcome>;
   /** the last reading of each checkpoint, in the order of their first readings */
   readonly readings: readonly Reading[];
+  /** who had the robot */
+  readonly control: Control;
   /** number of entries so far */
   readonly entries: number;
 }
@@ -48,8 +51,22 @@ export function momentAt(entries: readonly Entry[], t: number): Moment | null {
     task: next?.running ?? null,
     outcomes: outcomesOf(entries, count),
     readings: readingsOf(entries, count),
+    control: controlAfter(entries, count),
     entries: count,
   };
+}
+
+/** Return who has the robot after the first `count` entries. */
+export function controlAfter(entries: readonly Entry[], count = entries.length): Control {
+  if (count === entries.length && entries.at(-1)?.ended) return "ended";
+  let control: Control = "autonomous";
+  for (let at = 0; at < count; at++)
+    for (const { kind } of (entries[at] as Entry).events) {
+      if (kind === "take_over") control = "supervised";
+      else if (kind === "pause") control = "paused";
+      else if (kind === "give_back" || kind === "resume") control = "autonomous";
+    }
+  return control;
 }
 
 /** Return the outcome of each task's last visit in the first `count` entries. */

@@ -3,6 +3,7 @@
 import type { RequestState, RunState } from "../api/types";
 
 export type ShownMode =
+  | "unknown"
   | "preparing"
   | "autonomous"
   | "stopping"
@@ -14,7 +15,9 @@ export type ShownMode =
   | "notice"
   | "bad";
 
-export function shownMode(run: RunState): ShownMode {
+/** Return the mode of a run; `known`: whether its state is the present one. */
+export function shownMode(run: RunState, known = true): ShownMode {
+  if (!known && run.status !== "ended") return "unknown";
   switch (run.status) {
     case "preparing":
       return "preparing";

@@ -3,16 +3,17 @@
 import type { Outcome } from "../model/replay";
 import { shownMode, type ShownMode } from "../model/run-mode";
 import { mission, planId, revision } from "../state/plan";
-import { robotConnected, shownRun, shownRunState, shownTime } from "../state/run";
+import { presentMode, shownRun, shownRunState, shownTime } from "../state/run";
 import { t } from "../texts";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
 import { styled } from "../ui/styled";
 import { percent, seconds } from "../ui/figures";
-import { modeWords } from "./mode-words";
+import { knownModeWords, modeWords } from "./mode-words";
 import { parts } from "./parts";
 
 const SIGNS: Record<ShownMode, Icon> = {
+  unknown: "question",
   preparing: "clock",
   autonomous: "play",
   stopping: "pause",
@@ -60,6 +61,7 @@ export class RunBand extends PageElement {
         overflow-wrap: anywhere;
       }
       .preparing,
+      .unknown,
       .past {
         --tone: var(--dim);
       }
@@ -83,7 +85,8 @@ export class RunBand extends PageElement {
         --tone: var(--good);
       }
       .paused,
-      .stopping {
+      .stopping,
+      .unknown {
         border-style: dashed;
         border-left-style: solid;
       }
@@ -133,8 +136,8 @@ export class RunBand extends PageElement {
     if (run === null) return nothing;
     const texts = t().run;
     const now = shownRun.value;
-    const mode = shownMode(run);
     const past = shownTime.value !== null;
+    const mode = past ? (now?.mode ?? shownMode(run)) : presentMode(run);
     return html`<div class="band ${past ? "past" : mode}" id="mode" data-mode=${mode} role="status">
         ${icon(past ? "clock" : SIGNS[mode], 26)}
         <div class="grow">
@@ -142,11 +145,10 @@ export class RunBand extends PageElement {
           <p class="what">${this.doing()}</p>
         </div>
       </div>
-      ${run.problem ? html`<p class="problem">${run.problem}</p>` : nothing}
-      ${typeof run.silent_since === "number"
+      ${run.problem && !past ? html`<p class="problem">${run.problem}</p>` : nothing}
+      ${typeof run.silent_since === "number" && !past
         ? html`<p class="problem">${texts.silent(t().words.seconds(run.silent_since))}</p>`
         : nothing}
-      ${robotConnected.value ? nothing : html`<p class="problem">${texts.notConnected}</p>`}
       <dl>
         ${this.time(now?.t ?? run.t, run.max_duration ?? null)} ${this.charge()} ${this.tasks()}
       </dl>`;
@@ -160,6 +162,8 @@ export class RunBand extends PageElement {
     if (run.status === "ended" && shownTime.value === null)
       return run.headline ? t().verdict.headline(run.headline) : "";
     const text: string[] = [];
+    if (shownTime.value !== null && now !== null) text.push(texts.modes[now.mode]);
+    else if (presentMode(run) === "unknown") text.push(texts.lastKnown(knownModeWords(run)));
     if (run.reaction && now?.live) text.push(texts.reactsTo(t().words.event[run.reaction]));
     const task = now?.task ?? null;
     if (task === null) text.push(run.status === "running" ? texts.standing : "");

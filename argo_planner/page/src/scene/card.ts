@@ -10,7 +10,7 @@ import { iconButton } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, property } from "../ui/element";
 import { bound, figure, unitText } from "../ui/figures";
 import { icon } from "../ui/icons";
-import { dependOn } from "./depend-on";
+import { dependOn } from "../state/depend-on";
 import { type Mark, openMark } from "./marks";
 import { setsStart } from "./navigate";
 import { floating } from "./style";

@@ -6,7 +6,7 @@ import { t } from "../texts";
 import { css, customElement, html, nothing, PageElement, property } from "../ui/element";
 import { world } from "../state/world";
 import { styled } from "../ui/styled";
-import { dependOn } from "./depend-on";
+import { dependOn } from "../state/depend-on";
 import { floating } from "./style";
 import type { SceneView } from "./view";
 

@@ -9,7 +9,7 @@ import { mission } from "../state/plan";
 import { shownFloor, tool } from "../state/view";
 import { world } from "../state/world";
 import { t } from "../texts";
-import { dependOn } from "./depend-on";
+import { dependOn } from "../state/depend-on";
 import type { Site } from "./site";
 import { mapsRead, readMaps, standingVerdict } from "./standing-maps";
 

@@ -3,7 +3,7 @@
 import { modeWords } from "../run/mode-words";
 import { shownRunState, shownTime } from "../state/run";
 import { t } from "../texts";
-import { dependOn } from "./depend-on";
+import { dependOn } from "../state/depend-on";
 import { ghost, verdictWords } from "./navigate";
 import type { RobotView } from "./robot-view";
 import type { SceneView } from "./view";

@@ -23,7 +23,7 @@ import { comparedPreview, hoveredLeg, preview } from "../state/preview";
 import { panel, shownFloor } from "../state/view";
 import { world } from "../state/world";
 import { colours } from "./colours";
-import { dependOn } from "./depend-on";
+import { dependOn } from "../state/depend-on";
 import { pathsShown } from "./settings";
 import { dispose } from "./stage";
 import type { SceneView } from "./view";

@@ -5,7 +5,7 @@ import { BufferAttribute, BufferGeometry, Line, LineBasicMaterial, Vector3 } fro
 
 import { fetchFile, delay, Unreached } from "../api/client";
 import type { World } from "../api/types";
-import { shownMode, type ShownMode } from "../model/run-mode";
+import type { ShownMode } from "../model/run-mode";
 import { floorOf } from "../model/standing-map";
 import { mission, planId } from "../state/plan";
 import { run, shownEntries, shownRun, shownRunState } from "../state/run";
@@ -13,7 +13,7 @@ import { following, shownFloor } from "../state/view";
 import { world } from "../state/world";
 import { type Colours, colours } from "./colours";
 import { readGlb } from "./glb";
-import { dependOn } from "./depend-on";
+import { dependOn } from "../state/depend-on";
 import { poseOf } from "./marks";
 import { ghost } from "./navigate";
 import { Ghost, RobotBody } from "./robot";
@@ -111,7 +111,7 @@ export class RobotView {
     // A finished run of another mission is not shown here.
     const tells = now !== null && state !== null && (now.plan === planId.value || (run.value === state && state.status !== "ended"));
     this.target = tells ? now.pose : startOf(site);
-    this.mode = tells ? shownMode(state) : null;
+    this.mode = tells ? now.mode : null;
     this.body?.mark(this.mode && ringColour(this.mode, colours.value));
     // Poses arrive several times a second, also if the robot stands: then it is not drawn again.
     const pose = this.target ?? [];
@@ -207,6 +207,7 @@ function ringColour(mode: ShownMode, now: Colours): string {
     case "good":
       return now.good;
     case "preparing":
+    case "unknown":
       return now.dim;
   }
 }

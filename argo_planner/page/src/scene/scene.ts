@@ -19,7 +19,7 @@ import { colours } from "./colours";
 import "./compass";
 import "./floors";
 import { box } from "./ground-marks";
-import { dependOn } from "./depend-on";
+import { dependOn } from "../state/depend-on";
 import { type Keyed, onSceneKey } from "./keys";
 import { ghost, ghostWords, hideGhost, moveGhostToRay, placeGhost, setsStart, activateNavigation, turnGhost, verdictWords } from "./navigate";
 import { clickCorner, corners, hideCorners, pointCorner, spannedBox } from "./obstacle-tool";

@@ -16,7 +16,7 @@ import { Gauges } from "./checkpoints";
 import { colours } from "./colours";
 import { Dots } from "./dots";
 import { GroundMarks, toneColour } from "./ground-marks";
-import { dependOn } from "./depend-on";
+import { dependOn } from "../state/depend-on";
 import { Labels } from "./labels";
 import { type Mark, marks, openMark } from "./marks";
 import { labelsShown, hidden } from "./settings";
@@ -49,6 +49,7 @@ export class SceneView {
   private shown: readonly Mark[] = [];
   private behind = new Set<string>();
   private looked = 0;
+  private plan: string | null = null;
   private loaded = "";
   private over = false;
 
@@ -67,6 +68,7 @@ export class SceneView {
         const site = world.value;
         if (site !== null) void this.load(site);
       }),
+      effect(() => this.resetFor(planId.value)),
       effect(() => {
         this.site.show(shownFloor.value, hidden.value);
         if (this.loading.value === "there") this.gauges.show((floor) => this.site.isShown(floor));
@@ -142,6 +144,14 @@ export class SceneView {
     for (const stop of this.stops) stop();
     this.labels.dispose();
     for (const part of [this.gauges, this.dots, this.ground, this.site, this.camera, this.stage]) part.dispose();
+  }
+
+  /** Show the whole site again if another mission is opened. */
+  private resetFor(plan: string | null): void {
+    const site = world.peek();
+    if (plan === null || plan === this.plan) return;
+    if (this.plan !== null && site !== null) this.camera.setSite(site, false);
+    this.plan = plan;
   }
 
   private async load(site: World): Promise<void> {

@@ -11,6 +11,8 @@ export interface Notice {
   readonly text: string;
   readonly details: readonly string[];
   readonly actions: readonly { readonly label: string; readonly act: () => void }[];
+  /** id of the mission that was open; null: none was */
+  readonly plan: string | null;
 }
 
 export const notices = signal<readonly Notice[]>([]);
@@ -18,6 +20,13 @@ export const notices = signal<readonly Notice[]>([]);
 const STAYS_MS = { info: 5_000, warn: 15_000, bad: 25_000 };
 const MOST = 3;
 let count = 0;
+let openPlanId: string | null = null;
+
+/** Show notices of this mission from now on, and dismiss those of others; null: no mission is open. */
+export function showNoticesOf(plan: string | null): void {
+  openPlanId = plan;
+  if (plan !== null) notices.value = notices.value.filter((one) => one.plan === null || one.plan === plan);
+}
 
 /** Show a notice. Returns its id, by which it can be dismissed. */
 export function showNotice(
@@ -26,7 +35,7 @@ export function showNotice(
   more: { details?: readonly string[]; actions?: Notice["actions"] } = {},
 ): number {
   const id = ++count;
-  const notice = { id, tone, text, details: more.details ?? [], actions: more.actions ?? [] };
+  const notice = { id, tone, text, details: more.details ?? [], actions: more.actions ?? [], plan: openPlanId };
   const others = notices.value.filter((one) => one.text !== text);
   notices.value = [...others, notice].slice(-MOST);
   if (notice.actions.length === 0) dismissLater(id, STAYS_MS[tone]);
@@ -66,6 +75,20 @@ export async function withErrorNotice(work: () => Promise<unknown>): Promise<boo
   } catch (error) {
     showError(error);
     return false;
+  }
+}
+
+/** Carry out requests to the service. Returns null if they succeeded, or the reason, for the place that it is
+ * about; rethrows all other errors. */
+export async function reasonOfFailure(work: () => Promise<unknown>): Promise<string | null> {
+  try {
+    await work();
+    return null;
+  } catch (error) {
+    if (error instanceof Unreached) return t().frame.notReached;
+    if (!(error instanceof Refusal)) throw error;
+    const hints = error.problem.diagnostics.flatMap((one) => (one.hint ? [one.hint] : []));
+    return [messageOf(error), ...new Set(hints)].join(" – ");
   }
 }
 

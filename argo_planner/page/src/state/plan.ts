@@ -22,7 +22,7 @@ import { renamesBetween } from "../model/renames";
 import { groupKey, isTaskKey, nameOfKey, reactionKey, taskKey } from "../model/outline";
 import { t } from "../texts";
 import { followRenames, renamedKeys } from "./identity";
-import { showNotice } from "./notices";
+import { showNotice, showNoticesOf } from "./notices";
 import { isMe } from "./session";
 import { resetView } from "./view";
 import { obstaclesChanged } from "./world";
@@ -79,6 +79,7 @@ export async function openPlan(id: string, isMeant: () => boolean): Promise<void
   if (!isMeant()) return;
   closePlan();
   wasDeleted.value = false;
+  showNoticesOf(id);
   batch(() => {
     planId.value = id;
     takePlanState(state);
@@ -120,12 +121,15 @@ export function closePlan(): void {
   live?.close();
   live = null;
   followRenames(new Map(), () => false);
+  showNoticesOf(null);
   batch(() => {
     planId.value = null;
     planName.value = "";
     mission.value = null;
     selection.value = [];
     others.value = [];
+    findings.value = { diagnostics: [], more: 0 };
+    versions.value = undoable.value = redoable.value = [];
     analysis.value = null;
     jobs.value = new Map();
     connected.value = false;

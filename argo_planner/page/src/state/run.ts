@@ -13,6 +13,7 @@ import type {
   RunState,
 } from "../api/types";
 import { momentAt, type Moment } from "../model/replay";
+import { shownMode, type ShownMode } from "../model/run-mode";
 import { showNotice, showError } from "./notices";
 import { planId } from "./plan";
 import { isMe } from "./session";
@@ -30,7 +31,8 @@ export const robotPose = signal<RobotPose | null>(null);
 export const entries = signal<readonly Entry[]>([]);
 /** Whether a run is in progress or interrupted. */
 export const runIsOn = computed(() => run.value !== null && run.value.status !== "ended");
-export const robotConnected = signal(false);
+/** When the connection to the robot's run was lost (ms since 1970); null: it is there, or was not there yet. */
+export const robotLostAt = signal<number | null>(null);
 
 export interface PastRun {
   readonly state: RunState;
@@ -51,9 +53,15 @@ effect(() => {
 export const shownRunState = computed(() => pastRun.value?.state ?? run.value);
 export const shownEntries = computed(() => pastRun.value?.entries ?? entries.value);
 
+/** Return the present mode of a run; without a connection, that of the robot's run is unknown. */
+export function presentMode(state: RunState): ShownMode {
+  return shownMode(state, robotLostAt.value === null || state.id !== run.value?.id);
+}
+
 /** The shown run at the shown time: pose, outcomes and readings. The scene and the list use it in place of
  * live values. */
-export interface ShownRun extends Moment {
+export interface ShownRun extends Omit<Moment, "control"> {
+  readonly mode: ShownMode;
   /** id of the mission */
   readonly plan: string;
   /** Whether it is the robot's present state. */
@@ -69,7 +77,7 @@ export const shownRun = computed<ShownRun | null>(() => {
   const past = pastRun.value !== null;
   const moment = shownMoment.value;
   if (past || back !== null)
-    return moment && { ...moment, plan, live: false };
+    return moment && { ...moment, mode: moment.control === "ended" ? shownMode(state) : moment.control, plan, live: false };
   const now = robotPose.value;
   const pose = now?.pose ?? moment?.pose;
   if (pose === undefined) return null;
@@ -80,6 +88,7 @@ export const shownRun = computed<ShownRun | null>(() => {
     task: state.task ?? null,
     outcomes: moment?.outcomes ?? new Map(),
     readings: state.readings,
+    mode: presentMode(state),
     entries: entries.value.length,
     plan,
     live: true,
@@ -101,7 +110,7 @@ export function followRobot(): void {
   live ??= new LiveConnection<RunMessage>({
     address: () => `/api/robot/live?${[sinceQuery(), authorQuery()].filter(Boolean).join("&")}`,
     onMessage,
-    onConnection: (there) => (robotConnected.value = there),
+    onConnection: (there) => (robotLostAt.value = there ? null : (robotLostAt.value ?? Date.now())),
   });
 }
 

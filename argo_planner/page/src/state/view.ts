@@ -37,5 +37,6 @@ export function resetView(): void {
   tool.value = "select";
   shownFloor.value = null;
   following.value = "off";
+  pointedName.value = look.value = null;
   if (panel.value === "run") panel.value = "properties";
 }

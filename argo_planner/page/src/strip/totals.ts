@@ -15,47 +15,36 @@ import { icon } from "../ui/icons";
 @customElement("argo-totals")
 export class StripTotals extends PageElement {
   static override styles = css`
-    .totals {
+    .totals,
+    .once {
       display: flex;
       flex-wrap: wrap;
       align-items: baseline;
-      gap: 2px 18px;
+      gap: 0 14px;
+      min-height: 24px; /* also while nothing is known: what is below does not move */
+      line-height: 24px;
     }
-    .total b {
+    .once {
+      min-height: 20px;
+      line-height: 20px;
+      font-size: 12px;
+    }
+    .totals b {
       font-size: 15px;
     }
     .bad,
     .bad b {
       color: var(--bad);
     }
-    .warn {
+    .warn,
+    .warn b {
       color: var(--warn);
     }
-    :host {
-      container-type: inline-size;
-    }
-    .bounds {
-      display: flex;
-      flex-wrap: wrap;
-      align-content: start;
-      gap: 0 10px;
-      min-height: 20px; /* also while nothing is known: what is below does not move */
-      line-height: 20px;
-      font-size: 12px;
-    }
-    @media (min-width: 801px) {
-      @container (max-width: 600px) {
-        .bounds {
-          min-height: 40px;
-        }
-      }
-    }
-    .bounds button {
+    .totals button {
       display: inline;
       min-height: 0;
       padding: 0;
       border: 0;
-      font-size: 12px;
       text-decoration: underline dotted;
       text-underline-offset: 3px;
     }
@@ -86,36 +75,39 @@ export class StripTotals extends PageElement {
     const energy = withLimit(found.energy, battery());
     const bounds = boundsOf(analysis.value, { time: time.limit, energy: energy.limit });
     const old = !previewIsNew.value;
-    return html`<div class="totals ${old ? "old" : ""}">
-        ${this.total("time", time, seconds)} ${this.total("energy", energy, (wh) => share(wh, battery()))}
-        <span class="total">${texts.distance} <b id="total-distance">${metres(found.distance)}</b></span>
-        <span class="total">${texts.climb} <b id="total-climb">${metres(found.climb)}</b></span>
+    const single = bounds.every((bound) => isOnly(bound, bound.kind === "time" ? time : energy)) && !isPart(found);
+    return html`<div class="totals">
+        ${bounds.length === 0 && analysis.value?.revision !== revision.value
+          ? html`<span class="dim">${texts.mission} ${texts.outdated}</span>`
+          : nothing}
+        ${bounds.map((bound) => this.bound(bound, bound.kind === "time" ? time : energy))}
+      </div>
+      <div class="once ${old ? "old" : ""}">
+        ${single && bounds.length > 0
+          ? nothing
+          : html`<span class="dim">${texts.once}</span> ${this.total("time", time, seconds)}
+              ${this.total("energy", energy, (wh) => share(wh, battery()))}`}
+        <span>${texts.distance} <b id="total-distance">${metres(found.distance)}</b></span>
+        <span>${texts.climb} <b id="total-climb">${metres(found.climb)}</b></span>
+        ${found.at_least.map((least) => html`<span class="dim">${icon("clock", 13)} ${least}</span>`)}
         ${old ? html`<span role="status">${missionHasErrors.value ? texts.before : texts.outdated}</span>` : nothing}
       </div>
-      <p class="bounds">
-        ${isPart(found) ? html`<span class="dim">${texts.oneRound}</span>` : nothing}
-        ${bounds.length > 0 ? html`<span class="dim">${texts.allExecutions}</span>` : nothing}
-        ${bounds.map((bound) => this.bound(bound))}
-        ${found.at_least.length > 0
-          ? html`<span class="dim" title=${found.at_least.join("\n")}>${icon("clock", 13)} ${found.at_least[0]}</span>`
-          : nothing}
-      </p>
       ${this.witness(bounds)}`;
   }
 
+  /** Render a total of the drawn path, which has each task once. */
   private total(kind: BoundShown["kind"], of: LimitedValue, write: (value: number) => string) {
     const texts = t().strip;
     const isTime = kind === "time";
     const problem = isTime ? texts.tooLong : texts.tooMuch;
-    return html`<span class="total ${of.broken ? "bad" : ""}" title=${of.broken ? problem : nothing}>
+    return html`<span class=${of.broken ? "bad" : ""} title=${of.broken ? problem : nothing}>
       ${of.broken ? icon("warning", 14) : nothing} ${isTime ? texts.time : texts.battery}
       <b id=${`total-${kind}`}>${write(of.value)}</b>
-      ${isTime && of.limit !== null ? `/ ${write(of.limit)}` : nothing}
     </span>`;
   }
 
-  /** Render the bounds over all executions; a click shows the execution with the highest value. */
-  private bound(bound: BoundShown) {
+  /** Render the bounds over all executions of the mission; a click shows the execution with the highest value. */
+  private bound(bound: BoundShown, { limit }: LimitedValue) {
     const texts = t().strip;
     const isTime = bound.kind === "time";
     const energy = (wh: number) => share(wh, battery());
@@ -123,16 +115,20 @@ export class StripTotals extends PageElement {
     const old = analysis.value?.revision !== revision.value;
     const least = bound.least === null ? texts.noBound : writeLeast(bound.least);
     const most = bound.most === null ? texts.noBound : writeMost(bound.most);
-    return html`<button
-      class="bare ${bound.broken ? "warn" : "dim"} ${old ? "old" : ""}"
-      title=${old ? texts.outdated : texts.allPaths}
-      aria-expanded=${this.path === bound.kind}
-      ?disabled=${bound.path.length === 0}
-      @click=${() => this.showPath(bound)}
-    >
-      ${bound.broken ? icon("warning", 12) : nothing}
-      ${isTime ? texts.time : texts.battery} <b>${texts.between(least, most)}</b>
-    </button>`;
+    const never = limit !== null && bound.least !== null && bound.least > limit;
+    return html`<span class="${never ? "bad" : bound.broken ? "warn" : ""} ${old ? "old" : ""}">
+      ${bound.broken ? icon("warning", 14) : nothing} ${isTime ? texts.mission : texts.battery}
+      <button
+        class="bare"
+        title=${old ? texts.outdated : texts.allPaths}
+        aria-expanded=${this.path === bound.kind}
+        ?disabled=${bound.path.length === 0}
+        @click=${() => this.showPath(bound)}
+      >
+        <b>${texts.between(least, most)}</b>
+      </button>
+      ${isTime && limit !== null ? `/ ${seconds(limit)}` : nothing}
+    </span>`;
   }
 
   private showPath(bound: BoundShown): void {
@@ -164,6 +160,11 @@ export class StripTotals extends PageElement {
         })}
       </ol>`;
   }
+}
+
+/** Return whether all executions have the value of the drawn path. */
+function isOnly({ least, most }: BoundShown, { value }: LimitedValue): boolean {
+  return [least, most].every((bound) => bound !== null && Math.abs(bound - value) <= 0.001 * Math.abs(value));
 }
 
 /** Return whether the mission may take more than each task once, which the totals do not include. */

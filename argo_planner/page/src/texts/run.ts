@@ -9,6 +9,7 @@ type Troubles = Record<Trouble, string>;
 
 const modes: { en: Modes; de: Modes } = {
   en: {
+    unknown: "Unknown",
     preparing: "Preparing",
     autonomous: "Driving autonomously",
     stopping: "Stopping",
@@ -21,6 +22,7 @@ const modes: { en: Modes; de: Modes } = {
     bad: "Ended without success",
   },
   de: {
+    unknown: "Unbekannt",
     preparing: "Wird vorbereitet",
     autonomous: "Fährt autonom",
     stopping: "Hält an",
@@ -91,7 +93,8 @@ export const run = both(
     noTasks: "The mission has no tasks yet.",
     robotBusy: (who: string, name: string) => `${who} is using the robot for a run of “${name}”.`,
     openThat: "Open that mission",
-    notConnected: "No data about the robot at present. Reconnecting …",
+    unknownSince: (time: string) => `Unknown since ${time}`,
+    lastKnown: (mode: string) => `No connection. Last known: ${mode}`,
     speed: "Speed",
     fullSpeed: "as fast as possible",
     times: (speed: number) => `${speed}×`,
@@ -228,7 +231,8 @@ export const run = both(
     noTasks: "Die Mission hat noch keine Aufgaben.",
     robotBusy: (who: string, name: string) => `${who} nutzt den Roboter für eine Fahrt von „${name}“.`,
     openThat: "Diese Mission öffnen",
-    notConnected: "Zurzeit keine Daten vom Roboter. Die Verbindung wird wiederhergestellt …",
+    unknownSince: (time: string) => `Unbekannt seit ${time}`,
+    lastKnown: (mode: string) => `Keine Verbindung. Zuletzt bekannt: ${mode}`,
     speed: "Tempo",
     fullSpeed: "so schnell wie möglich",
     times: (speed: number) => `${String(speed).replace(".", ",")}×`,

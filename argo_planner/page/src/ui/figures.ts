@@ -48,6 +48,11 @@ export function dateAndTime(time: string, dateStyle: "short" | "medium" = "mediu
   return new Date(time).toLocaleString(dateLocale(), { dateStyle, timeStyle });
 }
 
+/** Format the time of day of a moment (ms since 1970). */
+export function timeOfDay(moment: number): string {
+  return new Date(moment).toLocaleTimeString(dateLocale(), { timeStyle: "medium" });
+}
+
 /** Format an energy (Wh) as a share of the battery's capacity, or in Wh if that is unknown. */
 export function share(wh: number, battery: number): string {
   return battery > 0 ? percent(wh / battery, wh < battery / 10 ? 1 : 0) : `${figure(wh, 0)} Wh`;

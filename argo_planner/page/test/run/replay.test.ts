@@ -44,3 +44,25 @@ test("outcomes and readings are the last ones up to that time", () => {
   expect(readingsOf(ENTRIES).map((one) => one.value)).toEqual([2]);
   expect(momentAt(ENTRIES, Infinity)?.t).toBe(10);
 });
+
+test("who had the robot is told of that moment, not of the end", () => {
+  const entries = [
+    entry(0),
+    entry(2, { events: [{ kind: "take_over" }] }),
+    entry(5, { events: [{ kind: "give_back", by_hand: [{ task: "c", skipped: true }] }] }),
+    entry(6, { events: [{ kind: "pause" }] }),
+    entry(7, { events: [{ kind: "resume" }] }),
+    entry(9, { events: [], ended: true }),
+  ];
+  const at = (t: number) => momentAt(entries, t);
+  expect([0, 2, 4, 5, 6, 8, 9].map((t) => at(t)?.control)).toEqual([
+    "autonomous",
+    "supervised",
+    "supervised",
+    "autonomous",
+    "paused",
+    "autonomous",
+    "ended",
+  ]);
+  expect([at(4), at(6)].map((moment) => moment?.outcomes.get("c"))).toEqual([undefined, "skipped"]);
+});

@@ -310,6 +310,8 @@ class _Parser:
         plain = plain and whole and not self.understanding.unknown and self._is_plain(item)
         plain = plain and self.fields.count == read  # else it says more than its orders
         plain = plain and not over and self._is_said_below(item, said)
+        # What a number alone is hangs on the lines around it.
+        plain = plain and not any(self.understanding.types(p) == ("NUMBER",) for p in parts)
         if plain and not any(isinstance(s, Unread) for s in said):
             self.repeats.keep(text, said, lambda text, unknown: self._again(item, text, unknown))
         return said

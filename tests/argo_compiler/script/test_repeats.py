@@ -7,10 +7,11 @@ from itertools import chain
 
 import pytest
 
-from argo_compiler.script import parse
+from argo_compiler.base.catalog import Catalog
+from argo_compiler.script import LineState, import_script, parse
 from argo_compiler.script.parsing.repeats import repeats
 from argo_compiler.script.parsing.script import Script
-from tests.argo_compiler.script.conftest import CATALOG
+from tests.argo_compiler.script.conftest import CATALOG, measured_in
 from tests.campaigns.fuzz.sentences import english_generator, text_of
 from tests.whole_scripts import import_whole
 
@@ -116,3 +117,14 @@ def test_a_number_in_the_name_of_a_place_is_no_figure() -> None:
     repeats.cache_clear()
     head = "\n".join(["Check #1.", *(f"{k}. Check checkpoint #1." for k in range(2, 5))])
     assert last == parse(f"{head}\n5. Go to dock 7.", [*PLACES, "dock 7"]).steps[-1]
+
+
+def test_a_number_alone_says_nothing_for_other_scripts(catalog: Catalog) -> None:
+    """In a list it is a checkpoint; on a line of its own it can be a page's number as well."""
+    repeats.cache_clear()
+    known = import_script("Start in starting area 1.\n- 1\n- 3\n- three", catalog)
+    assert measured_in(known.require_mission()) == ["1", "3", "3"]
+    for number in ("3", "three"):
+        text = f"Start in starting area 1.\nPressure gauges\n1\n{number}"
+        draft = import_script(text, catalog)
+        assert [line.text for line in draft.lines if line.state is LineState.OPEN] == [number]

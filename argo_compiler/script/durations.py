@@ -16,7 +16,7 @@ _UNITS_S = (1.0, 60.0, 3600.0)
 
 
 class DurationReading(Model):
-    """What a text says as a duration."""
+    """Meaning of a text as a duration: one, several to choose from, or none."""
 
     seconds: float | None
     """s, if the text has exactly one meaning"""

@@ -97,7 +97,7 @@ def test_an_upload_becomes_a_mission_by_keyboard_alone(ann: Person) -> None:
     expect(ann.page.get_by_role("treeitem")).to_have_count(6)
     assert ann.inputs == 6 + len("Check checkpoint 6.")
     named = ann.page.get_by_role("treeitem").all_inner_texts()
-    assert [number for text in named for number in re.findall(r"MEASURE (\d+)", text)] == [
+    assert [number for text in named for number in re.findall(r"\(#(\d+)\)", text)] == [
         *("4", "14", "6", "5")
     ]
     ann.go("")

@@ -52,14 +52,16 @@ def task_names(service: Served, plan: str) -> list[str]:
 
 
 def row(person: Person, name: str) -> Any:
-    return person.page.get_by_role("treeitem").filter(has_text=re.compile(rf"^\s*{name}"))
+    """Return the row of the task or group with a name."""
+    return person.page.locator(f'argo-list [role=treeitem][data-name="{name}"]')
 
 
 def expect_order(person: Person, *names: str) -> None:
-    """Wait until the list shows these rows."""
-    expect(person.page.locator("argo-list [role=treeitem] .names > :first-child")).to_have_text(
-        list(names)
-    )
+    """Wait until the list shows the rows of the tasks and groups with these names."""
+    rows = person.page.locator("argo-list [role=treeitem]")
+    expect(rows).to_have_count(len(names))
+    for at, name in enumerate(names):
+        expect(rows.nth(at)).to_have_attribute("data-name", name)
 
 
 @pytest.mark.long
@@ -263,6 +265,45 @@ def test_a_form_refuses_text_that_is_no_duration(ann, service, plan) -> None:
     assert service.mission(plan)["max_duration"] == before
 
 
+ROUND = """Mission Protocol
+
+1. Set the starting point in starting area 1.
+2. Check checkpoint #4.
+3. Check checkpoint #1. If checkpoint #1 is above 7, go to step 8.
+4. Patrol floor 1 for 2 minutes.
+5. Check checkpoint #8.
+6. Check checkpoint #13.
+7. Repeat steps 5 to 6 3 times.
+8. Check checkpoint #14.
+"""
+
+
+@pytest.mark.long
+def test_a_task_has_the_same_number_everywhere(shared_person, service) -> None:
+    ann = shared_person
+    id = service.imported(ROUND, filename="round.txt")
+    ann.go(f"/missions/{id}")
+    listed = ann.page.locator("argo-list [role=treeitem] .number")
+    expect(listed).to_have_text(
+        ["1", "2", "3", "4", "4.1", "4.2", "4.3", "4.4", "7", "5", "6", "8"]
+    )
+    expect(row(ann, "MEASURE 1")).to_contain_text("pressure gauge 1 (#1)")
+    expect(row(ann, "MEASURE 1")).to_contain_text("floor 1 · > 7 bar → 8")
+    expect(ann.page.locator("argo-list svg.branches g")).to_have_count(1)
+    ann.page.locator("argo-strip summary").click()
+    expect(ann.page.locator("argo-strip td:first-child")).to_contain_text(
+        ["2 valve R25 (#4)", "3 pressure gauge 1 (#1)", "4.1", "8 valve R18 (#14)"]
+    )
+    ann.wait_for_scene()
+    shown = ann.page.locator('argo-scene .label[data-key="checkpoint:14"] .numbers')
+    expect(shown).to_have_text("8")
+    ann.click(ann.page.locator("#tab-script"))
+    expect(ann.page.locator("argo-script-sheet textarea")).to_have_value(
+        re.compile(r"^8\. Check checkpoint #14", re.MULTILINE)
+    )
+    ann.click(ann.page.locator("#tab-properties"))
+
+
 @pytest.mark.long
 def test_a_condition_is_added_in_the_form(ann, service, plan) -> None:
     ann.click(row(ann, "A1"))
@@ -273,7 +314,7 @@ def test_a_condition_is_added_in_the_form(ann, service, plan) -> None:
     bound.press("Enter")
     then = ann.page.get_by_label("Continue with", exact=True).first
     then.select_option("C4")
-    expect(row(ann, "A1")).to_contain_text("is below 2.5")
+    expect(row(ann, "A1")).to_contain_text("< 2.5 bar → 4")
 
     def transition():
         return service.mission(plan)["tasks"][1]["transitions"][0]

@@ -43,7 +43,7 @@ def shown_rows(person: Person) -> list[tuple[str, int]]:
             .querySelector("argo-list").shadowRoot.querySelectorAll("[role=treeitem]")];
         rows.sort((a, b) => a.dataset.index - b.dataset.index);
         return rows.map((row) => [
-            row.querySelector(".names > :first-child").textContent.trim(), Number(row.ariaLevel)]);
+            row.dataset.name, Number(row.ariaLevel)]);
     }"""
     return [(name, level) for name, level in person.evaluate(script)]
 

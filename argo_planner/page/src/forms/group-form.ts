@@ -5,6 +5,7 @@ import { ownName } from "../model/outline";
 import { edit, editFromForm } from "../state/commands";
 import { mission } from "../state/plan";
 import { mayPlan } from "../state/session";
+import { groupLabel, taskLabel } from "../state/task-labels";
 import { t } from "../texts";
 import { html } from "../ui/element";
 import { conditionList } from "./conditions";
@@ -22,10 +23,10 @@ export function groupForm(group: Group) {
   const set = (fields: Fields) => setOf(() => fields);
   const saveUntil = (change: (was: Group["until"]) => Group["until"]) =>
     setOf((was) => ({ until: change(was.until) }));
-  const tasks = (mission.value?.tasks ?? []).map(({ name }) => ({ value: name, label: name }));
+  const tasks = (mission.value?.tasks ?? []).map(({ name }) => ({ value: name, label: taskLabel(name) }));
   const rename = (name: string) =>
     editFromForm(() => [{ kind: "rename_group", name: group.name, own_name: name.trim() }]);
-  return html`<h2>${texts.group}</h2>
+  return html`<h2>${groupLabel(group.name)}</h2>
     ${textField(texts.name, ownName(group.name), rename)}
     ${countField(texts.rounds, group.max_repeat_count || null, (count) =>
       set({ max_repeat_count: count ?? 0 }),

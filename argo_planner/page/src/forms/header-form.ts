@@ -5,6 +5,7 @@ import { editFromForm } from "../state/commands";
 import { showNotice } from "../state/notices";
 import { tasksAfterStart, mission as open } from "../state/plan";
 import { mayPlan } from "../state/session";
+import { taskLabel } from "../state/task-labels";
 import { world } from "../state/world";
 import { t } from "../texts";
 import { options } from "../ui/controls";
@@ -65,7 +66,7 @@ function precedenceFields(mission: Mission) {
   const names = tasksAfterStart.value;
   const choice = (name: string, label: string) =>
     html`<select name=${name} aria-label=${label}>
-      ${options(names.map((one) => [one, one]))}
+      ${options(names.map((one) => [one, taskLabel(one)]))}
     </select>`;
   const add = (event: SubmitEvent) => {
     event.preventDefault();
@@ -79,7 +80,7 @@ function precedenceFields(mission: Mission) {
       ${mission.before.map(
         ([first, second]) =>
           html`<li>
-            ${texts.comesBefore(first, second)}
+            ${texts.comesBefore(taskLabel(first), taskLabel(second))}
             <button
               class="bare"
               ?disabled=${!mayPlan()}

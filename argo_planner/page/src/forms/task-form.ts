@@ -4,6 +4,7 @@ import type { Task, TimeWindow, Transition, WaitRule } from "../api/types";
 import { edit, editFromForm } from "../state/commands";
 import { tasksAfterStart, tasksByName } from "../state/plan";
 import { mayPlan } from "../state/session";
+import { taskLabel } from "../state/task-labels";
 import { lookAt } from "../state/view";
 import { checkpointsById } from "../state/world";
 import { t } from "../texts";
@@ -41,7 +42,7 @@ export function taskForm(task: Task) {
   const rename = (name: string) =>
     editFromForm(() => [{ kind: "rename_task", name: task.name, new_name: name.trim() }]);
   return html`<div class="title">
-      <h2>${t().words.action[task.action]}</h2>
+      <h2>${taskLabel(task.name)}</h2>
       ${task.object_id || task.pose
         ? html`<button title=${`${texts.show} (v)`} @click=${() => lookAt(task)}>
             ${icon("camera", 16)} ${texts.show}
@@ -246,5 +247,5 @@ function currentTask(task: Task): Task {
 
 /** Return the tasks that may follow. */
 function possibleFollowers(task: Task) {
-  return tasksAfterStart.value.filter((name) => name !== task.name).map((name) => ({ value: name, label: name }));
+  return tasksAfterStart.value.filter((name) => name !== task.name).map((name) => ({ value: name, label: taskLabel(name) }));
 }

@@ -17,6 +17,7 @@ import { styled } from "../ui/styled";
 import { copySelection, deleteSelection, groupSelection, pasteTasks, renameRow } from "./actions";
 import "./add";
 import type { AddTasks } from "./add";
+import { branchLines, branches, branchStyles, branchWidth } from "./branches";
 import { RowDrag, rowAt } from "./drag";
 import { onListKey } from "./keys";
 import { marksOf } from "./marks";
@@ -31,6 +32,7 @@ const BEYOND = 12;
 export class MissionList extends PageElement {
   static override styles = [
     rowStyles,
+    branchStyles,
     css`
       :host {
         display: grid;
@@ -167,12 +169,13 @@ export class MissionList extends PageElement {
                 folded: folded.value.has(row.key),
                 name: this.naming?.identity === identityOf(row.key) ? this.naming.text : null,
                 of: shown.length,
+                branches: branchWidth.value,
                 marks: marksOf(row),
                 may,
                 onNamed: this.onNamed,
               }),
           )}
-          ${this.drag.mark()}
+          ${branchLines(branches.value, first, last, at)} ${this.drag.mark()}
         </div>
       </div>
       <argo-reactions></argo-reactions>

@@ -1,18 +1,14 @@
-/** Marks and sentences of the rows: problems, run states, other people. */
+/** Marks of the rows: problems, run states, other people. */
 
 import { computed, effect, signal } from "@preact/signals-core";
 
-import type { Diagnostic, Group, Task, World } from "../api/types";
+import type { Diagnostic } from "../api/types";
 import { changedNames } from "../model/change";
-import { shownText } from "../model/shown-text";
-import { groupKey, taskKey, type Row } from "../model/outline";
-import { analysis, missionHasErrors, findings, lastRevision, others, planId, tasksByName } from "../state/plan";
-import { missionSentences } from "../state/sentences";
+import type { Row } from "../model/outline";
+import { analysis, findings, lastRevision, others, planId, tasksByName } from "../state/plan";
 import { run, shownRun } from "../state/run";
 import { isOwn } from "../state/commands";
 import { isMe } from "../state/session";
-import { world } from "../state/world";
-import { t } from "../texts";
 
 export interface Marks {
   readonly problem: Diagnostic | null;
@@ -112,63 +108,6 @@ export function marksOf(row: Row): Marks {
   const state = row.kind === "task" ? (runStates.value.get(name) ?? null) : null;
   if (problem === null && people.length === 0 && !changed && state === null) return NONE;
   return { problem, run: state, people, changed };
-}
-
-/** Sentences of tasks and groups from the script. A task that has not changed keeps its old sentence, so that
- * the list doesn't flicker with each edit. */
-const sentences = computed(() => {
-  const found = new Map<string, string>();
-  if (missionHasErrors.value) return found;
-  for (const entry of missionSentences.value?.reading.entries ?? []) {
-    if (entry.part !== "task" && entry.part !== "round") continue;
-    const key = entry.part === "task" ? taskKey(entry.name) : groupKey(entry.name);
-    const text = shownText(entry.sentences.join("; "));
-    found.set(key, found.has(key) ? `${found.get(key) ?? ""}; ${text}` : text);
-  }
-  return found;
-});
-
-/** Return the description of a row: the script's sentence, or the page's own words until it is loaded. */
-export function sentenceOf(row: Row): string {
-  const own = row.kind === "task" ? describeTask(row.task, world.value) : describeGroup(row.group);
-  return sentences.value.get(row.key) ?? own;
-}
-
-/** Describe the action of a task. */
-function describeTask(task: Task, world: World | null): string {
-  const texts = t().list;
-  if (task.action === "MEASURE") {
-    const checkpoint = world?.checkpoints.find((one) => String(one.id) === task.object_id);
-    const name = checkpoint ? `#${checkpoint.id} ${checkpoint.name}` : `#${task.object_id ?? "?"}`;
-    return texts.measures(name, checkpoint ? checkpoint.floor : null);
-  }
-  if (task.action === "WAIT") {
-    const wait = task.wait;
-    if (typeof wait?.duration === "number") return texts.waits(t().words.seconds(wait.duration));
-    return wait?.event ? texts.waitsFor(t().words.event[wait.event]) : texts.waitsUntil;
-  }
-  if (!task.pose) return t().words.action[task.action];
-  const floor = floorAt(task.pose.z, world);
-  const at = `${task.pose.x.toFixed(1)}, ${task.pose.y.toFixed(1)}`;
-  return task.action === "START" ? texts.startsAt(at, floor) : texts.drivesTo(at, floor);
-}
-
-/** Describe how often a group is repeated. */
-function describeGroup(group: Group): string {
-  const texts = t().list;
-  const parts: string[] = [];
-  if (group.max_repeat_count > 0) parts.push(texts.times(group.max_repeat_count));
-  if (group.max_repeat_duration > 0) parts.push(texts.during(t().words.seconds(group.max_repeat_duration)));
-  if (group.every > 0) parts.push(texts.every(t().words.seconds(group.every)));
-  if (group.until.length > 0) parts.push(texts.until);
-  return parts.length > 0 ? parts.join(", ") : texts.endless;
-}
-
-/** Return the number of the floor at a height (m). */
-function floorAt(z: number, world: World | null): number | null {
-  let found: number | null = null;
-  for (const floor of world?.floors ?? []) if (floor.z <= z + 0.5) found = floor.number;
-  return found;
 }
 
 /** Return the key of a diagnostic's subject, such as `tasks['valve'].transitions`; null: the whole mission. */

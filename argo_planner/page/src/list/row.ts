@@ -4,11 +4,12 @@ import { classMap } from "lit/directives/class-map.js";
 
 import type { Action } from "../api/types";
 import { ownName, type Row } from "../model/outline";
+import { groupDetail, stepNumbers, taskDetail, taskTitle } from "../state/task-labels";
 import { t } from "../texts";
 import { css, html, nothing } from "../ui/element";
 import { styled } from "../ui/styled";
 import { icon, type Icon } from "../ui/icons";
-import { type Marks, sentenceOf } from "./marks";
+import type { Marks } from "./marks";
 
 /** px */
 export const ROW_HEIGHT = 46;
@@ -20,17 +21,20 @@ const SIGNS: Record<Action, Icon> = {
   WAIT: "wait",
 };
 
+/** px */
+const NUMBER_WIDTH = 32;
+
 export const rowStyles = css`
   [role="treeitem"] {
     position: absolute;
     right: 0;
     left: 0;
     display: grid;
-    grid-template-columns: 30px minmax(0, 1fr) auto;
+    grid-template-columns: 26px minmax(0, 1fr) auto;
     align-items: center;
     gap: 4px;
     height: ${ROW_HEIGHT}px;
-    padding: 2px 6px 2px 4px;
+    padding: 2px 6px 2px ${NUMBER_WIDTH}px;
     border-bottom: 1px solid var(--sunken);
     cursor: default;
   }
@@ -58,6 +62,16 @@ export const rowStyles = css`
       background: var(--person-ground);
     }
   }
+  .number {
+    position: absolute;
+    left: 0;
+    width: ${NUMBER_WIDTH - 2}px;
+    color: var(--dim);
+    font-size: 12px;
+    font-weight: 400;
+    font-variant-numeric: tabular-nums;
+    text-align: right;
+  }
   .sign {
     display: grid;
     place-content: center;
@@ -82,7 +96,7 @@ export const rowStyles = css`
     text-overflow: ellipsis;
     white-space: nowrap;
   }
-  .said {
+  .detail {
     color: var(--dim);
     font-size: 12px;
     font-weight: 400;
@@ -123,6 +137,8 @@ export interface RowState {
   readonly name: string | null;
   /** Total number of rows. */
   readonly of: number;
+  /** px at the right that lines of branches take */
+  readonly branches: number;
   readonly marks: Marks;
   readonly may: boolean;
   /** Saves the typed name; `byKey`: the list is to get the focus back. */
@@ -134,12 +150,15 @@ export function rowView(row: Row, index: number, shown: RowState) {
   const { marks } = shown;
   const place = {
     top: `${index * ROW_HEIGHT}px`,
-    "padding-left": `${4 + 16 * Math.min(row.depth, 8)}px`,
+    "padding-left": `${NUMBER_WIDTH + 14 * Math.min(row.depth, 8)}px`,
+    "padding-right": `${6 + shown.branches}px`,
   };
+  const detail = row.kind === "task" ? taskDetail(row.task) : groupDetail(row.group);
   return html`<div
     role="treeitem"
     id=${`row-${index}`}
     data-index=${index}
+    data-name=${nameOf(row)}
     class=${classMap({ group, lit: shown.lit, active: marks.run === "active", flash: marks.changed })}
     ${styled(place)}
     draggable=${shown.may && shown.name === null ? "true" : "false"}
@@ -149,6 +168,7 @@ export function rowView(row: Row, index: number, shown: RowState) {
     aria-selected=${shown.chosen}
     aria-expanded=${group ? !shown.folded : nothing}
   >
+    <span class="number">${stepNumbers.value.get(row.key) ?? nothing}</span>
     ${group
       ? html`<span class="fold sign" title=${shown.folded ? t().list.unfold : t().list.fold}
           >${icon(shown.folded ? "right" : "down", 16)}</span
@@ -157,8 +177,8 @@ export function rowView(row: Row, index: number, shown: RowState) {
           >${icon(SIGNS[row.task.action], 18)}</span
         >`}
     <span class="names">
-      ${shown.name !== null ? nameField(row, shown.name, shown.onNamed) : html`<span>${nameOf(row)}</span>`}
-      <span class="said" title=${sentenceOf(row)}>${sentenceOf(row)}</span>
+      ${shown.name !== null ? nameField(row, shown.name, shown.onNamed) : html`<span>${titleOf(row)}</span>`}
+      <span class="detail" title=${detail}>${detail}</span>
     </span>
     <span class="marks">
       ${group ? html`<span class="dim">${t().list.count(row.count)}</span>` : nothing}
@@ -175,8 +195,13 @@ export function rowView(row: Row, index: number, shown: RowState) {
   </div>`;
 }
 
+/** Return the name of a task, or that of a group without the groups around it. */
 export function nameOf(row: Row): string {
   return row.kind === "task" ? row.task.name : ownName(row.group.name);
+}
+
+function titleOf(row: Row): string {
+  return row.kind === "task" ? taskTitle(row.task) : ownName(row.group.name);
 }
 
 function nameField(row: Row, text: string, onNamed: RowState["onNamed"]) {

@@ -1,6 +1,6 @@
-/** Names of new tasks and groups. */
+/** Names of tasks and groups. */
 
-import type { Mission } from "../api/types";
+import type { Mission, Task } from "../api/types";
 
 /** Return the wanted name, or a numbered one if it is taken: `DOCK`, `DOCK (2)`, or the form that `numbered`
  * returns. */
@@ -23,4 +23,12 @@ export function numberedName(word: string, taken: ReadonlySet<string>): string {
 /** Return the names of the mission's tasks. */
 export function taskNames(mission: Mission): Set<string> {
   return new Set(mission.tasks.map((task) => task.name));
+}
+
+/** Return whether a task has a name of its own, and not one that its action and its number make, as `MEASURE 14`. */
+export function hasOwnName({ name, action, object_id }: Task): boolean {
+  const plain = name.replace(/ \(\d+\)$/, "");
+  if (action === "MEASURE") return plain !== `MEASURE ${object_id ?? ""}`;
+  if (action === "START") return plain !== "START";
+  return !new RegExp(`^(${action}( \\d+)?|DOCK)$`).test(plain);
 }

@@ -8,6 +8,7 @@ import { compareOrders, type ComparedTask } from "../model/order-comparison";
 import { taskKey } from "../model/outline";
 import { select, tasksByName } from "../state/plan";
 import { mayPlan } from "../state/session";
+import { taskLabel } from "../state/task-labels";
 import { t } from "../texts";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { leastSeconds, percent, seconds } from "../ui/figures";
@@ -198,7 +199,7 @@ export class RouteResult extends PageElement {
         </div>
       </div>
       ${found.left_out.length > 0
-        ? html`<p class="warn">${texts.leftOut}: ${found.left_out.join(", ")}</p>`
+        ? html`<p class="warn">${texts.leftOut}: ${found.left_out.map(taskLabel).join(", ")}</p>`
         : nothing}
       ${found.warning ? html`<p class="warn">${found.warning}</p>` : nothing} ${this.reasons(found.reasons)}
       ${jobIsStale.value ? html`<p class="warn" role="alert">${texts.stale}</p>` : nothing}
@@ -217,10 +218,10 @@ export class RouteResult extends PageElement {
           html`<li class=${out.has(name) ? "out" : moved ? "moved" : ""}>
             <button
               class="bare"
-              title=${moved ? `${name}: ${t().route.moved}` : name}
+              title=${moved ? `${taskLabel(name)}: ${t().route.moved}` : taskLabel(name)}
               @click=${() => tasksByName.value.has(name) && select([taskKey(name)])}
             >
-              ${name}
+              ${taskLabel(name)}
             </button>
           </li>`,
       )}

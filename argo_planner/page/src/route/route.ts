@@ -7,6 +7,7 @@ import { parts } from "../run/parts";
 import { edit } from "../state/commands";
 import { missionHasErrors, tasksAfterStart, mission } from "../state/plan";
 import { extensionsOf, mayPlan } from "../state/session";
+import { taskLabel } from "../state/task-labels";
 import { t } from "../texts";
 import { choice, iconButton, options } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
@@ -116,7 +117,7 @@ export class RoutePanel extends PageElement {
       <h3>${texts.before}</h3>
       <ul>
         ${this.pairsAsked.map((pair, at) =>
-          this.item(texts.pair(...pair), () => {
+          this.item(texts.pair(...(pair.map(taskLabel) as [string, string])), () => {
             this.pairsAsked = this.pairsAsked.filter((_, other) => other !== at);
           }),
         )}
@@ -135,7 +136,7 @@ export class RoutePanel extends PageElement {
       <ul>
         ${this.windows.map(({ what, earliest, latest }, at) =>
           this.item(
-            texts.window(what, writeTime(earliest), latest === null ? "" : writeTime(latest)),
+            texts.window(taskLabel(what), writeTime(earliest), latest === null ? "" : writeTime(latest)),
             () => {
               this.windows = this.windows.filter((_, other) => other !== at);
             },
@@ -167,7 +168,7 @@ export class RoutePanel extends PageElement {
 
   private choice(id: string, label: string) {
     return html`<select id=${id} aria-label=${label}>
-      ${options(tasksAfterStart.value.map((name) => [name, name]))}
+      ${options(tasksAfterStart.value.map((name) => [name, taskLabel(name)]))}
     </select>`;
   }
 

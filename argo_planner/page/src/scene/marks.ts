@@ -9,6 +9,7 @@ import { floorOf } from "../model/standing-map";
 import { mission, planId, select, selection } from "../state/plan";
 import { preview } from "../state/preview";
 import { type ShownRun, shownRun } from "../state/run";
+import { numberOf, taskTitle } from "../state/task-labels";
 import { world } from "../state/world";
 import { t } from "../texts";
 import { figure, unitText } from "../ui/figures";
@@ -25,7 +26,7 @@ export interface Mark {
   readonly at: Vector3;
   readonly floor: number;
   readonly text: string;
-  /** Numbers of the tasks, as in the list. */
+  /** Numbers of the tasks, as in the list and in the script. */
   readonly numbers: string;
   /** The last reading there. */
   readonly value: string;
@@ -42,11 +43,11 @@ const RAISED = 0.12;
 
 /** The tasks that measure a checkpoint and their numbers, by its id. */
 export const measuring = computed(() => {
-  const found = new Map<string, { readonly numbers: number[]; readonly tasks: Task[] }>();
-  mission.value?.tasks.forEach((task, index) => {
+  const found = new Map<string, { readonly numbers: string[]; readonly tasks: Task[] }>();
+  mission.value?.tasks.forEach((task) => {
     if (task.action !== "MEASURE" || task.object_id === null || task.object_id === undefined) return;
     const there = found.get(task.object_id) ?? { numbers: [], tasks: [] };
-    there.numbers.push(index + 1);
+    there.numbers.push(numberOf(task.name));
     there.tasks.push(task);
     found.set(task.object_id, there);
   });
@@ -91,7 +92,7 @@ function checkpointMark(checkpoint: WorldCheckpoint): Mark {
     subject: { kind: "checkpoint", checkpoint },
     at: new Vector3(...checkpoint.position),
     floor: checkpoint.floor,
-    text: `#${checkpoint.id} ${checkpoint.name}`,
+    text: t().tasks.checkpoint(checkpoint.name, String(checkpoint.id)),
     numbers: shortList(there?.numbers ?? []),
     value: reading ? `${figure(reading.value)} ${unitText(reading.unit)}` : "",
     tone: isActive
@@ -118,7 +119,7 @@ function fieldsAtPose(site: World, { x, y, z }: Pose, raised = RAISED) {
 
 function taskMarks(site: World): Mark[] {
   const found: Mark[] = [];
-  mission.value?.tasks.forEach((task, index) => {
+  mission.value?.tasks.forEach((task) => {
     const pose = poseOf(task, site);
     if (pose === null || task.action === "MEASURE") return;
     const key = taskKey(task.name);
@@ -128,8 +129,8 @@ function taskMarks(site: World): Mark[] {
       ...fieldsAtPose(site, pose),
       key,
       subject: { kind: "task", task, pose },
-      text: task.name,
-      numbers: String(index + 1),
+      text: task.action === "START" ? t().tasks.start : taskTitle(task),
+      numbers: numberOf(task.name),
       tone: isActive ? "active" : chosen ? "chosen" : "planned",
       weight: isActive ? 9 : chosen ? 8 : 5,
       tasks: [key],
@@ -184,7 +185,7 @@ export function selectTaskOfPath(way: number, add: boolean): void {
   select(add ? (others.length < selection.value.length ? others : [...others, key]) : [key]);
 }
 
-function shortList(numbers: readonly number[]): string {
+function shortList(numbers: readonly string[]): string {
   return numbers.length > 3 ? `${numbers.slice(0, 2).join(", ")} …` : numbers.join(", ");
 }
 

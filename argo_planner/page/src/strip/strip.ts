@@ -4,6 +4,7 @@ import { mergedLegs, isTooLate, legsOf, type Leg } from "../model/legs";
 import { isTaskKey, nameOfKey, taskKey } from "../model/outline";
 import { missionHasErrors, mission, select, selection } from "../state/plan";
 import { hoveredLeg, preview, previewRefused } from "../state/preview";
+import { numberOf, taskLabel } from "../state/task-labels";
 import { world } from "../state/world";
 import { t } from "../texts";
 import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
@@ -178,7 +179,7 @@ function barView(legs: readonly Leg[], limit: number | null) {
         @blur=${() => (hoveredLeg.value = null)}
         @click=${() => select([taskKey(leg.task)])}
       >
-        ${part < 4 ? nothing : leg.task}
+        ${part < 2 ? nothing : part < 4 ? numberOf(leg.task) : taskLabel(leg.task)}
       </button>`;
     })}
     ${limit !== null && limit <= whole
@@ -190,7 +191,7 @@ function barView(legs: readonly Leg[], limit: number | null) {
 /** Describe a leg. */
 function legWords({ task, time, distance, climb, energy }: Leg): string {
   const used = share(energy, world.value?.robot.battery ?? 0);
-  return t().strip.leg(task, seconds(time), metres(distance), metres(climb), used);
+  return t().strip.leg(taskLabel(task), seconds(time), metres(distance), metres(climb), used);
 }
 
 /** Render the legs as table rows. */
@@ -216,7 +217,7 @@ function legTable(legs: readonly Leg[], limit: number | null) {
               @pointerleave=${() => (hoveredLeg.value = null)}
               @click=${() => select([taskKey(leg.task)])}
             >
-              <td>${leg.task}</td>
+              <td>${taskLabel(leg.task)}</td>
               <td class=${isTooLate(leg, limit) ? "bad" : ""}>${seconds(leg.time)}</td>
               <td>${metres(leg.distance)}</td>
               <td>${metres(leg.climb)}</td>

@@ -6,6 +6,7 @@ import { boundsOf, withLimit, type BoundShown, type LimitedValue } from "../mode
 import { taskKey } from "../model/outline";
 import { analysis, missionHasErrors, mission, revision, select } from "../state/plan";
 import { previewIsNew } from "../state/preview";
+import { groupLabel, taskLabel } from "../state/task-labels";
 import { world } from "../state/world";
 import { t } from "../texts";
 import { css, customElement, html, nothing, PageElement, property, state } from "../ui/element";
@@ -148,10 +149,10 @@ export class StripTotals extends PageElement {
         ${bound.path.map((part) => {
           const name =
             part.task === null
-              ? texts.rounds(part.group ?? "", part.rounds)
+              ? texts.rounds(groupLabel(part.group ?? ""), part.rounds)
               : part.missed
-                ? texts.missed(part.task)
-                : part.task;
+                ? texts.missed(taskLabel(part.task))
+                : taskLabel(part.task);
           return html`<li>
             <button ?disabled=${part.task === null} @click=${() => part.task !== null && select([taskKey(part.task)])}>
               ${name} <span class="dim">${write(part.until)}</span>

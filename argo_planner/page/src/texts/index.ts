@@ -13,12 +13,13 @@ import { run } from "./run";
 import { scene } from "./scene";
 import { script } from "./script";
 import { strip } from "./strip";
+import { tasks } from "./tasks";
 import { verdict } from "./verdict";
 import { words } from "./words";
 
 export type Language = "en" | "de";
 
-const AREAS = { draft, evaluate, forms, frame, keys, list, route, run, scene, script, strip, verdict, words };
+const AREAS = { draft, evaluate, forms, frame, keys, list, route, run, scene, script, strip, tasks, verdict, words };
 type Areas = typeof AREAS;
 export type Texts = { readonly [area in keyof Areas]: Areas[area]["en"] };
 

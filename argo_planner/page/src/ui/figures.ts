@@ -7,6 +7,11 @@ export function figure(value: number, digits = 2): string {
   return value.toLocaleString(language.value, { maximumFractionDigits: digits });
 }
 
+/** Format a number with one decimal, so that numbers below each other are alike. */
+export function tenths(value: number): string {
+  return value.toLocaleString(language.value, { minimumFractionDigits: 1, maximumFractionDigits: 1 });
+}
+
 /** Format a limit of a range; null: it has no limit on this side. */
 export function bound(value: number | null | undefined): string {
   return value === null || value === undefined ? "∞" : figure(value);

@@ -1,0 +1,73 @@
+/** Numbers of the tasks and groups, as the steps of the mission's script have them. */
+
+import type { Mission, MissionReading } from "../api/types";
+import { groupKey, taskKey } from "./outline";
+
+/** Numbers by the keys of tasks and groups. A task without one is a part of another step. */
+export type StepNumbers = ReadonlyMap<string, string>;
+
+export interface ReadSteps {
+  readonly numbers: StepNumbers;
+  /** Keys of the groups that are one step with all their tasks, and of the tasks that no step states. */
+  readonly unusual: ReadonlySet<string>;
+}
+
+/** Return the steps of a mission's script, as its reading by the service states them. */
+export function readSteps(mission: Mission, entries: MissionReading["entries"]): ReadSteps {
+  const stated = new Map<string, number>();
+  for (const { part, name, step } of entries) {
+    if (typeof step !== "number") continue;
+    if (part === "task") stated.set(taskKey(name), step);
+    if (part === "round") stated.set(groupKey(name), step);
+  }
+  const unusual = new Set<string>();
+  const without = mission.tasks.filter((task) => !stated.has(taskKey(task.name))).map((task) => task.name);
+  const patrolled = new Set<string>();
+  const at = positions(mission);
+  for (const group of mission.groups) {
+    const key = groupKey(group.name);
+    const inside = mission.tasks.slice(at.get(group.start), (at.get(group.end) ?? -1) + 1);
+    if (!stated.has(key) || inside.length === 0 || inside.some((task) => stated.has(taskKey(task.name)))) continue;
+    unusual.add(key);
+    for (const task of inside) patrolled.add(task.name);
+  }
+  for (const name of without) if (!patrolled.has(name)) unusual.add(taskKey(name));
+  const numbers = new Map(countSteps(mission, unusual));
+  for (const [key, step] of stated) numbers.set(key, String(step));
+  return { numbers, unusual };
+}
+
+/** Return the steps by counting: tasks in order, and a group after its last task, as a script repeats steps.
+ *
+ * A group in `unusual` is one step, and its tasks are parts of it, such as 2.1 and 2.2; a task in it has no number. */
+export function countSteps(mission: Mission, unusual: ReadonlySet<string>): StepNumbers {
+  const numbers = new Map<string, string>();
+  const at = positions(mission);
+  const starting = new Map<string, string>();
+  for (const { name, start } of mission.groups) if (unusual.has(groupKey(name))) starting.set(start, name);
+  let step = 0;
+  let part = 0;
+  let last = -1; // index of the last task of the step that is a group
+  let ended = 0;
+  mission.tasks.forEach((task, index) => {
+    const patrol = starting.get(task.name);
+    if (patrol !== undefined) {
+      numbers.set(groupKey(patrol), String(++step));
+      part = 0;
+      last = at.get(mission.groups.find((group) => group.name === patrol)?.end ?? "") ?? -1;
+    }
+    const key = taskKey(task.name);
+    if (index <= last) numbers.set(key, `${step}.${++part}`);
+    else if (!unusual.has(key)) numbers.set(key, String(++step));
+    for (; ended < mission.groups.length; ended++) {
+      const group = mission.groups[ended];
+      if (group === undefined || (at.get(group.end) ?? -1) > index) break;
+      if (!numbers.has(groupKey(group.name))) numbers.set(groupKey(group.name), String(++step));
+    }
+  });
+  return numbers;
+}
+
+function positions(mission: Mission): ReadonlyMap<string, number> {
+  return new Map(mission.tasks.map((task, index) => [task.name, index]));
+}

@@ -86,6 +86,35 @@ def test_a_click_where_the_robot_can_not_stand_places_nothing(ann) -> None:
 
 
 @pytest.mark.long
+def test_a_chosen_floor_fits_the_view(ann, service) -> None:
+    ann.wait_for_scene()
+    for _ in range(4):
+        ann.click(ann.button("Zoom in"))
+    floor = service.client.get("/api/world").json()["floors"][1]
+    show_floor(ann, floor["number"])
+    for x0, y0, x1, y1 in floor["plates"]:
+        for corner in ((x0, y0), (x1, y0), (x1, y1), (x0, y1)):
+            seen = ann.evaluate("p => window.argo.project(...p)", [*corner, floor["z"]])
+            assert seen["visible"], corner
+
+
+@pytest.mark.long
+def test_railings_can_be_hidden(ann) -> None:
+    def triangles() -> int:
+        ann.wait_for_scene()
+        return int(ann.evaluate("() => window.argo.figures().triangles"))
+
+    drawn = triangles()
+    ann.click(ann.button("Display settings"))
+    box = ann.page.get_by_label("Railings")
+    box.uncheck()
+    ann.wait_until(lambda: triangles() < drawn, "fewer triangles are drawn")
+    fewer = triangles()
+    box.check()
+    ann.wait_until(lambda: triangles() > fewer, "more triangles are drawn again")
+
+
+@pytest.mark.long
 def test_a_drag_moves_the_camera_and_is_no_click(ann) -> None:
     show_floor(ann, 1)
     ann.key("n")

@@ -18,7 +18,7 @@ import { closePlan, openPlan, planId, planName } from "../state/plan";
 import { followRobot } from "../state/run";
 import { beginSession, readService } from "../state/session";
 import { dismiss, showNotice, showError } from "../state/notices";
-import { panel, type Panel } from "../state/view";
+import { listShown, panel, type Panel } from "../state/view";
 import { readWorld } from "../state/world";
 import { css, customElement, html, PageElement } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
@@ -58,7 +58,11 @@ export class ArgoApp extends PageElement {
       display: grid;
       grid-template-columns: minmax(260px, 340px) minmax(0, 1fr) minmax(300px, 380px);
       grid-template-rows: minmax(0, 1fr) auto;
+      position: relative;
       min-height: 0;
+    }
+    .work {
+      display: contents;
     }
     argo-list {
       grid-row: 1 / 3;
@@ -122,26 +126,64 @@ export class ArgoApp extends PageElement {
       min-height: 0;
       overflow: auto;
     }
-    @media (max-width: 800px) {
+    /* The list beside the site, and the panel below it. */
+    @media (max-width: 1179px) {
       main {
+        grid-template-columns: minmax(230px, 32%) minmax(0, 1fr);
+        grid-template-rows: minmax(0, 1fr);
+      }
+      .work {
+        display: grid;
         grid-template-columns: minmax(0, 1fr);
-        grid-template-rows: 42vh auto minmax(0, 1fr);
+        grid-template-rows: minmax(200px, 46%) max-content minmax(240px, 1fr);
+        min-height: 0;
+        overflow-y: auto;
       }
-      argo-list {
-        display: none;
-      }
-      argo-scene,
-      argo-strip {
-        grid-column: 1;
+      argo-list,
+      argo-strip,
+      aside {
+        grid-column: auto;
+        grid-row: auto;
       }
       argo-strip {
         min-height: 0;
+        max-height: none;
       }
       aside {
-        grid-column: 1;
-        grid-row: 3;
         border-left: 0;
         border-top: 1px solid var(--line);
+      }
+    }
+    /* No room for a panel that scrolls by itself. */
+    @media (max-width: 719px), (max-width: 1179px) and (max-height: 560px) {
+      .work {
+        grid-template-rows: minmax(200px, 46%) max-content max-content;
+      }
+      aside {
+        min-height: 100%;
+        grid-template-rows: auto auto;
+      }
+      [role="tabpanel"] {
+        overflow: visible;
+      }
+      [role="tablist"] {
+        flex-wrap: wrap;
+      }
+    }
+    /* The list is a drawer. */
+    @media (max-width: 719px) {
+      main {
+        grid-template-columns: minmax(0, 1fr);
+      }
+      argo-list {
+        position: absolute;
+        inset: 0 auto 0 0;
+        z-index: 20;
+        width: min(340px, 100% - 24px);
+        box-shadow: var(--shadow);
+      }
+      main:not(.list-shown) argo-list {
+        visibility: hidden;
       }
     }
   `;
@@ -151,6 +193,7 @@ export class ArgoApp extends PageElement {
 
   constructor() {
     super();
+    this.listen("open-details", () => (listShown.value = false));
     this.listen("hashchange", () => void this.followAddress());
     // The browser asks for confirmation if edits have not been sent.
     this.listen("beforeunload", (event) => waiting.value > 0 && event.preventDefault());
@@ -247,8 +290,9 @@ export class ArgoApp extends PageElement {
     // What a person has typed or folded in one mission is not shown in the next one. The scene, which takes long to
     // load, stays and resets itself.
     const ofMission = (part: unknown) => keyed(planId.value, part);
-    return html`<main>
-      ${ofMission(html`<argo-list></argo-list>`)}
+    return html`<main class=${listShown.value ? "list-shown" : ""}>
+      ${ofMission(html`<argo-list @keydown=${this.onListKey}></argo-list>`)}
+      <div class="work" @pointerdown=${() => (listShown.value = false)}>
       <argo-scene><p class="dim loading">${t().scene.loading}</p></argo-scene>
       ${ofMission(html`<argo-strip></argo-strip>`)}
       <aside>
@@ -271,7 +315,13 @@ export class ArgoApp extends PageElement {
           ${ofMission(PANEL_VIEWS[shown]())}
         </div>
       </aside>
+      </div>
     </main>`;
+  }
+
+  /** Close the drawer of the list by Escape, unless something in the list has used it. */
+  private onListKey(event: KeyboardEvent): void {
+    if (event.key === "Escape" && !event.defaultPrevented) listShown.value = false;
   }
 
   private onTabKey(event: KeyboardEvent): void {

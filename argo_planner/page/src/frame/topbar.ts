@@ -6,6 +6,7 @@ import { withErrorNotice } from "../state/notices";
 import { redo, undo, waiting } from "../state/commands";
 import { connected, others, planId, planName, redoable, undoable } from "../state/plan";
 import { mayPlan, service, theme } from "../state/session";
+import { listShown } from "../state/view";
 import { t } from "../texts";
 import { iconButton, valueOf } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
@@ -62,9 +63,24 @@ export class PageTopbar extends PageElement {
       background: var(--warn-ground);
       color: var(--warn);
     }
-    @media (max-width: 800px) {
-      .planning {
-        display: none;
+    button.name {
+      min-width: 0;
+    }
+    .list {
+      display: none;
+    }
+    @media (max-width: 719px) {
+      header {
+        gap: 2px;
+        padding: 4px;
+      }
+      .list {
+        display: inline-flex;
+      }
+      .name {
+        flex: 1 1 90px;
+        max-width: none;
+        text-align: left;
       }
     }
   `;
@@ -76,8 +92,10 @@ export class PageTopbar extends PageElement {
     const open = planId.value !== null;
     return html`<header>
       ${open
-        ? html`${iconButton("back", texts.allMissions, () => (location.hash = ""))} ${this.name()}
-            <span class="row planning">
+        ? html`${iconButton("back", texts.allMissions, () => (location.hash = ""))}
+            ${iconButton("group", t().list.tasks, toggleList, { look: "bare list", expanded: listShown.value })}
+            ${this.name()}
+            <span class="row">
               ${iconButton("undo", texts.undo, undo, {
                 title: `${texts.undo} (Ctrl+Z)`,
                 disabled: undoable.value.length === 0 || !mayPlan(),
@@ -98,16 +116,15 @@ export class PageTopbar extends PageElement {
       <span class="grow"></span>
       <argo-run-badge></argo-run-badge>
       ${others.value.length > 0 ? this.people() : nothing}
-      ${iconButton("keys", texts.keysTitle, () => (keysShown.value = true), {
+      <span class="row">${iconButton("keys", texts.keysTitle, () => (keysShown.value = true), {
         title: `${texts.keysTitle} (?)`,
-        look: "bare planning",
       })}
       ${iconButton(
         theme.value === "dark" ? "sun" : "moon",
         texts.otherTheme[theme.value],
         () => (theme.value = theme.value === "dark" ? "light" : "dark"),
       )}
-      <argo-settings></argo-settings>
+      <argo-settings></argo-settings></span>
     </header>`;
   }
 
@@ -124,7 +141,7 @@ export class PageTopbar extends PageElement {
     if (!this.renaming)
       return html`<button
         class="bare name"
-        title=${texts.rename}
+        title=${`${planName.value} – ${texts.rename}`}
         ?disabled=${!mayPlan()}
         @click=${this.beginRenaming}
       >
@@ -182,6 +199,13 @@ export class PageTopbar extends PageElement {
       ${names.length > 6 ? html`<li>+${names.length - 6}</li>` : nothing}
     </ul>`;
   }
+}
+
+/** Open or close the list, where it is a drawer. */
+function toggleList(): void {
+  listShown.value = !listShown.value;
+  // The list becomes visible with the next rendering.
+  if (listShown.value) setTimeout(() => dispatchEvent(new CustomEvent("focus-list")));
 }
 
 function initials(name: string): string {

@@ -9,7 +9,7 @@ import { nameOfKey, type Row } from "../model/outline";
 import { identityOf } from "../state/identity";
 import { planId, select, selection, tasksByName } from "../state/plan";
 import { mayPlan } from "../state/session";
-import { lookAt, pointedName, tool } from "../state/view";
+import { listShown, lookAt, pointedName, tool } from "../state/view";
 import { t } from "../texts";
 import { iconButton } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, query, state } from "../ui/element";
@@ -46,6 +46,7 @@ export class MissionList extends PageElement {
       }
       .tree {
         position: relative;
+        container-type: inline-size;
         overflow: auto;
         outline-offset: -2px;
       }
@@ -223,7 +224,10 @@ export class MissionList extends PageElement {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     if (!mayPlan() && event.key !== "v") return;
     const act = {
-      m: () => this.adding.openMeasure(),
+      m: () => {
+        listShown.value = true;
+        this.adding.openMeasure();
+      },
       g: () => void groupSelection(),
       v: () => {
         const task = tasksByName.value.get(nameOfKey(selection.value.at(-1) ?? ""));
@@ -231,7 +235,10 @@ export class MissionList extends PageElement {
       },
       n: () => (tool.value = tool.value === "navigate" ? "select" : "navigate"),
       o: () => (tool.value = tool.value === "obstacle" ? "select" : "obstacle"),
-      w: () => this.adding.addAtPlace(),
+      w: () => {
+        listShown.value = true;
+        this.adding.addAtPlace();
+      },
     }[event.key];
     if (!act) return;
     act();

@@ -110,6 +110,11 @@ export const rowStyles = css`
     align-items: center;
     gap: 3px;
   }
+  @container (max-width: 300px) {
+    .count {
+      display: none;
+    }
+  }
   .error {
     color: var(--bad);
   }
@@ -181,7 +186,7 @@ export function rowView(row: Row, index: number, shown: RowState) {
       <span class="detail" title=${detail}>${detail}</span>
     </span>
     <span class="marks">
-      ${group ? html`<span class="dim">${t().list.count(row.count)}</span>` : nothing}
+      ${group ? html`<span class="count dim">${t().list.count(row.count)}</span>` : nothing}
       ${marks.people.map(
         (name) => html`<span class="who" role="img" title=${t().list.selectedBy(name)} aria-label=${t().list.selectedBy(name)}></span>`,
       )}

@@ -15,6 +15,7 @@ import type { SceneView } from "./view";
 import type { Signal } from "@preact/signals-core";
 
 const TURN = 0.6;
+const SIGNS: Readonly<Record<Tool, Icon>> = { select: "arrow", navigate: "drive", obstacle: "obstacle" };
 
 @customElement("argo-scene-bar")
 export class SceneBar extends PageElement {
@@ -31,9 +32,25 @@ export class SceneBar extends PageElement {
         display: flex;
         padding: 2px;
       }
-      @media (max-width: 800px) {
-        .tools {
-          display: none; /* a phone is for watching */
+      .unfold {
+        display: none;
+      }
+      @container (max-width: 560px) {
+        :host {
+          flex-direction: column;
+          align-items: end;
+          gap: 4px;
+        }
+        .unfold {
+          display: flex;
+        }
+        .panel {
+          flex-wrap: wrap;
+          justify-content: end;
+          max-width: 148px;
+        }
+        .panel.folded {
+          display: none;
         }
       }
       .settings {
@@ -43,7 +60,11 @@ export class SceneBar extends PageElement {
         display: grid;
         gap: 6px;
         width: 250px;
+        max-width: calc(100cqw - 16px);
+        max-height: calc(100cqh - 60px);
         padding: 10px 12px;
+        overflow: auto;
+        box-sizing: border-box;
       }
       .settings label {
         display: flex;
@@ -58,11 +79,13 @@ export class SceneBar extends PageElement {
 
   @property({ attribute: false }) view: SceneView | null = null;
   @state() private open = false;
+  /** Whether the buttons are shown in a small scene. */
+  @state() private unfolded = false;
 
   constructor() {
     super();
     this.listen("pointerdown", (event) => {
-      if (!event.composedPath().includes(this)) this.open = false;
+      if (!event.composedPath().includes(this)) this.open = this.unfolded = false;
     });
   }
 
@@ -71,13 +94,16 @@ export class SceneBar extends PageElement {
     const { view } = this;
     if (view === null) return nothing;
     const { camera } = view;
+    const folded = this.unfolded ? "" : "folded";
     return html`
-      <div class="panel tools" role="toolbar" aria-label=${texts.tools}>
-        ${this.tool("select", "arrow", texts.toolSelect, "Esc")}
-        ${this.tool("navigate", "drive", texts.toolNavigate, "n")}
-        ${this.tool("obstacle", "obstacle", texts.toolObstacle, "o")}
+      <div class="panel unfold">
+        ${iconButton(SIGNS[tool.value], texts.tools, () => (this.unfolded = !this.unfolded), { expanded: this.unfolded })}
       </div>
-      <div class="panel" role="toolbar" aria-label=${texts.view}>
+      <div class="panel ${folded}" role="toolbar" aria-label=${texts.tools}>
+        ${this.tool("select", texts.toolSelect, "Esc")} ${this.tool("navigate", texts.toolNavigate, "n")}
+        ${this.tool("obstacle", texts.toolObstacle, "o")}
+      </div>
+      <div class="panel ${folded}" role="toolbar" aria-label=${texts.view}>
         ${iconButton("whole", texts.showAll, () => void camera.showAll(shownFloor.value))}
         ${iconButton("above", texts.fromAbove, () => camera.topView())}
         ${iconButton("circle-left", texts.turnLeft, () => camera.turn(-TURN))}
@@ -90,9 +116,9 @@ export class SceneBar extends PageElement {
     `;
   }
 
-  private tool(which: Tool, sign: Icon, label: string, key: string) {
+  private tool(which: Tool, label: string, key: string) {
     const may = which === "select" || mayPlan();
-    return iconButton(sign, label, () => (tool.value = which), {
+    return iconButton(SIGNS[which], label, () => (tool.value = which), {
       title: may ? `${label} (${key})` : t().scene.mayNot,
       pressed: tool.value === which,
       disabled: !may,
@@ -113,7 +139,7 @@ export class SceneBar extends PageElement {
       @keydown=${(event: KeyboardEvent) => {
         if (event.key !== "Escape") return;
         this.open = false;
-        this.renderRoot.querySelector<HTMLElement>("[aria-expanded]")?.focus();
+        this.renderRoot.querySelector<HTMLElement>(".panel:not(.unfold) [aria-expanded]")?.focus();
         event.stopPropagation();
       }}
       @focusout=${(event: FocusEvent) => {

@@ -116,11 +116,10 @@ export class SiteCamera {
     );
   }
 
-  /** Move the target to a floor, or show all floors. */
+  /** Fit a floor, or all floors, into the view. The direction stays. */
   toFloor(floor: WorldFloor | null): void {
-    const at = this.controls.getTarget(new Vector3());
-    if (floor === null) void this.controls.fitToSphere(this.around(null), true);
-    else void this.controls.moveTo(at.x, at.y, floor.z, true);
+    void this.controls.setFocalOffset(0, 0, 0, true);
+    void this.controls.fitToSphere(this.around(floor?.number ?? null), true);
     this.stage.need();
   }
 

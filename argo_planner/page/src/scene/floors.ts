@@ -8,7 +8,8 @@ import { shownRun } from "../state/run";
 import { shownFloor } from "../state/view";
 import { checkpointsById, world } from "../state/world";
 import { t } from "../texts";
-import { css, customElement, html, nothing, PageElement, property } from "../ui/element";
+import { css, customElement, html, nothing, PageElement, property, state } from "../ui/element";
+import { icon } from "../ui/icons";
 import { measuring } from "./marks";
 import { floating } from "./style";
 import type { SceneView } from "./view";
@@ -26,7 +27,7 @@ export class SceneFloors extends PageElement {
       .panel {
         display: grid;
         gap: 1px;
-        max-height: calc(100% - 120px);
+        max-height: calc(100cqh - 76px);
         padding: 3px;
         overflow: auto;
       }
@@ -65,6 +66,23 @@ export class SceneFloors extends PageElement {
       circle {
         fill: var(--text);
       }
+      .unfold {
+        display: none;
+      }
+      @container (max-width: 560px) or (max-height: 300px) {
+        .unfold {
+          display: block;
+          width: max-content;
+          margin-bottom: 4px;
+        }
+        [role="radiogroup"] {
+          max-height: calc(100cqh - 60px);
+          box-sizing: border-box;
+        }
+        .folded {
+          display: none;
+        }
+      }
       circle.robot {
         fill: var(--warn);
       }
@@ -72,6 +90,15 @@ export class SceneFloors extends PageElement {
   ];
 
   @property({ attribute: false }) view: SceneView | null = null;
+  /** Whether the floors are shown in a small scene. */
+  @state() private unfolded = false;
+
+  constructor() {
+    super();
+    this.listen("pointerdown", (event) => {
+      if (!event.composedPath().includes(this)) this.unfolded = false;
+    });
+  }
 
   override render() {
     const site = world.value;
@@ -79,8 +106,19 @@ export class SceneFloors extends PageElement {
     const texts = t().scene;
     const floors = [...site.floors].reverse();
     const shown = shownFloor.value;
-    return html`<div
-      class="panel ${floors.length <= MANY ? "few" : ""}"
+    const now = shown === null ? texts.allFloors : texts.floor(shown);
+    return html`<div class="panel unfold">
+        <button
+          aria-label=${`${texts.floors}: ${now}`}
+          title=${texts.floors}
+          aria-expanded=${this.unfolded}
+          @click=${() => (this.unfolded = !this.unfolded)}
+        >
+          ${icon("floors", 18)} ${shown ?? texts.allFloors}
+        </button>
+      </div>
+      <div
+      class="panel ${floors.length <= MANY ? "few" : ""} ${this.unfolded ? "" : "folded"}"
       role="radiogroup"
       aria-label=${texts.floors}
       @keydown=${this.onKey}

@@ -6,6 +6,7 @@ import {
   BufferGeometry,
   Color,
   DoubleSide,
+  GreaterDepth,
   Group,
   Mesh,
   MeshBasicMaterial,
@@ -32,6 +33,9 @@ import type { SceneView } from "./view";
 const [WIDTH, THIN, WIDE, ABOVE, ARROW, ARROWS] = [0.13, 0.06, 0.26, 0.07, 0.2, 1.6];
 /** px within which the pointer hits a path */
 const NEAR_PX = 7;
+
+/** opacity of what is hidden */
+const SHINING = 0.35;
 
 type Paint = (t: number) => Color;
 
@@ -123,9 +127,11 @@ export class PathsView {
     }
     for (const parts of [ribbons, heads])
       for (const [floor, triangles] of parts) {
-        const mesh = new Mesh(geometryOf(triangles, paint), material());
-        mesh.userData["floor"] = floor;
-        group.add(mesh);
+        const geometry = geometryOf(triangles, paint);
+        for (const mesh of [new Mesh(geometry, material()), new Mesh(geometry, behindMaterial())]) {
+          mesh.userData["floor"] = floor;
+          group.add(mesh);
+        }
       }
   }
 
@@ -170,4 +176,14 @@ function material(): MeshBasicMaterial {
     polygonOffsetFactor: -2,
     polygonOffsetUnits: -2,
   });
+}
+
+/** Create the material of the parts of a path that something hides: they shine through. */
+function behindMaterial(): MeshBasicMaterial {
+  const shining = material();
+  shining.depthFunc = GreaterDepth;
+  shining.depthWrite = false;
+  shining.transparent = true;
+  shining.opacity = SHINING;
+  return shining;
 }

@@ -10,8 +10,8 @@ import { type GlbNode, readGlb } from "./glb";
 import { dispose, type Stage } from "./stage";
 
 /** Kinds of solids that can be hidden on all floors. */
-export type Hideable = "pipe" | "vessel" | "structure";
-export const HIDEABLE: readonly Hideable[] = ["pipe", "vessel", "structure"];
+export type Hideable = "railing" | "pipe" | "vessel" | "structure";
+export const HIDEABLE: readonly Hideable[] = ["railing", "pipe", "vessel", "structure"];
 type Layer = Hideable | "base";
 
 /** Names of the solids that the robot can drive on. */

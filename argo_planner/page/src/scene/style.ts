@@ -18,6 +18,7 @@ export const floating = css`
 export const sceneStyle = css`
   :host {
     position: relative;
+    container-type: size; /* what floats over the scene folds when it is small */
     overflow: hidden;
     user-select: none;
   }

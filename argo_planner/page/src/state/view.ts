@@ -32,9 +32,13 @@ export function lookAt(task: Task): void {
 export type Panel = "properties" | "script" | "route" | "evaluate" | "run";
 export const panel = signal<Panel>("properties");
 
+/** Whether the list is open on narrow pages, where it is a drawer. */
+export const listShown = signal(false);
+
 /** Reset the view and the tools when another mission is opened. */
 export function resetView(): void {
   tool.value = "select";
+  listShown.value = false;
   shownFloor.value = null;
   following.value = "off";
   pointedName.value = look.value = null;

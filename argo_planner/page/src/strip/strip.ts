@@ -112,13 +112,16 @@ export class StripPanel extends PageElement {
       font-size: 12px;
       color: var(--dim);
     }
-    @media (max-width: 800px) {
+    @media (max-width: 719px) {
       :host {
         padding: 4px 8px;
       }
-      details,
-      .said {
+      .said:empty {
         display: none;
+      }
+      th,
+      td {
+        padding: 1px 3px;
       }
     }
   `;

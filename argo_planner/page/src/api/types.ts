@@ -54,6 +54,8 @@ export type RunState = Schemas["RunState"];
 export type RunAsked = Schemas["RunAsked"];
 export type RequestState = Schemas["RequestState"];
 export type Entry = Schemas["EntryTold"]["entry"];
+/** A fault of a run or an evaluation, as a request gives it. */
+export type Fault = Schemas["BeginFault"]["fault"];
 /** The kind of any fault. */
 export type FaultKind = Schemas["BeginFault"]["fault"]["kind"];
 export type Trouble = Schemas["Trouble"];

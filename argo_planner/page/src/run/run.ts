@@ -4,7 +4,8 @@ import { client, responseData } from "../api/client";
 import type { FailedRun, RunState } from "../api/types";
 import { withErrorNotice } from "../state/notices";
 import { planId } from "../state/plan";
-import { pastRun, run, runIsOn, showRun, shownRunState } from "../state/run";
+import { csv } from "../model/csv";
+import { pastRun, run, runIsOn, shownEntries, showRun, shownRunState } from "../state/run";
 import { panel } from "../state/view";
 import { t } from "../texts";
 import { options, valueOf } from "../ui/controls";
@@ -12,6 +13,7 @@ import { css, customElement, html, nothing, PageElement, state } from "../ui/ele
 import { dateAndTime } from "../ui/figures";
 import { icon } from "../ui/icons";
 import "./band";
+import { csvButton } from "./compare";
 import "./controls";
 import "./events";
 import "./hand";
@@ -19,6 +21,7 @@ import { modeWords } from "./mode-words";
 import { parts } from "./parts";
 import "./readings";
 import "./start";
+import { readingsTable } from "./tables";
 import "./tell";
 import "./time";
 
@@ -59,6 +62,13 @@ export class RunPanel extends PageElement {
       .evaluated button {
         justify-self: start;
       }
+      .files {
+        display: flex;
+        flex-wrap: wrap;
+        align-items: center;
+        justify-content: space-between;
+        gap: 6px 12px;
+      }
       .busy a {
         color: inherit;
       }
@@ -98,13 +108,16 @@ export class RunPanel extends PageElement {
       ${here || other
         ? html`${pastRun.value?.evaluated ? this.evaluated(pastRun.value.evaluated) : nothing}
             <argo-run-band></argo-run-band>
-            ${shown?.status === "ended" && !pastRun.value?.evaluated ? this.report(shown) : nothing}
+            ${shown?.status === "ended"
+              ? html`<div class="files">${pastRun.value?.evaluated ? nothing : this.report(shown)} ${this.file(shown)}</div>`
+              : nothing}
             ${this.steering()} ${this.choice()}
             <argo-run-time></argo-run-time>
             <argo-run-readings></argo-run-readings>
             <argo-run-events></argo-run-events>
             ${this.isSteered() ? html`<argo-run-tell></argo-run-tell>` : nothing}`
         : this.choice()}
+      <argo-run-compare .runs=${this.past.filter((one) => one.status === "ended")}></argo-run-compare>
     </div>`;
   }
 
@@ -156,6 +169,15 @@ export class RunPanel extends PageElement {
     return html`<a href=${`/api/runs/${shown.id}/report/report.html`} target="_blank" rel="noopener">
       ${icon("flag", 14)} ${t().run.report}
     </a>`;
+  }
+
+  /** Render a button that stores the readings of the shown run. */
+  private file(shown: RunState) {
+    const { csvOfRun, fileReadings } = t().compare;
+    return csvButton("csv", csvOfRun, () => [
+      `${fileReadings}-${shown.id}.csv`,
+      csv(readingsTable(shown.id, shown.revision, shownEntries.value)),
+    ]);
   }
 
   private async choose(event: Event): Promise<void> {

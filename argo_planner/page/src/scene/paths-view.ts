@@ -150,7 +150,7 @@ function pathsOf(found: PreviewedMission | null): { readonly paths: readonly Rib
   return { paths: ribbonPaths(legs), end: start };
 }
 
-function floorAt(z: number): number {
+export function floorAt(z: number): number {
   return floorOf(world.peek()?.floors ?? [], z)?.number ?? 1;
 }
 
@@ -159,7 +159,7 @@ function timed(share: number): Color {
   return new Color().setRGB(red / 255, green / 255, blue / 255, SRGBColorSpace);
 }
 
-function geometryOf({ corners, times }: Triangles, paint: Paint): BufferGeometry {
+export function geometryOf({ corners, times }: Triangles, paint: Paint): BufferGeometry {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(new Float32Array(corners), 3));
   const painted = new Float32Array(3 * times.length);
@@ -168,7 +168,7 @@ function geometryOf({ corners, times }: Triangles, paint: Paint): BufferGeometry
   return geometry;
 }
 
-function material(): MeshBasicMaterial {
+export function material(): MeshBasicMaterial {
   return new MeshBasicMaterial({
     vertexColors: true,
     side: DoubleSide,

@@ -32,6 +32,7 @@ import { RobotView } from "./robot-view";
 import { SceneView } from "./view";
 import { selectTaskOfPath, type Mark, openMark } from "./marks";
 import { PathsView } from "./paths-view";
+import { RunPathsView } from "./run-paths";
 
 /** px from an edge of the view within which the pointer moves the camera */
 const EDGE_PX = 14;
@@ -105,6 +106,7 @@ export class ScenePanel extends PageElement {
       view,
       robot,
       paths,
+      new RunPathsView(view),
       new PointerWatch(this.canvas, this.pointerHandlers(view, paths)),
       { dispose: () => sizes.disconnect() },
     ];

@@ -150,7 +150,7 @@ export function showReplay({ state, entries }: ReplayedRun, evaluated: FailedRun
 }
 
 /** Read the entries of a run after the first `since`. Throws `Refusal` or `Unreached`. */
-async function entriesOf(id: string, since: number): Promise<Entry[]> {
+export async function entriesOf(id: string, since: number): Promise<Entry[]> {
   const found: Entry[] = [];
   for (;;) {
     const query = { since: since + found.length };

@@ -2,6 +2,7 @@
 
 import { signal } from "@preact/signals-core";
 
+import { compare } from "./compare";
 import { draft } from "./draft";
 import { evaluate } from "./evaluate";
 import { forms } from "./forms";
@@ -19,7 +20,7 @@ import { words } from "./words";
 
 export type Language = "en" | "de";
 
-const AREAS = { draft, evaluate, forms, frame, keys, list, route, run, scene, script, strip, tasks, verdict, words };
+const AREAS = { compare, draft, evaluate, forms, frame, keys, list, route, run, scene, script, strip, tasks, verdict, words };
 type Areas = typeof AREAS;
 export type Texts = { readonly [area in keyof Areas]: Areas[area]["en"] };
 

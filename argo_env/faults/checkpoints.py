@@ -1,6 +1,7 @@
 """Faults at checkpoints: values outside of their nominal range, and displaced checkpoints."""
 
 import math
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, ClassVar, Literal, Self
 
 import numpy as np
@@ -9,7 +10,7 @@ from pydantic import Field, model_validator
 from argo_compiler.base.catalog import CheckpointKind
 from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.il import EventKind
-from argo_env.faults.fault import Sign, TimedFault
+from argo_env.faults.fault import Sign, TimedFault, in_unit
 from argo_env.seeding import draw
 from argo_env.site import Site, SiteCheckpoint
 from argo_env.site.shapes import Vector
@@ -28,6 +29,10 @@ class CheckpointFault(TimedFault):
 
     checkpoint: int | None = Field(default=None, ge=1)
     """number of the checkpoint"""
+
+    @classmethod
+    def choices_on(cls, site: Site) -> Mapping[str, Sequence[str | int]]:
+        return {"checkpoint": [checkpoint.id for checkpoint in site.checkpoints]}
 
     def _at_checkpoint(self, site: Site, rng: np.random.Generator) -> SiteCheckpoint:
         known = [c.id for c in site.checkpoints]
@@ -77,14 +82,22 @@ class DisplacedCheckpoint(CheckpointFault):
 
     sign: ClassVar[None] = None  # nothing reports it: the checkpoint can still be read
     kind: Literal["displaced_checkpoint"] = "displaced_checkpoint"
-    at: float | None = Field(default=0.0, ge=0)
+    at: float | None = Field(default=0.0, ge=0, json_schema_extra=in_unit("s"))
     """s, when it is moved; usually before the run"""
-    offset: Vector | None = None
+    offset: Vector | None = Field(default=None, json_schema_extra=in_unit("m"))
     """m along the site's axes, with a length of 0.1 at most"""
-    turn: float | None = Field(default=None, ge=-MAX_TURN, le=MAX_TURN)
+    turn: float | None = Field(
+        default=None, ge=-MAX_TURN, le=MAX_TURN, json_schema_extra=in_unit("deg")
+    )
     """deg about the vertical, counter-clockwise seen from above"""
-    roll: float | None = Field(default=None, ge=-MAX_TURN, le=MAX_TURN)
+    roll: float | None = Field(
+        default=None, ge=-MAX_TURN, le=MAX_TURN, json_schema_extra=in_unit("deg")
+    )
     """deg about the normal of its face, clockwise; a level gauge has no roll"""
+
+    @classmethod
+    def limits_on(cls, site: Site) -> Mapping[str, tuple[Vector, Vector]]:  # noqa: ARG003
+        return {"offset": ((-MAX_OFFSET,) * 3, (MAX_OFFSET,) * 3)}
 
     @model_validator(mode="after")
     def _near(self) -> Self:

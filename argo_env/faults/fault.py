@@ -1,5 +1,6 @@
 """Base classes of faults: start, end and effect, and fields that a seed draws."""
 
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
@@ -16,6 +17,11 @@ if TYPE_CHECKING:  # many modules load the models of faults without running a si
 
 LATEST = 120.0
 """s, latest start of a fault whose start the seed draws"""
+
+
+def in_unit(unit: str) -> dict[str, Any]:
+    """Return the unit of a field for its JSON Schema; `1` is a share of a whole."""
+    return {"unit": unit}
 
 
 class Sign(NamedTuple):
@@ -42,6 +48,14 @@ class Fault(Model):
     adds_up: ClassVar[bool] = False
     """True if its effect is independent of other faults of its kind, and stays when they end"""
 
+    @model_validator(mode="before")
+    @classmethod
+    def _with_tuples(cls, data: Any) -> Any:
+        """Make lists tuples: strict validation of a request's JSON does not do so in a fault."""
+        if not isinstance(data, dict):
+            return data
+        return {name: tuple(v) if isinstance(v, list) else v for name, v in data.items()}
+
     @model_serializer(mode="wrap")
     def _with_kind(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         # Written even if defaults are left out, since a fault can't be parsed without its kind.
@@ -56,6 +70,16 @@ class Fault(Model):
     def end_time(self) -> float | None:
         """Time in s at which it ends, or None if it never ends."""
         return None
+
+    @classmethod
+    def choices_on(cls, site: Site) -> Mapping[str, Sequence[str | int]]:  # noqa: ARG003
+        """Return the values that the site allows, for fields that name a part of it."""
+        return {}
+
+    @classmethod
+    def limits_on(cls, site: Site) -> Mapping[str, tuple[Vector, Vector]]:  # noqa: ARG003
+        """Return the lowest and highest values that the site allows, for fields with vectors."""
+        return {}
 
     def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
         """Return a resolved copy of the fault, in which `rng` has drawn the fields left to chance.
@@ -104,9 +128,9 @@ class Fault(Model):
 class TimedFault(Fault):
     """A fault that begins during the run, and may end."""
 
-    at: float | None = Field(default=None, ge=0)
+    at: float | None = Field(default=None, ge=0, json_schema_extra=in_unit("s"))
     """s, when it begins; None: the seed draws it, up to 120 s"""
-    until: float | None = Field(default=None, gt=0)
+    until: float | None = Field(default=None, gt=0, json_schema_extra=in_unit("s"))
     """s, when it ends; None: it never ends"""
 
     @model_validator(mode="after")

@@ -1,14 +1,15 @@
 """Faults of the process: gas leaks, hot spots, pumps with a defect, and the platform alarm."""
 
 import math
-from typing import TYPE_CHECKING, ClassVar, Literal, Self
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, field_validator
 
 from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.il import EventKind
-from argo_env.faults.fault import Sign, TimedFault
+from argo_env.faults.fault import Sign, TimedFault, in_unit
 from argo_env.seeding import draw
 from argo_env.site import Site
 from argo_env.site.shapes import Vector
@@ -43,14 +44,23 @@ class ProcessFault(TimedFault):
         targets.surroundings.remove(self.source(), now)
 
 
-class GasLeakFault(ProcessFault):
+class PlacedFault(ProcessFault):
+    """A fault of the process at a place."""
+
+    place: Vector | None = Field(default=None, json_schema_extra=in_unit("m"))
+    """m; drawn: at a pipe or vessel that carries a checkpoint"""
+
+    @classmethod
+    def limits_on(cls, site: Site) -> Mapping[str, tuple[Vector, Vector]]:
+        return {"place": _place_limits(site)}
+
+
+class GasLeakFault(PlacedFault):
     """Natural gas escapes and hisses."""
 
     sign: ClassVar[Sign] = Sign(EventKind.GAS_LEAK, "gas", outlasts=120.0)  # gas has to disperse
     kind: Literal["gas_leak"] = "gas_leak"
-    place: Vector | None = None
-    """m; drawn: at a pipe or vessel that carries a checkpoint"""
-    rate: float | None = Field(default=None, gt=0, le=1.0)
+    rate: float | None = Field(default=None, gt=0, le=1.0, json_schema_extra=in_unit("kg/s"))
     """kg/s"""
 
     def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:
@@ -67,16 +77,14 @@ class GasLeakFault(ProcessFault):
         return GasLeak(self.place, self.rate)
 
 
-class HotSpotFault(ProcessFault):
+class HotSpotFault(PlacedFault):
     """A part of the equipment is too hot."""
 
     sign: ClassVar[Sign] = Sign(EventKind.HOT_SPOT, "heat")
     kind: Literal["hot_spot"] = "hot_spot"
-    place: Vector | None = None
-    """m; drawn: at a pipe or vessel that carries a checkpoint"""
-    temperature: float | None = Field(default=None, ge=40, le=800)
+    temperature: float | None = Field(default=None, ge=40, le=800, json_schema_extra=in_unit("°C"))
     """°C"""
-    radius: float = Field(default=0.15, gt=0, le=1.0)
+    radius: float = Field(default=0.15, gt=0, le=1.0, json_schema_extra=in_unit("m"))
     """m"""
 
     def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:
@@ -104,8 +112,17 @@ class AbnormalPump(ProcessFault):
     defect: PumpFault | None = None
     """defect that it sounds like"""
 
+    @field_validator("defect", mode="before")
+    @classmethod
+    def _from_text(cls, value: Any) -> Any:
+        return PumpFault(value) if value in [*PumpFault] else value
+
+    @classmethod
+    def choices_on(cls, site: Site) -> Mapping[str, Sequence[str | int]]:
+        return {"pump": _pump_names(site)}
+
     def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:
-        known = [pump.name for floor in site.spec.floors for pump in floor.pumps]
+        known = _pump_names(site)
         if not known:
             raise NotFound(f"site {site.name} has no pump")
         pump, defect = known[int(rng.integers(len(known)))], list(PumpFault)[int(rng.integers(2))]
@@ -135,7 +152,7 @@ class PlatformAlarm(ProcessFault):
 
     sign: ClassVar[Sign] = Sign(EventKind.PLATFORM_ALARM, "alarm")
     kind: Literal["platform_alarm"] = "platform_alarm"
-    level: float = Field(default=85.0, ge=40, le=120)
+    level: float = Field(default=85.0, ge=40, le=120, json_schema_extra=in_unit("dB"))
     """dB"""
 
     def source(self) -> Source:
@@ -146,14 +163,25 @@ def _is_within(reach: float, place: Vector | None, other: Vector | None) -> bool
     return place is not None and other is not None and math.dist(place, other) <= reach
 
 
+def _pump_names(site: Site) -> list[str]:
+    return [pump.name for floor in site.spec.floors for pump in floor.pumps]
+
+
+def _place_limits(site: Site) -> tuple[Vector, Vector]:
+    """Return the lowest and highest coordinates (m) of a leak or hot spot on the site."""
+    x0, y0, x1, y1 = site.spec.ground
+    top, bottom = max(f.z for f in site.spec.floors), site.spec.ground_z
+    return (
+        (x0 - _BESIDE, y0 - _BESIDE, bottom - _BELOW),
+        (x1 + _BESIDE, y1 + _BESIDE, top + _ABOVE),
+    )
+
+
 def _check_place(site: Site, place: Vector | None) -> None:
     if place is None:
         return
-    x0, y0, x1, y1 = site.spec.ground
-    top, bottom = max(f.z for f in site.spec.floors), site.spec.ground_z
     x, y, z = place
-    low = (x0 - _BESIDE, y0 - _BESIDE, bottom - _BELOW)
-    high = (x1 + _BESIDE, y1 + _BESIDE, top + _ABOVE)
+    low, high = _place_limits(site)
     if not all(a <= v <= b for a, v, b in zip(low, place, high, strict=True)):
         raise Invalid(
             f"there is no equipment at ({x:g}, {y:g}, {z:g}): a place on site {site.name} lies "

@@ -1,12 +1,13 @@
 """Faults of the robot and its network: battery, connection, emergency stop, sensor and drive."""
 
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field
 
 from argo_compiler.il import EventKind
-from argo_env.faults.fault import Fault, Sign, TimedFault
+from argo_env.faults.fault import Fault, Sign, TimedFault, in_unit
 from argo_env.seeding import draw
 from argo_env.site import Site
 from argo_env.site.spec import Rect
@@ -21,7 +22,7 @@ class LowBattery(Fault):
 
     sign: ClassVar[Sign] = Sign(EventKind.LOW_BATTERY, "battery")
     kind: Literal["low_battery"] = "low_battery"
-    charge: float | None = Field(default=None, gt=0, le=1)
+    charge: float | None = Field(default=None, gt=0, le=1, json_schema_extra=in_unit("1"))
     """share of the capacity at the start, unless the charge is lower anyway"""
 
     def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
@@ -37,7 +38,7 @@ class WornBattery(Fault):
 
     sign: ClassVar[Sign] = Sign(EventKind.LOW_BATTERY, "battery")
     kind: Literal["worn_battery"] = "worn_battery"
-    capacity: float | None = Field(default=None, gt=0, le=1)
+    capacity: float | None = Field(default=None, gt=0, le=1, json_schema_extra=in_unit("1"))
     """share of the capacity that remains"""
 
     def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:  # noqa: ARG002
@@ -54,10 +55,14 @@ class ConnectionLoss(TimedFault):
     sign: ClassVar[Sign] = Sign(EventKind.CONNECTION_LOST, "connection")
     adds_up: ClassVar[bool] = True
     kind: Literal["connection_loss"] = "connection_loss"
-    rect: Rect | None = None
+    rect: Rect | None = Field(default=None, json_schema_extra=in_unit("m"))
     """m, [x0, y0, x1, y1]; None: the whole floor"""
     floor: int | None = Field(default=None, ge=1)
     """number of the floor; None: every floor"""
+
+    @classmethod
+    def choices_on(cls, site: Site) -> Mapping[str, Sequence[str | int]]:
+        return {"floor": [floor.number for floor in site.spec.floors]}
 
     def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:
         if self.floor is not None:
@@ -91,7 +96,7 @@ class SensorDysfunction(TimedFault):
     kind: Literal["sensor_dysfunction"] = "sensor_dysfunction"
     effect: Literal["fails", "noise"] | None = None
     """`fails`: no readings; `noise`: readings with noise"""
-    noise: float = Field(default=0.1, gt=0, le=1)
+    noise: float = Field(default=0.1, gt=0, le=1, json_schema_extra=in_unit("1"))
     """standard deviation of the noise, as a share of the scale"""
 
     def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:
@@ -114,7 +119,7 @@ class DriveDysfunction(TimedFault):
     # The watch compares the distance driven with the planned one over 10 s.
     sign: ClassVar[Sign] = Sign(EventKind.DYSFUNCTION, "drive", outlasts=11.0)
     kind: Literal["drive_dysfunction"] = "drive_dysfunction"
-    speed: float | None = Field(default=None, ge=0, lt=1)
+    speed: float | None = Field(default=None, ge=0, lt=1, json_schema_extra=in_unit("1"))
     """share of the speed that remains; 0: the robot stops"""
 
     def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:

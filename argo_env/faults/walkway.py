@@ -6,6 +6,7 @@ that rays, contacts, pictures and dynamics all use the same solids.
 
 import cmath
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Annotated, ClassVar, Literal, Self
 
@@ -14,7 +15,7 @@ from pydantic import Field
 
 from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.il import EventKind
-from argo_env.faults.fault import Fault, Sign
+from argo_env.faults.fault import Fault, Sign, in_unit
 from argo_env.seeding import draw
 from argo_env.site import Site
 from argo_env.site.shapes import Box, Element, Role, Solid, Vector, half_extents
@@ -42,12 +43,18 @@ class Brick(Fault):
     kind: Literal["brick"] = "brick"
     floor: int | None = Field(default=None, ge=1)
     """number of the floor that it lies on"""
-    place: Point | None = None
+    place: Point | None = Field(default=None, json_schema_extra=in_unit("m"))
     """m, x and y of its middle; `floor` must be given too"""
-    size: tuple[_Length, _Length, _Length] = (0.3, 0.2, 0.2)
+    size: tuple[_Length, _Length, _Length] = Field(
+        default=(0.3, 0.2, 0.2), json_schema_extra=in_unit("m")
+    )
     """m, along its own axes, at most 1.5"""
-    yaw: float | None = None
+    yaw: float | None = Field(default=None, json_schema_extra=in_unit("deg"))
     """deg"""
+
+    @classmethod
+    def choices_on(cls, site: Site) -> Mapping[str, Sequence[str | int]]:
+        return {"floor": [floor.number for floor in site.spec.floors]}
 
     def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:
         for _ in range(1 if self.place else _DRAWS):
@@ -108,8 +115,12 @@ class MissingPlate(Fault):
     kind: Literal["missing_plate"] = "missing_plate"
     floor: int | None = Field(default=None, ge=1)
     """number of the floor; the lowest has no plates"""
-    rect: Rect | None = None
+    rect: Rect | None = Field(default=None, json_schema_extra=in_unit("m"))
     """m, [x0, y0, x1, y1]; `floor` must be given too; drawn: a square of 0.6 m"""
+
+    @classmethod
+    def choices_on(cls, site: Site) -> Mapping[str, Sequence[str | int]]:
+        return {"floor": [floor.number for floor in site.spec.floors if floor.railed]}
 
     def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:
         centre = None
@@ -158,6 +169,11 @@ class BlockedStairs(Fault):
     """name of the stair tower"""
     floor: int | None = Field(default=None, ge=1)
     """the lower one of the two floors"""
+
+    @classmethod
+    def choices_on(cls, site: Site) -> Mapping[str, Sequence[str | int]]:
+        towers = [tower.name for tower in site.spec.towers]
+        return {"tower": towers, "floor": [floor.number for floor in site.spec.floors[:-1]]}
 
     def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:
         towers, floors = [t.name for t in site.spec.towers], site.spec.floors[:-1]

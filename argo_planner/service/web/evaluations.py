@@ -8,6 +8,7 @@ from argo_planner.service.evaluations.replay import ReplayedRun
 from argo_planner.service.jobs.evaluation import EvaluationAsked, EvaluationSpec
 from argo_planner.service.jobs.job import EvaluationJob
 from argo_planner.service.web.bodies import JsonBody
+from argo_planner.service.web.faults import require_faults_on_site
 from argo_planner.service.web.jobs import JobId
 from argo_planner.service.web.missions import open_valid_plan
 from argo_planner.service.web.problems import problem_responses
@@ -57,6 +58,7 @@ async def start_evaluation(
         obstacles=service.obstacles.present.obstacles,
         asked=asked,
     )
+    require_faults_on_site(asked.faults, service.site.site, asked.first_seed)
     spec.make_plan(service.site)  # refuses at once what can't be run
     job = await service.evaluations.start(id, plan.revision, spec, visitor.author)
     return json_response(job, 202, location=f"/api/jobs/{job.id}")

@@ -8,9 +8,13 @@ from pydantic import Field
 
 from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.base.model import Model
+from argo_compiler.il import Mission
 from argo_env.faults.kinds import AnyFault
+from argo_env.planning.opening import OpenedSite
 from argo_env.report.files import PAGE, RECORD
-from argo_env.run.drives_and_sensors import REMOTE, SENSORS, drive_names
+from argo_env.run.drives_and_sensors import REMOTE, ROUTE, SENSORS, drive_names
+from argo_env.run.run_setup import check_spec
+from argo_env.run.spec import RunSpec
 from argo_env.site import Site
 from argo_planner.service.core.commands import CommandId
 from argo_planner.service.runs.pictures import picture_path
@@ -25,6 +29,7 @@ from argo_planner.service.runs.state import EntryList, RunState
 from argo_planner.service.storage.stored_files import read_stored_bytes
 from argo_planner.service.web.access import AccessRole
 from argo_planner.service.web.bodies import JsonBody
+from argo_planner.service.web.faults import require_faults_on_site
 from argo_planner.service.web.live import accept_socket, exchange_messages, next_client_id
 from argo_planner.service.web.missions import open_valid_plan
 from argo_planner.service.web.problems import problem_responses
@@ -92,6 +97,7 @@ async def start_run(
     document = await open_valid_plan(service, id, made_on)
     plan = document.plan
     _require_known(run, service.site.site)
+    await service.run_on_site(_require_possible, run, plan.mission, service.site)
     order = RunOrder(
         plan=id,
         revision=plan.revision,
@@ -268,6 +274,21 @@ def _require_known(run: RunAsked, site: Site) -> None:
     _require_in("drive", [run.drive], [*drive_names(), REMOTE])
     _require_in("sensor", [run.sensor], [*SENSORS])
     _require_in("checkpoint", run.values, checkpoints)
+
+
+def _require_possible(run: RunAsked, mission: Mission, site: OpenedSite) -> None:
+    """Raise ArgoError, before anything starts, for a run that can't be made on the site."""
+    spec = RunSpec(
+        mission=mission,
+        site=site.reference,
+        drive=ROUTE if run.drive == REMOTE else run.drive,
+        sensor=run.sensor,
+        seed=run.seed,
+        values=run.values,
+        faults=run.faults,
+    )
+    require_faults_on_site(run.faults, site.site, run.seed)
+    check_spec(spec, site.site)
 
 
 def _require_in(what: str, given: Iterable[object], known: Sequence[object]) -> None:

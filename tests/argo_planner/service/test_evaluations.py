@@ -36,6 +36,7 @@ from tests.argo_planner.service.test_jobs import SCRIPT, import_script, wait_for
 from tests.disks import fill, small_disk
 
 FAULTS = [{"kind": "low_battery", "charge": 0.01}]
+OFF_SITE = {"kind": "brick", "floor": 1, "place": [-3.0, 0.0]}
 
 
 @pytest.fixture(scope="module")
@@ -355,6 +356,7 @@ def test_invalid_requests_are_refused_before_anything_runs(service: Served, id: 
         ({"drive": "boat"}, "no drive `boat`"),
         ({"drive": "route", "sensor": "camera"}, "choose the sensor `ideal` or another drive"),
         ({"drive": "route", "faults": [{"kind": "brick"}]}, "choose another drive"),
+        ({"faults": [*FAULTS, OFF_SITE]}, "faults[1] (brick): there is no walkway"),
         ({"variation": {"speed": [0.9, 0.5]}}, "give the smaller value first"),
         ({"variation": {"values": {"999": {"drift": [0, 1]}}}}, "no checkpoint 999"),
         ({"variation": {"values": {"1": {"start": [1, 1e300]}}}}, "checkpoint 1"),

@@ -126,6 +126,53 @@ def test_unknown_drives_sensors_and_checkpoints_are_refused_at_once(
     assert service.client.get("/api/runs").json()["runs"] == before
 
 
+def test_the_kinds_of_faults_are_listed_and_those_that_do_not_fit_are_refused_at_once(
+    service: Served, id: str
+) -> None:
+    kinds = {one["kind"]: one for one in service.client.get("/api/faults").json()["kinds"]}
+    place = next(field for field in kinds["gas_leak"]["fields"] if field["name"] == "place")
+    assert place["unit"] == "m"
+    outside = [limits["most"] + 1 for limits in place["numbers"]]
+    before = service.client.get("/api/runs").json()["runs"]
+    good = {"kind": "emergency_stop", "at": 5, "until": 6}
+    for faults, named in (
+        ([good, {"kind": "gas_leak", "place": outside}], "faults[1] (gas_leak): there is no"),
+        ([good, {"kind": "abnormal_value", "checkpoint": 99}], "faults[1] (abnormal_value)"),
+        ([{"kind": "gas_leak"}], "choose another drive"),
+    ):
+        refused = service.run(id, drive="route", faults=faults)
+        assert named in problem(refused, 422, "invalid")["detail"]
+    assert service.client.get("/api/runs").json()["runs"] == before
+    for fault in (
+        {"kind": "gas_leak", "place": [3.0, 1.5, "high"]},
+        {"kind": "brick", "size": [0.3, 0.2, 2.0]},
+        {"kind": "missing_plate", "floor": 2, "rect": [1.0, 1.0, 0.0, 2.0]},
+    ):
+        assert service.run(id, faults=[fault]).status_code == 422
+    too_large = service.run(id, faults=[{"kind": "gas_leak", "rate": 2.0}])
+    assert too_large.status_code == 422
+    assert "rate" in too_large.text
+
+
+def test_faults_have_places_sizes_and_times(service: Served, id: str) -> None:
+    faults = [
+        {"kind": "gas_leak", "place": [9.0, 3.5, 0.8], "at": 20.0, "until": 110.0},
+        {"kind": "brick", "floor": 1, "place": [7.25, 1.55], "size": [0.2, 0.2, 0.1], "yaw": 0.0},
+        {"kind": "connection_loss", "floor": 3, "rect": [0.0, 0.0, 2.0, 2.0]},
+        {"kind": "abnormal_pump", "pump": "pump P-301", "defect": "bearing"},
+        {"kind": "displaced_checkpoint", "checkpoint": 2, "offset": [0.0, 0.05, 0.0]},
+    ]
+    run = start(service, id, drive="kinematic", faults=faults)["id"]
+    wait_for(service, run, status="running")
+    assert ask(service, run, "stop")["progress"] == "confirmed"
+    report = f"/api/runs/{run}/report/report.json"
+    while (answer := service.client.get(report)).status_code == 404:
+        time.sleep(0.1)
+    stored = answer.json()["faults"]
+    for given, found in zip(faults, stored, strict=True):
+        assert found.items() >= given.items()
+
+
 def test_a_missing_report_is_explained(service: Served, id: str) -> None:
     run = start(service, id, speed=1.0)["id"]
     missing = service.client.get(f"/api/runs/{run}/report/report.html")

@@ -10,6 +10,7 @@ from playwright.sync_api import expect
 
 from tests.argo_planner.service.served import Served
 from tests.e2e.page.person import Person
+from tests.e2e.page.test_access import require_accessible
 from tests.e2e.page.test_list import open_mission, plan, row
 
 __all__ = ["plan"]
@@ -66,6 +67,7 @@ def test_two_runs_of_different_revisions_are_compared(
     expect(table_row(ann, "whole", "Revision of the mission").locator("td")).to_have_text(
         ["2", "3", ""]
     )
+    require_accessible(ann, "two compared runs")
     ann.page.locator("#only-different").focus()
     ann.key(" ")
     expect(table_row(ann, "readings", "#4")).to_have_count(0)

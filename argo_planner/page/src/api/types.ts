@@ -56,6 +56,9 @@ export type RequestState = Schemas["RequestState"];
 export type Entry = Schemas["EntryTold"]["entry"];
 /** A fault of a run or an evaluation, as a request gives it. */
 export type Fault = Schemas["BeginFault"]["fault"];
+export type FaultDescription = Schemas["FaultDescription"];
+export type FaultField = Schemas["FaultField"];
+export type NumberLimits = Schemas["NumberLimits"];
 /** The kind of any fault. */
 export type FaultKind = Schemas["BeginFault"]["fault"]["kind"];
 export type Trouble = Schemas["Trouble"];

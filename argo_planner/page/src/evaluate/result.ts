@@ -4,6 +4,8 @@ import { svg } from "lit";
 
 import type { EvaluationJob, EvaluationStanding, FailedRun, RateTold } from "../api/types";
 import { rateCurve } from "../model/curves";
+import { faultsByCase, givenFields } from "../model/faults";
+import { faultSummary } from "../run/fault-words";
 import { mayPlan } from "../state/session";
 import { t } from "../texts";
 import { options, valueOf } from "../ui/controls";
@@ -250,7 +252,7 @@ export class EvaluateResult extends PageElement {
             ${texts.times(seconds(now.times.least), seconds(now.times.median), seconds(now.times.most))}
           </p>`
         : nothing}
-      ${now.by_faults.length > 1 ? this.byFaults(now) : nothing} ${this.failing(job, now)}
+      ${now.by_faults.length > 1 ? this.byFaults(job, now) : nothing} ${this.failing(job, now)}
     `;
   }
 
@@ -293,8 +295,13 @@ export class EvaluateResult extends PageElement {
     return job.state === "running" || now.rate.runs === now.done ? text : `${text}, ${texts.count(figure(now.rate.runs))}`;
   }
 
-  private byFaults(now: EvaluationStanding) {
+  private byFaults(job: EvaluationJob, now: EvaluationStanding) {
     const texts = t().evaluate;
+    const faults = faultsByCase(job.asked.faults);
+    const summary = (name: string) => {
+      const fault = faults.get(name);
+      return fault === undefined ? nothing : html`<br /><span class="small">${faultSummary(givenFields(fault))}</span>`;
+    };
     return html`<table>
       <caption class="small">${texts.byFaults}</caption>
       <thead>
@@ -304,7 +311,7 @@ export class EvaluateResult extends PageElement {
         ${now.by_faults.map(
           ({ name, rate }) =>
             html`<tr>
-              <th scope="row">${texts.faultsNamed(name)} ${this.bar(rate)}</th>
+              <th scope="row">${texts.faultsNamed(name)}${summary(name)} ${this.bar(rate)}</th>
               <td>${rate.value === null ? "–" : share(rate.value)}</td>
               <td>${figure(rate.runs)}</td>
             </tr>`,

@@ -2,8 +2,10 @@
 
 import type { EvaluationAsked } from "../api/types";
 import "../run/faults";
+import type { FaultChoice } from "../run/faults";
 import { parts } from "../run/parts";
 import { missionHasErrors, mission } from "../state/plan";
+import { faultsOf } from "../state/faults";
 import { mayPlan, withExtensions } from "../state/session";
 import { t } from "../texts";
 import { choice } from "../ui/controls";
@@ -53,7 +55,6 @@ export class EvaluateStart extends PageElement {
     `,
   ];
 
-  @state() private faults: readonly string[] = [];
   @state() private wrong: string | null = null;
   @state() private starting = false;
 
@@ -90,8 +91,8 @@ export class EvaluateStart extends PageElement {
             ${texts.firstSeed}
             <input name="seed" type="number" min="0" max="2147483648" step="1" value="0" required />
           </label>
-          <argo-faults .chosen=${this.faults} @chosen=${this.choseFaults}></argo-faults>
-          <label class="check" ?hidden=${this.faults.length === 0}>
+          <argo-faults list="evaluate" .refusal=${this.wrong}></argo-faults>
+          <label class="check" ?hidden=${faultsOf("evaluate").length === 0}>
             <input type="checkbox" name="ideal" checked /> ${texts.ideal}
           </label>
           ${this.ranges()}
@@ -130,14 +131,18 @@ export class EvaluateStart extends PageElement {
     return other === null ? null : texts.busy(other.name, other.author);
   }
 
-  private choseFaults(event: CustomEvent<readonly string[]>): void {
-    this.faults = event.detail;
-  }
-
   private async begin(event: SubmitEvent): Promise<void> {
     event.preventDefault();
+    const sent = event.target as HTMLFormElement;
     if (this.whyNot() !== null || this.starting) return;
-    const form = new FormData(event.target as HTMLFormElement);
+    if ((await this.renderRoot.querySelector<FaultChoice>("argo-faults")?.settle()) === false) {
+      this.wrong = t().faults.mend;
+      const settings = this.renderRoot.querySelector("details");
+      if (settings) settings.open = true;
+      return;
+    }
+    const form = new FormData(sent);
+    const faults = faultsOf("evaluate");
     const variation = this.variation(form);
     if (variation === null) return;
     const share = (name: string) => (number(form, name) ?? 0) / 100;
@@ -145,8 +150,8 @@ export class EvaluateStart extends PageElement {
       worlds: Number(form.get("worlds")),
       first_seed: Number(form.get("seed")),
       drive: (form.get("drive") as string) || null,
-      faults: this.faults.map((kind) => ({ kind })),
-      without_faults: this.faults.length === 0 || form.has("ideal"),
+      faults,
+      without_faults: faults.length === 0 || form.has("ideal"),
       require: share("require") > 0 ? [`success >= ${share("require")}`] : [],
       width: share("width") > 0 ? share("width") : null,
       variation,

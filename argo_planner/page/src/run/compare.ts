@@ -20,12 +20,12 @@ import { comparedRuns, compareRuns, stopComparing } from "../state/compared-runs
 import { withErrorNotice } from "../state/notices";
 import { checkpointsById } from "../state/world";
 import { t } from "../texts";
+import { faultText } from "../texts/fault-names";
 import { options, valueOf } from "../ui/controls";
 import { downloadText } from "../ui/download";
 import { css, customElement, html, nothing, PageElement, property, state } from "../ui/element";
 import { bound, dateAndTime, figure, metres, percent, seconds, unitText } from "../ui/figures";
 import { icon } from "../ui/icons";
-import { faultText } from "./faults";
 import { modeWords } from "./mode-words";
 import { parts } from "./parts";
 import { comparedReadingsTable, comparedTasksTable } from "./tables";

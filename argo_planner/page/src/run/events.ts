@@ -5,10 +5,10 @@ import { computed } from "@preact/signals-core";
 import { runEvents, type RunEvent, type TimedEvent } from "../model/run-events";
 import { shownEntries, shownRun, shownTime } from "../state/run";
 import { t } from "../texts";
+import { faultText } from "../texts/fault-names";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
 import { figure, unitText } from "../ui/figures";
-import { faultText } from "./faults";
 import { parts } from "./parts";
 
 const MOST = 100;

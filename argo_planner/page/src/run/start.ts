@@ -4,6 +4,7 @@ import type { RunAsked } from "../api/types";
 import { checkpointSuggestion, parseCheckpoint } from "../model/checkpoint-choice";
 import { storeSetting, storedSetting, mayOperate, withExtensions } from "../state/session";
 import { missionHasErrors, mission } from "../state/plan";
+import { faultsOf } from "../state/faults";
 import { startRun } from "../state/requests";
 import { world } from "../state/world";
 import { t } from "../texts";
@@ -12,6 +13,7 @@ import { css, customElement, html, nothing, PageElement, state } from "../ui/ele
 import { icon } from "../ui/icons";
 import { figure, unitText } from "../ui/figures";
 import "./faults";
+import type { FaultChoice } from "./faults";
 import { checkpointList, parts, readSpeed, SPEEDS, speedName } from "./parts";
 
 const DRIVES = ["kinematic", "tracked", "route", "remote"] as const;
@@ -40,7 +42,6 @@ export class RunStart extends PageElement {
   @state() private starting = false;
   @state() private wrong: string | null = null;
   @state() private values: ReadonlyMap<number, number> = new Map();
-  @state() private faults: readonly string[] = [];
 
   override render() {
     const texts = t().run;
@@ -71,7 +72,7 @@ export class RunStart extends PageElement {
             </label>
           </div>
           ${this.valueList()}
-          <argo-faults .chosen=${this.faults} @chosen=${this.choseFaults}></argo-faults>
+          <argo-faults list="run" .refusal=${this.wrong}></argo-faults>
         </div>
       </details>
     </form>`;
@@ -145,14 +146,17 @@ export class RunStart extends PageElement {
     of.focus();
   }
 
-  private choseFaults(event: CustomEvent<readonly string[]>): void {
-    this.faults = event.detail;
-  }
-
   private async start(event: SubmitEvent): Promise<void> {
     event.preventDefault();
+    const sent = event.target as HTMLFormElement;
     if (this.starting || this.whyNot() !== null) return;
-    const form = new FormData(event.target as HTMLFormElement);
+    if ((await this.renderRoot.querySelector<FaultChoice>("argo-faults")?.settle()) === false) {
+      this.wrong = t().faults.mend;
+      const settings = this.renderRoot.querySelector("details");
+      if (settings) settings.open = true;
+      return;
+    }
+    const form = new FormData(sent);
     const speed = form.get("speed") as string;
     storeSetting("speed", speed);
     const asked: Partial<RunAsked> = {
@@ -161,7 +165,7 @@ export class RunStart extends PageElement {
       sensor: form.get("sensor") as string,
       seed: Number(form.get("seed")),
       values: Object.fromEntries(this.values),
-      faults: this.faults.map((kind) => ({ kind })) as unknown as RunAsked["faults"],
+      faults: faultsOf("run") as unknown as RunAsked["faults"],
     };
     this.starting = true;
     this.wrong = null;

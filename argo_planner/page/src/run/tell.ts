@@ -7,10 +7,11 @@ import { run } from "../state/run";
 import { mayOperate } from "../state/session";
 import { world } from "../state/world";
 import { t } from "../texts";
+import { faultText } from "../texts/fault-names";
 import { options } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { checkpointList, parts } from "./parts";
-import { faultKinds, faultText } from "./faults";
+import { faultKinds } from "./faults";
 
 const OWN: readonly string[] = ["time_up"]; // events that only the run itself raises
 

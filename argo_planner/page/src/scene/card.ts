@@ -2,10 +2,13 @@
 
 import type { Obstacle, Pose, WorldCheckpoint } from "../api/types";
 import { addMeasure, addStart, addTask } from "../list/adding";
+import { faultSummary } from "../run/fault-words";
+import { faultsOf, openedFault, removeFault, type FaultList } from "../state/faults";
 import { mayPlan } from "../state/session";
 import { look as lookSignal } from "../state/view";
 import { removeObstacle, world } from "../state/world";
 import { t } from "../texts";
+import { faultText } from "../texts/fault-names";
 import { iconButton } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, property } from "../ui/element";
 import { bound, figure, unitText } from "../ui/figures";
@@ -85,6 +88,7 @@ export class SceneCard extends PageElement {
     const { subject } = mark;
     if (subject.kind === "checkpoint") return this.checkpoint(mark, subject.checkpoint);
     if (subject.kind === "place") return this.place(subject.name, subject.pose, subject.dock);
+    if (subject.kind === "fault") return this.fault(subject.list, subject.index);
     return subject.kind === "obstacle" ? this.obstacle(subject.obstacle) : nothing;
   }
 
@@ -131,6 +135,21 @@ export class SceneCard extends PageElement {
         <button class="danger" ?disabled=${!mayPlan()} @click=${() => void removeObstacle(id)}>
           ${icon("bin", 16)} ${texts.remove}
         </button>
+      </div>`;
+  }
+
+  private fault(list: FaultList, index: number) {
+    const fault = faultsOf(list)[index];
+    if (fault === undefined) return nothing;
+    const name = faultText(fault.kind);
+    const edit = () => {
+      openedFault.value = { list, index };
+      openMark.value = null;
+    };
+    return html`<p class="dim">${faultSummary(fault)}</p>
+      <div class="buttons">
+        <button @click=${edit}>${t().faults.edit(name)}</button>
+        <button class="danger" @click=${() => removeFault(list, index)}>${icon("bin", 16)} ${t().scene.remove}</button>
       </div>`;
   }
 

@@ -2,6 +2,7 @@
 
 import { liftGhost, beginGhostAt, FAST_CELLS, ghost, hideGhost, moveGhost, turnGhost } from "./navigate";
 import { beginCorner, corners, liftCorner, moveCorner, setPointedCorner } from "./obstacle-tool";
+import { stopPlacing } from "../state/faults";
 import { shownFloor, tool } from "../state/view";
 import { world } from "../state/world";
 import { Vector3 } from "three";
@@ -26,7 +27,8 @@ export function onSceneKey(event: KeyboardEvent, { view, place }: Keyed): boolea
   const navigates = tool.value === "navigate";
   const spans = tool.value === "obstacle" && !corners.value?.second;
   const cells = event.shiftKey ? FAST_CELLS : 1;
-  if (arrow && navigates) {
+  if (event.key === "Escape" && tool.value === "fault") stopPlacing();
+  else if (arrow && navigates) {
     begin(view);
     step(view, arrow, cells, moveGhost);
   } else if (arrow && spans) {

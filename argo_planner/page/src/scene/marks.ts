@@ -5,20 +5,24 @@ import { Vector3 } from "three";
 
 import type { Obstacle, Pose, Task, World, WorldCheckpoint } from "../api/types";
 import { taskKey } from "../model/outline";
+import { markPoint } from "../model/faults";
 import { floorOf } from "../model/standing-map";
 import { mission, planId, select, selection } from "../state/plan";
+import { faultsOf, shownFaultList, type FaultList } from "../state/faults";
 import { preview } from "../state/preview";
 import { type ShownRun, shownRun } from "../state/run";
 import { numberOf, taskTitle } from "../state/task-labels";
 import { world } from "../state/world";
 import { t } from "../texts";
+import { faultText } from "../texts/fault-names";
 import { figure, unitText } from "../ui/figures";
 
 export type Subject =
   | { readonly kind: "checkpoint"; readonly checkpoint: WorldCheckpoint }
   | { readonly kind: "task"; readonly task: Task; readonly pose: Pose }
   | { readonly kind: "place"; readonly name: string; readonly pose: Pose; readonly dock: number | null }
-  | { readonly kind: "obstacle"; readonly obstacle: Obstacle };
+  | { readonly kind: "obstacle"; readonly obstacle: Obstacle }
+  | { readonly kind: "fault"; readonly list: FaultList; readonly index: number };
 
 export interface Mark {
   readonly key: string;
@@ -76,6 +80,7 @@ export const marks = computed<readonly Mark[]>(() => {
     ...taskMarks(site),
     ...placeMarks(site),
     ...site.obstacles.map((one) => obstacleMark(site, one)),
+    ...faultMarks(site),
   ];
 });
 
@@ -173,6 +178,27 @@ function obstacleMark(site: World, obstacle: Obstacle): Mark {
     tone: openMark.value === key ? "chosen" : "bad",
     weight: 3,
   };
+}
+
+/** Return a mark for each fault of the open panel whose place is known. */
+function faultMarks(site: World): Mark[] {
+  const list = shownFaultList.value;
+  if (list === null) return [];
+  return faultsOf(list).flatMap((fault, index) => {
+    const point = markPoint(fault, site);
+    if (point === null) return [];
+    const [x, y, z] = point;
+    const key = `fault:${index}`;
+    const mark: Mark = {
+      ...fieldsAtPose(site, { x, y, z, yaw: 0 }),
+      key,
+      subject: { kind: "fault", list, index },
+      text: `⚠ ${faultText(fault.kind)}`,
+      tone: openMark.value === key ? "chosen" : "bad",
+      weight: 7,
+    };
+    return [mark];
+  });
 }
 
 /** Select the task that a path leads to. */

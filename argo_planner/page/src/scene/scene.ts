@@ -8,6 +8,7 @@ import { showNotice } from "../state/notices";
 import { selection } from "../state/plan";
 import { hoveredLeg } from "../state/preview";
 import { mayPlan } from "../state/session";
+import { placingForm } from "../state/faults";
 import { shownFloor, tool } from "../state/view";
 import { world } from "../state/world";
 import { t } from "../texts";
@@ -16,6 +17,7 @@ import "./bar";
 import { placeRobotText, placeGhostText } from "./overlay-texts";
 import "./card";
 import { colours } from "./colours";
+import { clickFault, FaultsView, pointFault } from "./faults-view";
 import "./compass";
 import "./floors";
 import { box } from "./ground-marks";
@@ -107,6 +109,7 @@ export class ScenePanel extends PageElement {
       robot,
       paths,
       new RunPathsView(view),
+      new FaultsView(view),
       new PointerWatch(this.canvas, this.pointerHandlers(view, paths)),
       { dispose: () => sizes.disconnect() },
     ];
@@ -151,6 +154,7 @@ export class ScenePanel extends PageElement {
         this.pushAtEdge(view, x, y);
         if (tool.value === "navigate") this.timed(view, () => moveGhostToRay(view.rayAt(x, y), view.site));
         else if (tool.value === "obstacle") pointCorner(view.site.hitWays(view.rayAt(x, y)));
+        else if (tool.value === "fault") pointFault(view, x, y);
         else this.pointAt(view.markAt(x, y), paths.wayAt(x, y));
       },
       left: () => {
@@ -164,6 +168,7 @@ export class ScenePanel extends PageElement {
           moveGhostToRay(view.rayAt(x, y), view.site);
           this.place();
         } else if (tool.value === "obstacle") clickCorner(view.site.hitWays(view.rayAt(x, y)));
+        else if (tool.value === "fault") clickFault(view, x, y);
         else {
           const mark = view.markAt(x, y);
           const way = mark === null ? paths.wayAt(x, y) : null;
@@ -285,6 +290,7 @@ export class ScenePanel extends PageElement {
       ${tool.value === "obstacle" && (corners.value?.second ?? null) === null
         ? html`<p class="hint">${texts.hintObstacle}</p>`
         : nothing}
+      ${placingForm.value === null ? nothing : html`<p class="hint">${t().faults.hints[placingForm.value]}</p>`}
       ${tool.value === "obstacle" ? html`<argo-obstacle-form></argo-obstacle-form>` : nothing}
       <span class="unseen" id="floor">${shownFloor.value === null ? texts.allFloors : texts.floor(shownFloor.value)}</span>
     `;

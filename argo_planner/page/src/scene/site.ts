@@ -95,6 +95,19 @@ export class Site {
     return nearest;
   }
 
+  /** Return the first shown solid that a ray hits. */
+  hitSolids(ray: Ray): Hit | null {
+    let nearest = this.hitWays(ray);
+    for (const storey of this.storeys) {
+      if (!storey.group.visible) continue;
+      for (const layer of storey.layers.keys()) {
+        const hit = this.bvhOf(storey, layer)?.raycastFirst(ray, DoubleSide);
+        if (hit && (nearest === null || hit.distance < nearest.distance)) nearest = { point: hit.point, distance: hit.distance };
+      }
+    }
+    return nearest;
+  }
+
   /** Return whether a shown solid lies between two points. Solids within `near` m of the second point may
    * belong to it, and don't count. */
   isBetween(from: Vector3, to: Vector3, near = 0.35, onlyWays = false): boolean {
@@ -115,15 +128,21 @@ export class Site {
   }
 
   private hits(storey: Storey, layer: Layer, ray: Ray, far: number): boolean {
+    const bvh = this.bvhOf(storey, layer);
+    return bvh !== null && isHit(bvh, ray, far);
+  }
+
+  /** Return the triangles of a layer for ray casts; null: the layer is not shown. */
+  private bvhOf(storey: Storey, layer: Layer): MeshBVH | null {
     const mesh = storey.layers.get(layer);
-    if (mesh?.visible !== true) return false;
+    if (mesh?.visible !== true) return null;
     let bvh = storey.solids.get(layer);
     if (bvh === undefined) {
       // An indirect BVH doesn't reorder the triangles of the drawn mesh.
       bvh = new MeshBVH(mesh.geometry, { indirect: true });
       storey.solids.set(layer, bvh);
     }
-    return isHit(bvh, ray, far);
+    return bvh;
   }
 
   private storey(number: number, nodes: readonly GlbNode[]): Storey {

@@ -50,7 +50,8 @@ export const sceneStyle = css`
     cursor: pointer;
   }
   canvas.navigate,
-  canvas.obstacle {
+  canvas.obstacle,
+  canvas.fault {
     cursor: crosshair;
   }
   #labels {

@@ -4,8 +4,8 @@ import { signal } from "@preact/signals-core";
 
 import type { Pose, Task } from "../api/types";
 
-/** Effect of a click in the scene: select, add a task at the ghost, or add an obstacle. */
-export type Tool = "select" | "navigate" | "obstacle";
+/** Effect of a click in the scene: select, add a task at the ghost, add an obstacle, or give a fault its place. */
+export type Tool = "select" | "navigate" | "obstacle" | "fault";
 
 export const tool = signal<Tool>("select");
 /** Number of the highest shown floor; null: all floors are shown. */

@@ -5,6 +5,7 @@ import { signal } from "@preact/signals-core";
 import { compare } from "./compare";
 import { draft } from "./draft";
 import { evaluate } from "./evaluate";
+import { faults } from "./faults";
 import { forms } from "./forms";
 import { frame } from "./frame";
 import { keys } from "./keys";
@@ -20,7 +21,7 @@ import { words } from "./words";
 
 export type Language = "en" | "de";
 
-const AREAS = { compare, draft, evaluate, forms, frame, keys, list, route, run, scene, script, strip, tasks, verdict, words };
+const AREAS = { compare, draft, evaluate, faults, forms, frame, keys, list, route, run, scene, script, strip, tasks, verdict, words };
 type Areas = typeof AREAS;
 export type Texts = { readonly [area in keyof Areas]: Areas[area]["en"] };
 

@@ -35,7 +35,8 @@ def runs(service: Served, plan: str) -> list[str]:
     task = {"name": HOSTILE, "action": "MEASURE", "object_id": "14"}
     edits: list[Any] = [{"kind": "remove_task", "name": "B2"}, {"kind": "add_task", "task": task}]
     assert service.command(plan, "*", *edits).status_code == 200
-    return [first, finish_run(service, plan, values={"1": 3.5, "4": 10.0})]
+    fault = {"kind": "low_battery", "charge": 0.9}
+    return [first, finish_run(service, plan, values={"1": 3.5, "4": 10.0}, faults=[fault])]
 
 
 def open_comparison(browsers: Any, address: str, plan: str, **context: Any) -> Person:
@@ -66,6 +67,9 @@ def test_two_runs_of_different_revisions_are_compared(
     )
     expect(table_row(ann, "whole", "Revision of the mission").locator("td")).to_have_text(
         ["2", "3", ""]
+    )
+    expect(table_row(ann, "whole", "Faults").locator("td")).to_have_text(
+        ["none", "low battery (Charge at the start: 90 %)", ""]
     )
     require_accessible(ann, "two compared runs")
     ann.page.locator("#only-different").focus()

@@ -2,8 +2,9 @@
 
 import { computed } from "@preact/signals-core";
 
-import type { Noticed, RunState } from "../api/types";
+import type { Fault, Noticed, RunState } from "../api/types";
 import { csv } from "../model/csv";
+import { givenFields } from "../model/faults";
 import {
   compareNoticed,
   compareReadings,
@@ -17,6 +18,7 @@ import {
   type TaskRow,
 } from "../model/run-comparison";
 import { comparedRuns, compareRuns, stopComparing } from "../state/compared-runs";
+import { readFaultKinds } from "../state/faults";
 import { withErrorNotice } from "../state/notices";
 import { checkpointsById } from "../state/world";
 import { t } from "../texts";
@@ -26,6 +28,7 @@ import { downloadText } from "../ui/download";
 import { css, customElement, html, nothing, PageElement, property, state } from "../ui/element";
 import { bound, dateAndTime, figure, metres, percent, seconds, unitText } from "../ui/figures";
 import { icon } from "../ui/icons";
+import { faultSummary } from "./fault-words";
 import { modeWords } from "./mode-words";
 import { parts } from "./parts";
 import { comparedReadingsTable, comparedTasksTable } from "./tables";
@@ -188,7 +191,9 @@ export class RunCompare extends PageElement {
     const [first, second] = (this.chosen = this.pair());
     if (first === second) return stopComparing();
     this.reading = true;
-    await withErrorNotice(() => compareRuns(first, second));
+    await withErrorNotice(async () => {
+      await Promise.all([compareRuns(first, second), readFaultKinds()]);
+    });
     this.reading = false;
   }
 
@@ -279,6 +284,11 @@ function noticedIn({ state }: FinishedRun): readonly Noticed[] {
   return state.headline?.noticed ?? [];
 }
 
+/** Describe a fault with all that it had, also what was drawn. */
+function faultInWords(fault: Fault): string {
+  return `${faultText(fault.kind)} (${faultSummary(givenFields(fault))})`;
+}
+
 function wholeRows(both: readonly [FinishedRun, FinishedRun]): Row[] {
   const texts = t().compare;
   const [a, b] = both.map(runSum) as [ReturnType<typeof runSum>, ReturnType<typeof runSum>];
@@ -295,7 +305,7 @@ function wholeRows(both: readonly [FinishedRun, FinishedRun]): Row[] {
     number(head, pair, show, isApart(...pair));
   const count = (head: string, pair: readonly [number, number]) => number(head, pair, String, pair[0] !== pair[1]);
   const faults = ({ report }: FinishedRun) =>
-    report === null ? texts.measured.unknown : report.faults.map((one) => faultText(one.kind)).join(", ") || texts.none;
+    report === null ? texts.measured.unknown : report.faults.map(faultInWords).join("; ") || texts.none;
   return [
     text(texts.verdict, ({ state }) => (state.headline ? t().verdict.headline(state.headline) : (state.problem ?? ""))),
     length(texts.duration, [a.duration, b.duration], seconds),

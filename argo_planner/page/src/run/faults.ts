@@ -181,6 +181,7 @@ export class FaultChoice extends PageElement {
             ${time(at, typeof at?.default === "number" ? `${at.default} s` : texts.drawnShort)} ${time(until, texts.never)}
           </div>`
         : html`<p class="reason">${texts.fromStart}</p>`}
+      ${description.needs_world ? html`<p class="reason">${texts.needsWorld}</p>` : nothing}
       ${this.place(fault, index, description, where)} ${others.map((field) => this.field(fault, index, description, field))}
       <button type="button" @click=${() => (openedFault.value = null)}>${texts.done}</button>
     </div>`;

@@ -12,6 +12,8 @@ from argo_env.files.resources import scenarios_folder
 
 INDEX = "examples.yaml"
 """file in the folder of scenarios that lists the examples"""
+MISSIONS = "missions"
+"""the kind of examples that are missions"""
 SITES = "sites"
 """the kind of examples that are sites"""
 
@@ -21,6 +23,10 @@ class Example(Model):
 
     about: str
     """line about the example"""
+    start_area: int | None = None
+    """starting area to import it with, if it names none"""
+    end_area: int | None = None
+    """area to end in, likewise"""
     files: tuple[str, ...]
     """paths from the folder of scenarios; the first one is the example itself"""
 
@@ -55,6 +61,12 @@ def example_files(name: str) -> dict[str, bytes]:
         return {f"my_{name}.yaml": text.encode()}
     copied = dict(_paths_and_contents(Path(first).parent, others))
     return {name + Path(first).suffix: (scenarios_folder() / first).read_bytes(), **copied}
+
+
+def list_missions_on_site(site: str) -> dict[str, Example]:
+    """Return the examples of missions on a shipped site by name; none on any other site."""
+    missions = list_examples()[MISSIONS].items()
+    return {name: one for name, one in missions if Path(one.files[0]).parts[0] == site}
 
 
 def _paths_and_contents(folder: Path, files: list[str]) -> Iterator[tuple[str, bytes]]:

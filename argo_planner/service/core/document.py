@@ -12,6 +12,7 @@ from argo_compiler.il import Mission
 from argo_planner.service.core.commands import Revision
 from argo_planner.service.core.plan import MissionPlan
 from argo_planner.service.core.plan_limits import require_displayable_name
+from argo_planner.service.core.refusals import FiledSince
 
 MOST_VERSIONS = 100
 """versions of one plan"""
@@ -45,6 +46,16 @@ class PlanRenamed(Model):
     at: datetime
 
 
+class PlanFiled(Model):
+    """Record that the plan was moved to another folder of the list of missions."""
+
+    kind: Literal["filed"] = "filed"
+    folder: str
+    """empty: it is in no folder"""
+    author: str
+    at: datetime
+
+
 class VersionKept(Model):
     """Record of a version that was stored."""
 
@@ -60,7 +71,8 @@ class VersionDropped(Model):
 
 
 PlanRecord = Annotated[
-    RevisionMade | PlanRenamed | VersionKept | VersionDropped, Field(discriminator="kind")
+    RevisionMade | PlanRenamed | PlanFiled | VersionKept | VersionDropped,
+    Field(discriminator="kind"),
 ]
 """a change of a plan; one line of its file"""
 
@@ -75,6 +87,8 @@ class PlanDocument:
     changed: datetime
     plan: MissionPlan
     versions: tuple[PlanVersion, ...] = ()
+    folder: str = ""
+    """folder of the list of missions that it is in; empty: none"""
 
     def apply(self, record: PlanRecord) -> "PlanDocument":
         """Return a copy of the document with a change applied, which a line of its file records.
@@ -89,6 +103,8 @@ class PlanDocument:
                 )
             case PlanRenamed(name=name, at=at):
                 return replace(self, name=name, changed=at)
+            case PlanFiled(folder=folder):
+                return replace(self, folder=folder)  # the mission itself does not change
             case VersionKept(version=version):
                 return replace(self, versions=(*self.versions, version))
             case VersionDropped(number=number):
@@ -111,6 +127,23 @@ class PlanDocument:
         """
         require_displayable_name(name, "the mission")
         return PlanRenamed(name=name, author=author, at=at)
+
+    def make_folder_record(
+        self, folder: str, seen: str | None, author: str, at: datetime
+    ) -> PlanFiled:
+        """Return the record of a move of the plan to a folder, without applying it.
+
+        `seen` is the folder that the author has seen it in; None: any.
+
+        Raises:
+            Invalid: The text can't be the name of a folder; an empty one is no folder.
+            FiledSince: Somebody has moved the plan, so that it is no longer where it was seen.
+        """
+        if folder:
+            require_displayable_name(folder, "the folder")
+        if seen is not None and seen != self.folder:
+            raise FiledSince(self.name, self.folder)
+        return PlanFiled(folder=folder, author=author, at=at)
 
     def make_version_record(self, name: str, author: str, at: datetime) -> VersionKept:
         """Return the record of a new version, which is the present mission, without applying it.

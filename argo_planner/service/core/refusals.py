@@ -53,6 +53,22 @@ class ChangedSince(Conflict):
         return type(self), (str(self), self.diagnostics), vars(self)
 
 
+class FiledSince(Conflict):
+    """Raised when a mission is no longer in the folder that the author has seen it in."""
+
+    code = "filed-since"
+
+    def __init__(self, name: str, folder: str) -> None:
+        self.name, self.folder = name, folder
+        there = f"in the folder '{folder}'" if folder else "in no folder"
+        super().__init__(
+            f"somebody has moved '{name}' in the meantime: it is {there} now; move it from there"
+        )
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return type(self), (self.name, self.folder), vars(self)
+
+
 class EditRefused(ArgoError):
     """Raised when an edit can't be made; `diagnostics` state the reasons."""
 

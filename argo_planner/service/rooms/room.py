@@ -33,6 +33,8 @@ from argo_planner.service.rooms.messages import (
     VersionSummary,
     WorldTold,
 )
+from argo_planner.service.storage.folder import summarize_plan
+from argo_planner.service.storage.outline import PlanSummary
 from argo_planner.service.storage.plan_file import PlanFile
 
 P = ParamSpec("P")
@@ -94,6 +96,17 @@ class PlanRoom:
         """The last analysis, which may be of an earlier revision; None if there is none yet."""
         return self._analysis
 
+    def summary(self) -> PlanSummary:
+        """Return the summary of the plan, with its times if its present state is analysed."""
+        summary = summarize_plan(self.document)
+        found = self._analysis
+        if found is None or found.revision != summary.revision or found.analysis is None:
+            return summary
+        if (bounds := found.analysis.duration) is None:
+            return summary
+        times = {"least_time": bounds.least.value, "most_time": bounds.most.value}
+        return summary.model_copy(update=times)
+
     def plan_state(self, author: str) -> PlanState:
         """Return the present state of the plan, with what this author can undo and redo."""
         lost = self._file.recovery
@@ -154,6 +167,18 @@ class PlanRoom:
             record = self.document.make_rename_record(name, author, self._clock())
             await self._write(self.document.apply(record), record)
             self._broadcast(NameTold(name=name))
+
+    @_shielded
+    async def move_to_folder(self, folder: str, seen: str | None, author: str) -> None:
+        """Move the plan to a folder of the list of missions.
+
+        Raises the errors of `PlanDocument.make_folder_record`, Unavailable if the file can't be
+        written.
+        """
+        async with self._turn:
+            self._require_open()
+            record = self.document.make_folder_record(folder, seen, author, self._clock())
+            await self._write(self.document.apply(record), record)
 
     @_shielded
     async def store_version(self, name: str, author: str, made_on: int | None) -> VersionSummary:

@@ -11,7 +11,7 @@ from argo_compiler.base.catalog import Catalog
 from argo_compiler.il import Mission
 from argo_planner.service.jobs.analysis import Analyst
 from argo_planner.service.rooms.room import PlanRoom
-from argo_planner.service.storage.folder import PlanFolder, summarize_plan
+from argo_planner.service.storage.folder import PlanFolder
 from argo_planner.service.storage.outline import PlanSummary
 
 T = TypeVar("T")
@@ -43,7 +43,7 @@ class PlanRooms:
     async def list_plans(self) -> list[PlanSummary]:
         """Return summaries of all plans, the last changed ones first."""
         async with self._listing:
-            open_plans = {id: summarize_plan(room.document) for id, room in self._rooms.items()}
+            open_plans = {id: room.summary() for id, room in self._rooms.items()}
             return await self._on_disk(self._folder.list_plans, open_plans)
 
     async def list_deleted(self) -> list[PlanSummary]:
@@ -51,10 +51,10 @@ class PlanRooms:
         async with self._listing:
             return await self._on_disk(self._folder.list_deleted)
 
-    async def create(self, name: str, mission: Mission) -> PlanRoom:
+    async def create(self, name: str, mission: Mission, folder: str = "") -> PlanRoom:
         """Create a plan and return its open room; raises the errors of `PlanFolder.create`."""
         async with self._turn:
-            file = await self._on_disk(self._folder.create, name, mission, self._clock())
+            file = await self._on_disk(self._folder.create, name, mission, self._clock(), folder)
             return self._add(
                 PlanRoom(file, self._catalog, self._analyst, self._clock, self._threads)
             )

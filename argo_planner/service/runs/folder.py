@@ -38,7 +38,7 @@ from argo_env.report.files import PAGE, RECORD
 from argo_env.run.journal import open_journal
 from argo_env.run.log import Entry
 from argo_planner.service.runs.requests import RequestState, RunOrder
-from argo_planner.service.runs.state import RunState, RunStatus
+from argo_planner.service.runs.state import RunState, RunStatus, RunSummary
 from argo_planner.service.runs.worker import journal_paths, load_entries
 from argo_planner.service.storage.stored_files import (
     read_stored,
@@ -135,6 +135,8 @@ class RunFolder:
 
     def __init__(self, path: Path) -> None:
         self._path = path
+        self._summaries: dict[str, tuple[tuple[int, int, int], RunSummary | None]] = {}
+        """by id: modification time in ns, size and inode of the file that was read, its summary"""
 
     def create_run(self, stored: StoredRun) -> Path:
         """Create the folder of a new run, store the run, and return the folder.
@@ -180,6 +182,37 @@ class RunFolder:
                         _log.warning("%s; the run is left out", error)
         # Not by id: several runs may have been started within one second.
         return sorted(runs, key=lambda run: run.state.begun, reverse=True)
+
+    def list_summaries(self) -> list[RunSummary]:
+        """Return summaries of the stored runs, the newest first, without damaged ones.
+
+        Only files that have changed since the last call are read.
+        """
+        ids: set[str] = set()
+        with suppress(FileNotFoundError):
+            ids = {name for name in os.listdir(self._path) if re.fullmatch(RUN_ID, name)}
+        for removed in self._summaries.keys() - ids:
+            del self._summaries[removed]
+        found = [summary for id in ids if (summary := self._summary(id)) is not None]
+        return sorted(found, key=lambda run: run.begun, reverse=True)
+
+    def _summary(self, id: str) -> RunSummary | None:
+        """Return the summary of a run, or None if it is damaged or was removed."""
+        try:
+            status = (self._path / id / _RUN_FILE).lstat()
+        except OSError:
+            return None
+        state = (status.st_mtime_ns, status.st_size, status.st_ino)
+        known = self._summaries.get(id)
+        if known is not None and known[0] == state:
+            return known[1]
+        summary = None
+        try:
+            summary = RunSummary.from_state(self.load_run(id).state)
+        except ArgoError as error:
+            _log.warning("%s; the run is left out", error)
+        self._summaries[id] = state, summary
+        return summary
 
     def load_run(self, id: str) -> StoredRun:
         """Return a stored run.

@@ -25,7 +25,15 @@ from argo_planner.service.runs.requests import (
     RunOrder,
     RunRequest,
 )
-from argo_planner.service.runs.state import EntryList, RequestTold, RunState, RunStatus, StateTold
+from argo_planner.service.runs.state import (
+    EntryList,
+    LatestRuns,
+    RequestTold,
+    RunState,
+    RunStatus,
+    RunSummary,
+    StateTold,
+)
 
 _log = logging.getLogger(__name__)
 _REPORT_ATTEMPTS = 50
@@ -247,6 +255,16 @@ class RunHost:
         runs = [run.state for run in await self._disk.run(self._folder.load_runs_newest_first)]
         state = self.state
         return runs if state is None else [state, *(run for run in runs if run.id != state.id)]
+
+    async def list_latest(self, most: int) -> LatestRuns:
+        """Return the `most` newest runs of all missions, and the last run of each mission."""
+        runs = await self._disk.run(self._folder.list_summaries)
+        if (state := self.state) is not None:  # newer than on disk
+            runs = [RunSummary.from_state(state), *(run for run in runs if run.id != state.id)]
+        last: dict[str, RunSummary] = {}
+        for run in runs:
+            last.setdefault(run.plan, run)
+        return LatestRuns(latest=tuple(runs[:most]), by_mission=tuple(last.values()))
 
     async def read_state(self, run: str) -> RunState:
         """Return the state of the current or an earlier run; raises NotFound if there is none."""

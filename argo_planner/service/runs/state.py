@@ -10,7 +10,7 @@ from argo_compiler.base.model import Model
 from argo_compiler.il import EventKind
 from argo_env.run.log import Entry
 from argo_env.run.record import Reading
-from argo_env.run.verdict_line import Headline
+from argo_env.run.verdict_line import Ending, Headline, Tone
 from argo_planner.service.runs.requests import RequestState
 
 
@@ -101,6 +101,53 @@ class RunState(Model):
     """simulated time in s since when a remote robot sends nothing; None: the robot is connected"""
     problem: str | None = None
     """why the run was interrupted, or ended without being carried out or stopped properly"""
+
+
+class RunSummary(Model):
+    """Summary of a run, for lists."""
+
+    id: str
+    plan: str
+    """id of the mission plan"""
+    name: str
+    """name of the mission when the run began"""
+    by: str
+    """author who started the run"""
+    begun: datetime
+    status: RunStatus
+    drive: str
+    t: float
+    """simulated time, in s"""
+    ending: Ending | None = None
+    """how it ended; None: it has not ended, or without a result"""
+    tone: Tone | None = None
+    """how good that is; None like `ending`"""
+
+    @staticmethod
+    def from_state(state: RunState) -> "RunSummary":
+        """Return the summary of a run in this state."""
+        headline = state.headline
+        return RunSummary(
+            id=state.id,
+            plan=state.plan,
+            name=state.name,
+            by=state.by,
+            begun=state.begun,
+            status=state.status,
+            drive=state.drive,
+            t=state.t,
+            ending=headline and headline.ending,
+            tone=headline and headline.tone,
+        )
+
+
+class LatestRuns(Model):
+    """The latest runs of all missions, and the last run of each mission."""
+
+    latest: tuple[RunSummary, ...]
+    """the newest first"""
+    by_mission: tuple[RunSummary, ...]
+    """one run for each mission that was ever run"""
 
 
 class EntryList(Model):

@@ -16,7 +16,11 @@ from argo_env.files.folders import make_private_folder
 from argo_planner.service.core.document import PlanDocument
 from argo_planner.service.core.plan import MissionPlan
 from argo_planner.service.core.plan_limits import require_displayable_name
-from argo_planner.service.storage.outline import PlanSummary, read_plan_summary
+from argo_planner.service.storage.outline import (
+    PlanSummary,
+    measured_checkpoints,
+    read_plan_summary,
+)
 from argo_planner.service.storage.plan_file import PlanFile, open_plan_file, write_plan_file
 
 MOST_PLANS = 2_000
@@ -89,17 +93,18 @@ class PlanFolder(Closing):
         """
         return self._summaries(self.path / _BIN, {})
 
-    def create(self, name: str, mission: Mission, at: datetime) -> PlanFile:
+    def create(self, name: str, mission: Mission, at: datetime, folder: str = "") -> PlanFile:
         """Create a plan with a new id, and return its open file.
 
-        Raises Invalid if the text can't be its name, Conflict if the folder has MOST_PLANS plans
-        (those in the bin don't count), Unavailable if the file can't be written.
+        `folder` is that of the list of missions. Raises Invalid if the text can't be its name,
+        Conflict if the folder on disk has MOST_PLANS plans (those in the bin don't count),
+        Unavailable if the file can't be written.
         """
         require_displayable_name(name, "the mission")
         if sum(1 for _ in _files(self.path)) >= MOST_PLANS:
             raise Conflict(f"there are {MOST_PLANS} missions: delete some of them first")
         id = self._free_id()
-        document = PlanDocument(id, name, at, at, MissionPlan(mission))
+        document = PlanDocument(id, name, at, at, MissionPlan(mission), folder=folder)
         return write_plan_file(self._path(id), document)
 
     def open(self, id: str) -> PlanFile:
@@ -195,6 +200,8 @@ def summarize_plan(document: PlanDocument) -> PlanSummary:
         changed=document.changed,
         revision=document.plan.revision,
         tasks=len(document.plan.mission.tasks),
+        checkpoints=measured_checkpoints(task.object_id for task in document.plan.mission.tasks),
+        folder=document.folder,
     )
 
 

@@ -1,6 +1,7 @@
 """Summaries of plan files for lists, read without a full check and without repairs."""
 
 import os
+from collections.abc import Iterable
 from datetime import datetime
 from pathlib import Path
 from typing import Any
@@ -24,6 +25,14 @@ class PlanSummary(Model):
     changed: datetime | None = None
     revision: int = 0
     tasks: int = 0
+    checkpoints: tuple[str, ...] = ()
+    """checkpoints that it measures, each once, sorted"""
+    folder: str = ""
+    """folder of the list that it is in; empty: none"""
+    least_time: float | None = None
+    """least duration over all executions, in s; None: not known without opening the mission"""
+    most_time: float | None = None
+    """greatest duration, likewise; None: not known, or it has no limit"""
     problem: str | None = None
     """why the plan can't be opened; None: it can be opened"""
 
@@ -55,22 +64,34 @@ def _summarize(path: Path, content: bytes) -> PlanSummary | None:
     if base is None:
         return None
     try:
-        tasks = {task["name"] for task in base["mission"]["tasks"]}
+        tasks = {task["name"]: task.get("object_id") for task in base["mission"]["tasks"]}
         fields = {key: base[key] for key in ("name", "created", "changed", "revision")}
+        fields["folder"] = base.get("folder", "")
         for line in lines[1:]:
             _apply_record(line.data, tasks, fields)
-        return PlanSummary(id=path.stem, **fields, tasks=len(tasks))
+        measured = measured_checkpoints(tasks.values())
+        return PlanSummary(id=path.stem, **fields, tasks=len(tasks), checkpoints=measured)
     except (KeyError, TypeError, ValueError):
         return None  # written by another program
 
 
-def _apply_record(record: dict[str, Any], tasks: set[str], fields: dict[str, Any]) -> None:
-    """Update the names of the tasks and the fields of a summary by a record."""
+def measured_checkpoints(ids: Iterable[str | None]) -> tuple[str, ...]:
+    """Return the checkpoints among the ids of tasks, sorted by number; None: it measures none."""
+    return tuple(sorted({one for one in ids if one is not None}, key=lambda one: (len(one), one)))
+
+
+def _apply_record(
+    record: dict[str, Any], tasks: dict[str, str | None], fields: dict[str, Any]
+) -> None:
+    """Update the checkpoints of the tasks, by name, and the fields of a summary by a record."""
     if record["kind"] == "revision":
         revision = record["revision"]
         fields |= {"revision": revision["number"], "changed": revision["at"]}
         change = revision["change"].get("tasks") or {}
-        tasks.difference_update(change.get("gone", ()))
-        tasks.update(task["name"] for task in change.get("put", ()))
+        for name in change.get("gone", ()):
+            tasks.pop(name, None)
+        tasks.update((task["name"], task.get("object_id")) for task in change.get("put", ()))
     elif record["kind"] == "renamed":
         fields |= {"name": record["name"], "changed": record["at"]}
+    elif record["kind"] == "filed":
+        fields |= {"folder": record["folder"]}

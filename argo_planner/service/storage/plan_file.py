@@ -65,6 +65,7 @@ class PlanBase(Model):
     revision: int
     mission: Mission
     versions: tuple[PlanVersion, ...] = ()
+    folder: str = ""
 
 
 @dataclass(frozen=True)
@@ -261,7 +262,9 @@ def _apply_line(document: PlanDocument, line: StoredLine) -> PlanDocument | None
 
 def _document(base: PlanBase) -> PlanDocument:
     plan = MissionPlan(base.mission, base.revision)
-    return PlanDocument(base.id, base.name, base.created, base.changed, plan, base.versions)
+    return PlanDocument(
+        base.id, base.name, base.created, base.changed, plan, base.versions, base.folder
+    )
 
 
 def _recover(path: Path, document: PlanDocument, lost: str) -> PlanFile:
@@ -299,6 +302,7 @@ def _write_plan(
         revision=start.revision,
         mission=start.mission,
         versions=document.versions,
+        folder=document.folder,
     )
     lines = complete_lines([record.model_dump(mode="json") for record in (base, *revisions)])
     content = b"".join(lines)

@@ -18,6 +18,7 @@ from argo_planner.service.web import (
     drafts,
     durations,
     evaluations,
+    examples,
     faults,
     jobs,
     live,
@@ -120,7 +121,7 @@ def make_app(open_service: OpenService) -> FastAPI:
     app.openapi = partial(_make_document, app)  # type: ignore[method-assign]
     parts = (
         page, missions, drafts, versions, commands, jobs, evaluations, world, runs, live,
-        durations, faults,
+        durations, examples, faults,
     )  # fmt: skip
     for part in (router, *(one.router for one in parts), runs.socket_router):
         app.include_router(part)

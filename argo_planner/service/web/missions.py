@@ -24,7 +24,6 @@ from argo_planner.service.core.document import PlanDocument
 from argo_planner.service.core.plan_limits import require_within_limits
 from argo_planner.service.drafts.messages import DraftState
 from argo_planner.service.rooms.messages import PlanState
-from argo_planner.service.storage.folder import summarize_plan
 from argo_planner.service.storage.import_notes import (
     delete_import_notes,
     load_import_notes,
@@ -52,6 +51,7 @@ from argo_planner.use_cases.importing import ImportedMission
 MISSION_LINKS = openapi_links(
     "read_mission",
     "rename_mission",
+    "file_mission",
     "duplicate_mission",
     "delete_mission",
     "export_mission",
@@ -90,6 +90,16 @@ class NewMission(Model):
 
     name: str = Field(max_length=1_000)
     mission: Mission | None = None
+
+
+class FolderGiven(Model):
+    """Folder of the list of missions that a mission is moved to."""
+
+    folder: str = Field(max_length=1_000)
+    """name of the folder; empty: no folder"""
+    seen: str | None = Field(default=None, max_length=1_000)
+    """folder in which the client has seen the mission; if it is in another one by now, the answer
+    is 409; null: move it from wherever it is"""
 
 
 class RevisionList(Model):
@@ -200,7 +210,17 @@ async def rename_mission(
     """Rename a mission."""
     room = await service.rooms.open(id)
     await room.rename(given.name, visitor.author)
-    return json_response(summarize_plan(room.document))
+    return json_response(room.summary())
+
+
+@router.put("/missions/{id}/folder", operation_id="file_mission", response_model=PlanSummary)
+async def file_mission(
+    service: Service, visitor: Planner, id: PlanId, given: JsonBody[FolderGiven]
+) -> Response:
+    """Move a mission to a folder of the list; a folder exists while a mission is in it."""
+    room = await service.rooms.open(id)
+    await room.move_to_folder(given.folder, given.seen, visitor.author)
+    return json_response(room.summary())
 
 
 @router.post(
@@ -213,9 +233,10 @@ async def rename_mission(
 async def duplicate_mission(
     service: Service, _: Planner, id: PlanId, given: JsonBody[NameGiven]
 ) -> Response:
-    """Create a copy of the present state of a mission, without its revisions and versions."""
-    room = await service.rooms.open(id)
-    return await create_plan(service, given.name, room.document.plan.mission)
+    """Create a copy of a mission in its folder, without its revisions and versions."""
+    document = (await service.rooms.open(id)).document
+    mission = document.plan.mission
+    return await create_plan(service, given.name, mission, folder=document.folder)
 
 
 @router.delete(
@@ -246,7 +267,7 @@ async def list_bin(service: Service, _: Viewer) -> Response:
 async def restore_mission(service: Service, _: Planner, id: PlanId) -> Response:
     """Move a mission out of the bin."""
     room = await service.rooms.restore(id)
-    return json_response(summarize_plan(room.document), location=f"/api/missions/{id}")
+    return json_response(room.summary(), location=f"/api/missions/{id}")
 
 
 @router.delete("/bin/{id}", operation_id="destroy_mission", status_code=204)
@@ -377,19 +398,21 @@ async def create_plan(
     mission: Mission,
     notes: tuple[Diagnostic, ...] = (),
     script: str | None = None,
+    folder: str = "",
 ) -> Response:
     """Create a mission, and return the response that has its summary.
 
-    `notes` are those of its import, `script` the text that it was imported from, if any.
+    `notes` are those of its import, `script` the text that it was imported from, if any; `folder`
+    is that of the list of missions.
     """
     require_within_limits(mission, mission_change(Mission(tasks=()), mission))
-    room = await service.rooms.create(name, mission)
+    room = await service.rooms.create(name, mission, folder)
     document = room.document
     if notes or script is not None:
         imported = (document.id, document.plan.revision, notes, script)
         await asyncio.to_thread(store_import_notes, service.folder, *imported)
     return json_response(
-        summarize_plan(document),
+        room.summary(),
         201,
         revision=document.plan.revision,
         location=f"/api/missions/{document.id}",

@@ -25,7 +25,7 @@ from argo_planner.service.runs.requests import (
     RunOrder,
     Speed,
 )
-from argo_planner.service.runs.state import EntryList, RunState
+from argo_planner.service.runs.state import EntryList, LatestRuns, RunState
 from argo_planner.service.storage.stored_files import read_stored_bytes
 from argo_planner.service.web.access import AccessRole
 from argo_planner.service.web.bodies import JsonBody
@@ -115,6 +115,14 @@ async def start_run(
 async def list_runs(service: Service, _: Viewer) -> Response:
     """Return the states of all runs: the current run first, then the others, the newest first."""
     return json_response(RunList(runs=tuple(await service.runs.list_runs())))
+
+
+@router.get("/runs/latest", operation_id="list_latest_runs", response_model=LatestRuns)
+async def list_latest_runs(
+    service: Service, _: Viewer, most: Annotated[int, Query(ge=1, le=100)] = 10
+) -> Response:
+    """Return summaries: of the latest runs of all missions, and of the last run of each."""
+    return json_response(await service.runs.list_latest(most))
 
 
 @router.get("/runs/{run}", operation_id="read_run", response_model=RunState)

@@ -14,6 +14,7 @@ from argo_planner.service.web.bodies import JsonBody
 from argo_planner.service.web.missions import open_valid_plan
 from argo_planner.service.web.problems import problem_responses
 from argo_planner.service.web.requests import (
+    JSON,
     MadeOn,
     PlanId,
     Planner,
@@ -25,6 +26,7 @@ from argo_planner.service.web.requests import (
     make_router,
 )
 from argo_planner.service.world.description import WorldDescription, describe_world, world_digest
+from argo_planner.service.world.floor_plans import DescribedFloorPlan, describe_floor_plan
 from argo_planner.service.world.meshes import Detail, checkpoint_mesh, floor_mesh, robot_mesh
 from argo_planner.service.world.obstacle_store import ObstacleList
 from argo_planner.service.world.obstacles import MOST_OBSTACLES, Obstacle, with_obstacles
@@ -81,6 +83,23 @@ async def read_floor_mesh(
     """Return the solids of a floor as GLB."""
     return await _respond_with_file(
         request, service, GLB, False, lambda: floor_mesh(service.site, floor, detail)
+    )
+
+
+@router.get(
+    "/world/floors/{floor}/plan",
+    operation_id="read_floor_plan",
+    response_model=DescribedFloorPlan,
+    responses={304: {"description": "the client has the present plan"}},
+)
+async def read_floor_plan(request: Request, service: Service, _: Viewer, floor: Floor) -> Response:
+    """Return the plan of a floor: outlines from above, by role, without the obstacles."""
+    return await _respond_with_file(
+        request,
+        service,
+        JSON,
+        False,
+        lambda: describe_floor_plan(service.site, floor).model_dump_json().encode(),
     )
 
 

@@ -113,3 +113,20 @@ def test_a_path_is_previewed(service: Served) -> None:
     assert (
         "goal.x" in problem(client.post("/api/world/way", json=with_text), 422, "invalid")["detail"]
     )
+
+
+def test_the_plan_of_a_floor_shows_its_deck_stairs_and_equipment(service: Served) -> None:
+    client = service.client
+    plans = {n: client.get(f"/api/world/floors/{n}/plan") for n in (1, 2, 3)}
+    roles = {n: [shape["role"] for shape in plan.json()["shapes"]] for n, plan in plans.items()}
+    assert {"ground", "stair", "vessel", "dock"} <= {*roles[1]}
+    assert "ground" not in roles[2]
+    assert plans[2].json()["bounds"] == plans[3].json()["bounds"]
+    x0, y0, x1, y1 = plans[2].json()["bounds"]
+    for shape in plans[2].json()["shapes"]:
+        for corners in shape["outlines"]:
+            assert all(x0 <= x <= x1 and y0 <= y <= y1 for x, y in corners)
+    known = {"if-none-match": plans[1].headers["etag"]}
+    again = client.get("/api/world/floors/1/plan", headers=known)
+    assert (again.status_code, again.content) == (304, b"")
+    problem(client.get("/api/world/floors/99/plan"), 404, "not-found")

@@ -6,6 +6,7 @@
 import re
 import sys
 import tempfile
+import time
 from pathlib import Path
 from typing import Any
 
@@ -44,6 +45,39 @@ def take_picture(person: Person, folder: Path, name: str) -> None:
         quantized = picture.convert("RGB").quantize(256, dither=Image.Dither.NONE)
     quantized.save(path, optimize=True)
     print(path)
+
+
+def picture_home(browsers: Browsers, service: Served, folder: Path) -> None:
+    """Picture the list of missions, with folders and runs; the service has no other missions."""
+    names = ("Morning round", "Valves", "Stairs", "Night round")
+    examples = ("protocol_3", "ground", "upstairs", "any_order")
+    for name, example in zip(names, examples, strict=True):
+        made = service.post(f"/api/examples/{example}/mission", name=name).json()
+        where = "Daily" if "round" in name else "Weekly"
+        service.client.put(f"/api/missions/{made['id']}/folder", json={"folder": where})
+        wait_for_bounds(service, made["id"])
+        if name != "Stairs":
+            run = service.run(made["id"], drive="route", speed=None).json()["id"]
+            while service.client.get(f"/api/runs/{run}").json()["status"] != "ended":
+                time.sleep(0.1)
+    ann = browsers.person(f"http://{service.address}/?token={ALL}", "Ann")
+    ann.open()
+    expect(ann.page.get_by_role("img")).to_be_visible()
+    ann.page.locator("argo-missions tbody tr", has_text="Morning round").hover()
+    expect(ann.page.locator("argo-site-picture circle.lit")).not_to_have_count(0)
+    take_picture(ann, folder, "home")
+    browsers.close_windows()
+    for one in service.client.get("/api/missions").json()["missions"]:
+        service.client.delete(f"/api/missions/{one['id']}")
+
+
+def wait_for_bounds(service: Served, id: str) -> None:
+    """Wait until the bounds of a mission's duration are known."""
+    while True:
+        missions = service.client.get("/api/missions").json()["missions"]
+        if next(one for one in missions if one["id"] == id)["least_time"] is not None:
+            return
+        time.sleep(0.1)
 
 
 def picture_planning(browsers: Browsers, service: Served, folder: Path) -> None:
@@ -146,6 +180,7 @@ def main(folder: Path) -> None:
     site = open_site("umad").prepare()
     with tempfile.TemporaryDirectory() as missions, served(Path(missions), site) as service:
         browsers = Browsers()
+        picture_home(browsers, service, folder)
         picture_planning(browsers, service, folder)
         picture_draft(browsers, service, folder)
         picture_evaluation(browsers, service, folder)

@@ -17,6 +17,8 @@ export type EventKind = Schemas["EventKind"];
 export type Action = Schemas["Action"];
 
 export type PlanSummary = Schemas["PlanSummary"];
+export type ExampleSummary = Schemas["ExampleSummary"];
+export type RunSummary = Schemas["RunSummary"];
 export type PlanState = Schemas["PlanState"];
 export type Findings = Schemas["Findings"];
 export type Diagnostic = Schemas["Diagnostic"];
@@ -39,6 +41,7 @@ export type ServiceSummary = Schemas["ServiceSummary"];
 
 export type World = Schemas["WorldDescription"];
 export type WorldFloor = Schemas["DescribedFloor"];
+export type FloorPlan = Schemas["DescribedFloorPlan"];
 export type WorldCheckpoint = Schemas["DescribedCheckpoint"];
 export type Obstacle = Schemas["Obstacle"];
 export type PreviewedMission = Schemas["PreviewedMission"];

@@ -15,7 +15,7 @@ import "../script/script";
 import "../strip/strip";
 import { allAnswered, waiting } from "../state/commands";
 import { closePlan, openPlan, planId, planName } from "../state/plan";
-import { followRobot } from "../state/run";
+import { followRobot, showRun } from "../state/run";
 import { beginSession, readService } from "../state/session";
 import { dismiss, showNotice, showError } from "../state/notices";
 import { listShown, panel, type Panel } from "../state/view";
@@ -190,6 +190,8 @@ export class ArgoApp extends PageElement {
 
   /** Address of the mission or draft that is being read; null: none is. */
   private readonly opening = signal<string | null>(null);
+  /** Id of the run to show in the mission that is being opened; null: none. */
+  private namedRun: string | null = null;
 
   constructor() {
     super();
@@ -223,6 +225,8 @@ export class ArgoApp extends PageElement {
   /** Open the mission or list that the address names. A later change of the address has precedence. */
   private async followAddress(): Promise<void> {
     const address = namedAddress();
+    this.takeRunOfAddress();
+    if (address === (this.opening.value ?? openedAddress())) this.showNamedRun();
     if (address === (this.opening.value ?? openedAddress())) return;
     if (planId.value !== null && !(await allSent())) {
       this.stayFor(address);
@@ -242,6 +246,7 @@ export class ArgoApp extends PageElement {
     try {
       if (draft !== null) await retryUntilReached(() => openDraft(draft, isMeant), isMeant, RETRY_MS);
       else if (mission !== null) await retryUntilReached(() => openPlan(mission, isMeant), isMeant, RETRY_MS);
+      this.showNamedRun();
       await this.updateComplete;
       // The element with the focus is gone. Keys are to work at once.
       setTimeout(() => {
@@ -254,6 +259,22 @@ export class ArgoApp extends PageElement {
     } finally {
       if (isMeant()) this.opening.value = null;
     }
+  }
+
+  /** Take the run out of an address such as `#/missions/…/runs/…`; it is shown once the mission is open. */
+  private takeRunOfAddress(): void {
+    const found = /^(#\/missions\/[0-9a-f]+)\/runs\/([0-9a-f-]+)$/.exec(location.hash);
+    if (found === null) return;
+    [, , this.namedRun = null] = found;
+    history.replaceState(null, "", found[1]);
+  }
+
+  /** Show the run that the address has named. */
+  private showNamedRun(): void {
+    if (this.namedRun === null || planId.value === null) return;
+    panel.value = "run";
+    showRun(this.namedRun).catch(showError);
+    this.namedRun = null;
   }
 
   /** Keep a mission open whose edits have not all been sent, until they are or the person leaves it. */
@@ -338,7 +359,9 @@ export class ArgoApp extends PageElement {
 
 /** Return the mission or draft that the address names, as `#/missions/…` or `#/drafts/…`; `#`: the list. */
 function namedAddress(): string {
-  return (missionIn(location.hash) ?? draftIn(location.hash)) !== null ? location.hash : "#";
+  const mission = missionIn(location.hash);
+  if (mission !== null) return `#/missions/${mission}`;
+  return draftIn(location.hash) !== null ? location.hash : "#";
 }
 
 /** Return the address of what is open. */
@@ -348,7 +371,7 @@ function openedAddress(): string {
 }
 
 function missionIn(address: string): string | null {
-  return /^#\/missions\/([0-9a-f]+)$/.exec(address)?.[1] ?? null;
+  return /^#\/missions\/([0-9a-f]+)(?:\/runs\/[0-9a-f-]+)?$/.exec(address)?.[1] ?? null;
 }
 
 function draftIn(address: string): string | null {

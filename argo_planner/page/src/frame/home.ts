@@ -1,19 +1,27 @@
-/** The list of missions: open, create, delete, restore. */
+/** The list of missions with a picture of the site: open, create, import, find and delete missions. */
 
 import { responseData, client, retryUntilReached } from "../api/client";
-import type { DraftSummary, PlanSummary } from "../api/types";
-import { freeName } from "../model/naming";
+import type { DraftSummary } from "../api/types";
+import { createMission, restoreMission } from "../home/actions";
+import "../home/examples";
+import "../home/missions";
+import "../home/runs";
+import "../home/site-picture";
+import { bin, drafts, missions, readHome, runTurn } from "../home/state";
+import { dependOn } from "../state/depend-on";
 import { showNotice, showError, withErrorNotice } from "../state/notices";
 import { wasDeleted } from "../state/plan";
 import { mayPlan, service } from "../state/session";
 import { t } from "../texts";
 import { iconButton } from "../ui/controls";
-import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
+import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { dateAndTime } from "../ui/figures";
 import { icon } from "../ui/icons";
 import "./import";
 
 const RETRY_MS = 1_000;
+/** Interval at which changes of other people appear. */
+const EVERY_MS = 10_000;
 
 @customElement("argo-home")
 export class PageHome extends PageElement {
@@ -22,15 +30,26 @@ export class PageHome extends PageElement {
       overflow: auto;
     }
     .page {
-      max-width: 860px;
-      margin: 24px auto;
-      padding: 0 16px;
+      display: grid;
+      grid-template-columns: minmax(0, 1fr) 330px;
+      grid-template-rows: auto 1fr;
+      gap: 0 36px;
+      max-width: 1320px;
+      margin: 22px auto;
+      padding: 0 20px;
     }
     .bar {
       display: flex;
       flex-wrap: wrap;
       gap: 8px;
       margin-bottom: 16px;
+    }
+    aside {
+      grid-row: 1 / 3;
+      grid-column: 2;
+      display: grid;
+      align-content: start;
+      gap: 24px;
     }
     table {
       width: 100%;
@@ -56,38 +75,59 @@ export class PageHome extends PageElement {
     a {
       font-weight: 600;
     }
-    summary {
+    summary,
+    argo-import,
+    argo-examples {
       margin-top: 20px;
+    }
+    @media (max-width: 1050px) {
+      .page {
+        grid-template-columns: minmax(0, 1fr);
+      }
+      .bar,
+      aside {
+        order: -1;
+      }
+      aside {
+        grid-row: auto;
+        grid-column: 1;
+        grid-template-columns: minmax(0, 5fr) minmax(0, 4fr);
+        margin-bottom: 22px;
+      }
     }
     @media (max-width: 560px) {
       .wide {
         display: none;
       }
+      aside {
+        grid-template-columns: minmax(0, 1fr);
+      }
     }
   `;
 
-  @state() private missions: readonly PlanSummary[] | null = null;
-  @state() private bin: readonly PlanSummary[] = [];
-  @state() private drafts: readonly DraftSummary[] = [];
   private reading = false;
+  private timer: ReturnType<typeof setInterval> | undefined;
 
   constructor() {
     super();
     this.listen("focus", () => void this.read());
+    this.watch(() => {
+      dependOn(runTurn);
+      void this.read();
+    });
   }
 
   override connectedCallback(): void {
     super.connectedCallback();
-    void this.read();
+    this.timer = setInterval(() => document.hidden || void this.read(), EVERY_MS);
+  }
+
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    clearInterval(this.timer);
   }
 
   private async read(): Promise<void> {
-    const both = () =>
-      Promise.all([
-        responseData(client.GET("/api/missions")),
-        responseData(client.GET("/api/bin")),
-        responseData(client.GET("/api/drafts")),
-      ]);
     const goesOn = () => {
       if (this.isConnected) showNotice("warn", t().frame.readAgain);
       return this.isConnected;
@@ -95,10 +135,7 @@ export class PageHome extends PageElement {
     if (this.reading) return;
     this.reading = true;
     try {
-      const [all, deleted, drafts] = await retryUntilReached(both, goesOn, RETRY_MS);
-      this.missions = all.missions;
-      this.bin = deleted.missions;
-      this.drafts = drafts.drafts;
+      await retryUntilReached(readHome, goesOn, RETRY_MS);
     } catch (error) {
       if (this.isConnected) showError(error);
     } finally {
@@ -118,23 +155,31 @@ export class PageHome extends PageElement {
 
   override render() {
     const texts = t().frame;
-    const may = mayPlan();
+    const none = missions.value?.length === 0;
     return html`<div class="page">
       <div class="bar">
         <h1 class="grow">${texts.missionsOf(service.value?.site ?? "…")}</h1>
-        <button class="main" ?disabled=${!may} @click=${this.create}>
+        <button class="main" ?disabled=${!mayPlan()} @click=${createMission}>
           ${icon("add")} ${texts.newMission}
         </button>
       </div>
-      <argo-import></argo-import>
-      ${this.begun()} ${this.table()} ${this.deleted()}
+      <div>
+        <argo-missions></argo-missions>
+        ${none ? html`<argo-examples></argo-examples>` : nothing} ${this.begun()}
+        <argo-import></argo-import>
+        ${none ? nothing : html`<argo-examples></argo-examples>`} ${this.deleted()}
+      </div>
+      <aside>
+        <argo-site-picture></argo-site-picture>
+        <argo-latest-runs></argo-latest-runs>
+      </aside>
     </div>`;
   }
 
   /** Render the drafts of scripts that people still have to decide on. */
   private begun() {
     const texts = t().draft;
-    if (this.drafts.length === 0) return nothing;
+    if (drafts.value.length === 0) return nothing;
     return html`<table id="drafts">
       <thead>
         <tr>
@@ -145,7 +190,7 @@ export class PageHome extends PageElement {
         </tr>
       </thead>
       <tbody>
-        ${this.drafts.map(
+        ${drafts.value.map(
           (one) =>
             html`<tr>
               <td><a href=${`#/drafts/${one.id}`}>${one.name}</a></td>
@@ -163,58 +208,19 @@ export class PageHome extends PageElement {
     </table>`;
   }
 
-  private table() {
-    const texts = t().frame;
-    const may = mayPlan();
-    if (this.missions === null) return html`<p class="dim">…</p>`;
-    if (this.missions.length === 0) return html`<p class="dim">${texts.noMissions}</p>`;
-    return html`<table>
-      <thead>
-        <tr>
-          <th>${texts.mission}</th>
-          <th>${texts.tasks}</th>
-          <th class="wide">${texts.changed}</th>
-          <th><span class="unseen">${texts.delete}</span></th>
-        </tr>
-      </thead>
-      <tbody>
-        ${this.missions.map(
-          (one) =>
-            html`<tr>
-              <td>
-                ${one.problem
-                  ? html`${one.name}<br /><span class="dim">${one.problem}</span>`
-                  : html`<a href=${`#/missions/${one.id}`}>${one.name}</a>`}
-              </td>
-              <td class="number">${one.problem ? "" : one.tasks}</td>
-              <td class="number wide">${one.changed ? dateAndTime(one.changed) : ""}</td>
-              <td>
-                ${iconButton("bin", texts.deleteOne(one.name), () => this.delete(one), {
-                  title: texts.delete,
-                  disabled: !may,
-                })}
-              </td>
-            </tr>`,
-        )}
-      </tbody>
-    </table>`;
-  }
-
   private deleted() {
     const texts = t().frame;
-    if (this.bin.length === 0) return nothing;
+    if (bin.value.length === 0) return nothing;
     return html`<details>
-      <summary>${texts.bin(this.bin.length)}</summary>
+      <summary>${texts.bin(bin.value.length)}</summary>
       <table>
         <tbody>
-          ${this.bin.map(
+          ${bin.value.map(
             (one) =>
               html`<tr>
                 <td>${one.name}</td>
                 <td>
-                  <button ?disabled=${!mayPlan()} @click=${() => this.restore(one)}>
-                    ${texts.restore}
-                  </button>
+                  <button ?disabled=${!mayPlan()} @click=${() => restoreMission(one)}>${texts.restore}</button>
                 </td>
               </tr>`,
           )}
@@ -223,37 +229,11 @@ export class PageHome extends PageElement {
     </details>`;
   }
 
-  private async create(): Promise<void> {
-    const taken = new Set((this.missions ?? []).map((one) => one.name));
-    const { untitled } = t().frame;
-    const name = freeName(untitled, taken, (number) => `${untitled} ${number}`);
-    await withErrorNotice(async () => {
-      const made = await responseData(client.POST("/api/missions", { body: { name } }));
-      location.hash = `#/missions/${made.id}`;
-    });
-  }
-
   private async deleteDraft(one: DraftSummary): Promise<void> {
     await withErrorNotice(async () => {
       await responseData(client.DELETE("/api/drafts/{id}", { params: { path: { id: one.id } } }));
       showNotice("info", t().draft.deleted(one.name));
     });
-    await this.read();
-  }
-
-  private async delete(one: PlanSummary): Promise<void> {
-    await withErrorNotice(async () => {
-      await responseData(
-        client.DELETE("/api/missions/{id}", { params: { path: { id: one.id } } }) as never,
-      );
-      const back = { label: t().frame.undo, act: () => void this.restore(one) };
-      showNotice("info", t().frame.deletedOne(one.name), { actions: [back] });
-    });
-    await this.read();
-  }
-
-  private async restore(one: PlanSummary): Promise<void> {
-    await withErrorNotice(() => responseData(client.POST("/api/bin/{id}/restore", { params: { path: { id: one.id } } })));
     await this.read();
   }
 }

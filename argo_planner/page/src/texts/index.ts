@@ -8,6 +8,7 @@ import { evaluate } from "./evaluate";
 import { faults } from "./faults";
 import { forms } from "./forms";
 import { frame } from "./frame";
+import { home } from "./home";
 import { keys } from "./keys";
 import { list } from "./list";
 import { route } from "./route";
@@ -21,7 +22,7 @@ import { words } from "./words";
 
 export type Language = "en" | "de";
 
-const AREAS = { compare, draft, evaluate, faults, forms, frame, keys, list, route, run, scene, script, strip, tasks, verdict, words };
+const AREAS = { compare, draft, evaluate, faults, forms, frame, home, keys, list, route, run, scene, script, strip, tasks, verdict, words };
 type Areas = typeof AREAS;
 export type Texts = { readonly [area in keyof Areas]: Areas[area]["en"] };
 

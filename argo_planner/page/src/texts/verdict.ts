@@ -276,7 +276,8 @@ function textsOf(language: Grammar) {
     const rest = plain ? "" : `. ${text.charAt(0).toUpperCase()}${text.slice(1)}`;
     return `${word}, ${counts}: ${summary(one.noticed)}${rest}`;
   };
-  return { verdict, noticed, headline };
+  const ending = (one: Headline["ending"]) => language.endings[one];
+  return { verdict, noticed, headline, ending };
 }
 
 /** Count equal items, in the order of their first occurrence. */

@@ -101,6 +101,16 @@ def picture_planning(browsers: Browsers, service: Served, folder: Path) -> None:
     browsers.close_windows()
 
 
+def picture_plans(browsers: Browsers, service: Served, folder: Path) -> None:
+    ann = open_mission(browsers, service, import_mission(service))
+    wait_for_analysis(ann)
+    ann.key("p")
+    expect(ann.page.locator("argo-floor-plans .room svg")).to_be_visible()
+    ann.page.wait_for_timeout(500)
+    take_picture(ann, folder, "plans")
+    browsers.close_windows()
+
+
 DRAFT = """Hi Lena,
 Start in starting area 1.
 I'd like to have valve R25.
@@ -182,6 +192,7 @@ def main(folder: Path) -> None:
         browsers = Browsers()
         picture_home(browsers, service, folder)
         picture_planning(browsers, service, folder)
+        picture_plans(browsers, service, folder)
         picture_draft(browsers, service, folder)
         picture_evaluation(browsers, service, folder)
         picture_run(browsers, service, folder)

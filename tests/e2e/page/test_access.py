@@ -60,6 +60,7 @@ def test_planning_is_accessible(browsers, address, plan, locale, theme) -> None:
     ann.open()
     expect(ann.page.locator("argo-home button.main")).to_be_enabled()
     assert ann.evaluate(THEME) == theme
+    expect(ann.page.get_by_role("img")).to_be_visible()
     require_accessible(ann, "the list of missions")
     ann.open(f"/missions/{plan}")
     ann.click(row(ann, "A1"))

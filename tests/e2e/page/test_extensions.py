@@ -49,7 +49,7 @@ def test_choices_have_the_names_of_extensions(
     page = ann.page
     expect(ann.button("Add")).to_be_enabled()
 
-    ann.click(ann.button("Mission: copy, export, versions"))
+    ann.click(ann.button("Mission: copy, print, export, versions"))
     expect(page.locator("argo-mission-menu")).to_contain_text("checklist")
     ann.key("Escape")
 

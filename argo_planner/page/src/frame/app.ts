@@ -7,6 +7,7 @@ import { delay, retryUntilReached } from "../api/client";
 import "../draft/draft";
 import { actsSaved, closeDraft, openDraft, openedDraft } from "../draft/state";
 import "../evaluate/evaluate";
+import { plansShown } from "../floorplan/state";
 import "../forms/properties";
 import "../list/list";
 import "../route/route";
@@ -20,7 +21,7 @@ import { beginSession, readService } from "../state/session";
 import { dismiss, showNotice, showError } from "../state/notices";
 import { listShown, panel, type Panel } from "../state/view";
 import { readWorld } from "../state/world";
-import { css, customElement, html, PageElement } from "../ui/element";
+import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
 import { t } from "../texts";
 import "./home";
@@ -53,6 +54,23 @@ export class ArgoApp extends PageElement {
       display: grid;
       grid-template-rows: auto 1fr;
       height: 100%;
+    }
+    main,
+    argo-floor-plans {
+      grid-row: 2;
+      grid-column: 1;
+    }
+    main.behind {
+      visibility: hidden;
+    }
+    @media print {
+      :host([plans]) {
+        display: block;
+        height: auto;
+      }
+      :host([plans]) :not(argo-floor-plans) {
+        display: none;
+      }
     }
     main {
       display: grid;
@@ -292,10 +310,13 @@ export class ArgoApp extends PageElement {
 
   override render() {
     const open = planId.value !== null;
+    const plans = open && plansShown.value !== "off";
+    this.toggleAttribute("plans", plans);
+    document.documentElement.toggleAttribute("data-plans", plans);
     return html`
       <argo-topbar></argo-topbar>
       ${open
-        ? this.planning()
+        ? html`${this.planning(plans)} ${plans ? html`<argo-floor-plans></argo-floor-plans>` : nothing}`
         : openedDraft.value !== null
           ? html`<argo-draft></argo-draft>`
           : this.opening.value !== null
@@ -306,12 +327,14 @@ export class ArgoApp extends PageElement {
     `;
   }
 
-  private planning() {
+  /** Render the list, the scene and the panels; they stay while the floor plans are shown in their place. */
+  private planning(behind: boolean) {
     const shown = panel.value;
     // What a person has typed or folded in one mission is not shown in the next one. The scene, which takes long to
     // load, stays and resets itself.
     const ofMission = (part: unknown) => keyed(planId.value, part);
-    return html`<main class=${listShown.value ? "list-shown" : ""}>
+    const looks = `${behind ? "behind" : ""} ${listShown.value ? "list-shown" : ""}`;
+    return html`<main class=${looks} ?inert=${behind}>
       ${ofMission(html`<argo-list @keydown=${this.onListKey}></argo-list>`)}
       <div class="work" @pointerdown=${() => (listShown.value = false)}>
       <argo-scene><p class="dim loading">${t().scene.loading}</p></argo-scene>

@@ -3,6 +3,7 @@
 import { signal } from "@preact/signals-core";
 
 import { openedDraft } from "../draft/state";
+import { openPlans, plansShown } from "../floorplan/state";
 import { PropertiesPanel } from "../forms/properties";
 import { redo, undo } from "../state/commands";
 import { dismissNewest, notices } from "../state/notices";
@@ -91,6 +92,7 @@ export class PageKeys extends PageElement {
     if (key === "?" && !command) keysShown.value = true;
     else if (command && planId.value !== null && mayPlan() && key === "z") void (event.shiftKey ? redo() : undo());
     else if (command && planId.value !== null && mayPlan() && key === "y") void redo();
+    else if (key === "p" && !command && !event.altKey && planId.value !== null) void openPlans("plans");
     else if (key === "f8" && planId.value !== null) openRun();
     else if (key === "f9" && !event.repeat && canTakeOver()) void takeOver();
     else if (key === "escape" && tool.value !== "select") {
@@ -151,6 +153,7 @@ async function takeOver(): Promise<void> {
 function openRun(): void {
   if (runIsOn.value) void showRun(null);
   panel.value = "run";
+  plansShown.value = "off";
   setTimeout(() => dispatchEvent(new CustomEvent("open-run")));
 }
 

@@ -1,6 +1,7 @@
 /** The menu of the mission: export, save a version, copy. */
 
 import { responseData, client } from "../api/client";
+import { openPlans } from "../floorplan/state";
 import { commandId, withPlan } from "../state/commands";
 import { showNotice } from "../state/notices";
 import { extensionsOf } from "../state/session";
@@ -25,6 +26,9 @@ export class MissionMenu extends PageElement {
     h2 {
       margin: 12px 0 4px;
     }
+    #menu > button {
+      margin: 0 4px 4px 0;
+    }
     .formats {
       display: flex;
       flex-wrap: wrap;
@@ -41,6 +45,8 @@ export class MissionMenu extends PageElement {
     return html`${iconButton("more", texts.missionMenu, null, { opens: "menu" })}
       <div id="menu" popover @focusout=${closeOnFocusLoss} @toggle=${returnFocus}>
         <button @click=${this.duplicate}>${icon("copy")} ${texts.duplicate}</button>
+        <button id="open-plans" title="p" @click=${() => this.showPlans("plans")}>${icon("plan")} ${t().floorplan.plans}</button>
+        <button id="open-sheet" @click=${() => this.showPlans("sheet")}>${icon("print")} ${t().floorplan.sheet}</button>
         <h2>${texts.exportAs}</h2>
         <p class="formats">
           ${[...FORMATS, ...extensionsOf("format")].map(
@@ -71,6 +77,11 @@ export class MissionMenu extends PageElement {
             </ul>`
           : nothing}
       </div>`;
+  }
+
+  private showPlans(shown: "plans" | "sheet"): void {
+    this.renderRoot.querySelector<HTMLElement>("#menu")?.hidePopover();
+    void openPlans(shown);
   }
 
   private async duplicate(): Promise<void> {

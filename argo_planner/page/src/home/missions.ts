@@ -6,7 +6,7 @@ import { mayPlan } from "../state/session";
 import { language, t } from "../texts";
 import { iconButton, valueOf } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, query, state } from "../ui/element";
-import { dateAndTime, leastSeconds, mostSeconds, seconds } from "../ui/figures";
+import { dateAndTime, seconds, timeBounds } from "../ui/figures";
 import { icon } from "../ui/icons";
 import { binMission, copyMission } from "./actions";
 import { endingMark, endingStyles } from "./ending";
@@ -41,7 +41,7 @@ export class MissionList extends PageElement {
         display: flex;
         flex-wrap: wrap;
         gap: 6px;
-        max-height: 108px;
+        max-height: 124px; /* shows that there are more rows */
         margin-top: 10px;
         overflow: auto;
       }
@@ -163,7 +163,7 @@ export class MissionList extends PageElement {
     const button = (name: string | null, label: string, count: number) =>
       html`<button aria-pressed=${chosen === name} title=${label} @click=${() => this.showFolder(name)}>
         ${name === null ? nothing : icon("folder", 15)} <span class="name">${label}</span>
-        <span class="dim">${count}</span>
+        <span class="dim">${count.toLocaleString(language.value)}</span>
       </button>`;
     return html`<div class="folders" role="group" aria-label=${texts.folders}>
       ${button(null, texts.allFolders, all)}
@@ -242,7 +242,5 @@ export class MissionList extends PageElement {
 
 /** Return the bounds of a mission's duration, if they are known. */
 function expectedTime({ least_time: least, most_time: most }: PlanSummary): string {
-  if (typeof least !== "number") return "–";
-  if (typeof most === "number" && most - least < 1) return seconds(least);
-  return t().strip.between(leastSeconds(least), typeof most === "number" ? mostSeconds(most) : t().strip.noBound);
+  return typeof least === "number" ? timeBounds(least, most ?? null) : "–";
 }

@@ -14,14 +14,17 @@ export interface LabelRequest {
 
 export type Side = "right" | "left" | "above" | "below";
 
-export interface PlacedLabel {
-  readonly key: string;
-  readonly side: Side;
-  /** px, the top left corner */
+/** px, from the top left corner */
+export interface LabelBox {
   readonly left: number;
   readonly top: number;
   readonly width: number;
   readonly height: number;
+}
+
+export interface PlacedLabel extends LabelBox {
+  readonly key: string;
+  readonly side: Side;
 }
 
 const SIDES: readonly Side[] = ["right", "left", "above", "below"];
@@ -33,15 +36,17 @@ const BETWEEN = 2;
 const CELL = 120;
 
 /** Place labels in a view of the given size (px). A label keeps its side of `before` if possible, so that it
- * doesn't jump while the camera moves. */
+ * doesn't jump while the camera moves. No label covers a box of `taken`. */
 export function declutter(
   wishes: readonly LabelRequest[],
   width: number,
   height: number,
   before: ReadonlyMap<string, Side> = new Map(),
   most = Infinity,
+  taken: readonly LabelBox[] = [],
 ): PlacedLabel[] {
-  const grid = new Map<string, PlacedLabel[]>();
+  const grid = new Map<string, LabelBox[]>();
+  for (const box of taken) occupy(grid, box);
   const placed: PlacedLabel[] = [];
   const had = (wish: LabelRequest) => (before.has(wish.key) ? 0.5 : 0);
   const order = [...wishes].sort(
@@ -55,13 +60,17 @@ export function declutter(
     const box = options.find((one) => isInside(one, width, height) && !isTaken(grid, one));
     if (box === undefined) continue;
     placed.push(box);
-    for (const cell of cellsOf(box)) {
-      const there = grid.get(cell);
-      if (there) there.push(box);
-      else grid.set(cell, [box]);
-    }
+    occupy(grid, box);
   }
   return placed;
+}
+
+function occupy(grid: Map<string, LabelBox[]>, box: LabelBox): void {
+  for (const cell of cellsOf(box)) {
+    const there = grid.get(cell);
+    if (there) there.push(box);
+    else grid.set(cell, [box]);
+  }
 }
 
 function boxAt({ key, x, y, width, height }: LabelRequest, side: Side): PlacedLabel {
@@ -74,13 +83,13 @@ function isInside(box: PlacedLabel, width: number, height: number): boolean {
   return box.left >= 0 && box.top >= 0 && box.left + box.width <= width && box.top + box.height <= height;
 }
 
-function isTaken(grid: ReadonlyMap<string, readonly PlacedLabel[]>, box: PlacedLabel): boolean {
+function isTaken(grid: ReadonlyMap<string, readonly LabelBox[]>, box: LabelBox): boolean {
   for (const cell of cellsOf(box))
     for (const other of grid.get(cell) ?? []) if (overlap(box, other)) return true;
   return false;
 }
 
-export function overlap(a: PlacedLabel, b: PlacedLabel): boolean {
+export function overlap(a: LabelBox, b: LabelBox): boolean {
   return (
     a.left < b.left + b.width + BETWEEN &&
     b.left < a.left + a.width + BETWEEN &&
@@ -89,7 +98,7 @@ export function overlap(a: PlacedLabel, b: PlacedLabel): boolean {
   );
 }
 
-function* cellsOf(box: PlacedLabel): Generator<string> {
+function* cellsOf(box: LabelBox): Generator<string> {
   const last = (from: number, size: number) => Math.floor((from + size + BETWEEN) / CELL);
   for (let i = Math.floor((box.left - BETWEEN) / CELL); i <= last(box.left, box.width); i++)
     for (let j = Math.floor((box.top - BETWEEN) / CELL); j <= last(box.top, box.height); j++)

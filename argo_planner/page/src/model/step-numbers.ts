@@ -68,6 +68,30 @@ export function countSteps(mission: Mission, unusual: ReadonlySet<string>): Step
   return numbers;
 }
 
+/** Return numbers in ascending order; `4.10` comes after `4.9`. */
+export function sortedNumbers(numbers: readonly string[]): string[] {
+  return [...numbers].sort((a, b) => a.localeCompare(b, "en", { numeric: true }));
+}
+
+/** Format ascending numbers as `1–3, 4.1, 4.2, 5`. */
+export function numbersText(numbers: readonly string[]): string {
+  const parts: [string, string][] = [];
+  for (const number of numbers) {
+    const last = parts.at(-1);
+    if (last && number === following(last[1])) last[1] = number;
+    else parts.push([number, number]);
+  }
+  return parts
+    .map(([from, to]) => (from === to ? from : `${from}${to === following(from) ? ", " : "–"}${to}`))
+    .join(", ");
+}
+
+/** Return the next number: 5 after 4, and 4.2 after 4.1. */
+function following(number: string): string {
+  const last = number.lastIndexOf(".") + 1;
+  return `${number.slice(0, last)}${Number(number.slice(last)) + 1}`;
+}
+
 function positions(mission: Mission): ReadonlyMap<string, number> {
   return new Map(mission.tasks.map((task, index) => [task.name, index]));
 }

@@ -1,5 +1,6 @@
 /** The panel of driving by hand, while a person controls the robot. */
 
+import { plansShown } from "../floorplan/state";
 import { isTyping } from "../frame/keys";
 import { parseCheckpoint } from "../model/checkpoint-choice";
 import { directionOf, type Direction } from "../model/hand-driving";
@@ -87,6 +88,10 @@ export class RunHand extends PageElement {
     this.listen("keyup", this.onKeyUp, true);
     this.listen("blur", this.halt);
     this.listen("visibilitychange", this.halt);
+    this.watch(() => {
+      // The floor plans are shown in place of the robot, and use the same keys.
+      if (plansShown.value !== "off" && this.withKeys) this.driveWithKeys(false);
+    });
     this.watch(() => {
       if (selectedTask.value !== null) this.task = selectedTask.value.name;
     });

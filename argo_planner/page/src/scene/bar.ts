@@ -15,7 +15,7 @@ import type { SceneView } from "./view";
 import type { Signal } from "@preact/signals-core";
 
 const TURN = 0.6;
-const SIGNS: Readonly<Record<Tool, Icon>> = { select: "arrow", navigate: "drive", obstacle: "obstacle" };
+const SIGNS: Readonly<Record<Tool, Icon>> = { select: "arrow", navigate: "drive", obstacle: "obstacle", fault: "warning" };
 
 @customElement("argo-scene-bar")
 export class SceneBar extends PageElement {

@@ -6,6 +6,7 @@ import { compare } from "./compare";
 import { draft } from "./draft";
 import { evaluate } from "./evaluate";
 import { faults } from "./faults";
+import { floorplan } from "./floorplan";
 import { forms } from "./forms";
 import { frame } from "./frame";
 import { home } from "./home";
@@ -22,7 +23,7 @@ import { words } from "./words";
 
 export type Language = "en" | "de";
 
-const AREAS = { compare, draft, evaluate, faults, forms, frame, home, keys, list, route, run, scene, script, strip, tasks, verdict, words };
+const AREAS = { compare, draft, evaluate, faults, floorplan, forms, frame, home, keys, list, route, run, scene, script, strip, tasks, verdict, words };
 type Areas = typeof AREAS;
 export type Texts = { readonly [area in keyof Areas]: Areas[area]["en"] };
 

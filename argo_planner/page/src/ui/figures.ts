@@ -41,6 +41,12 @@ export function mostSeconds(s: number): string {
   return t().words.boundSeconds(s, (value) => Math.ceil(value - NOISE * Math.max(1, value)));
 }
 
+/** Format bounds of a time (s), as one time if they differ by less than a second; `most` null: without a limit. */
+export function timeBounds(least: number, most: number | null): string {
+  if (most === null) return t().strip.between(leastSeconds(least), t().strip.noBound);
+  return most - least < 1 ? seconds(most) : t().strip.between(leastSeconds(least), mostSeconds(most));
+}
+
 /** relative error of sums of floating-point numbers, which is not rounded up or down */
 const NOISE = 1e-9;
 

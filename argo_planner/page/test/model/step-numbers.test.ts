@@ -1,7 +1,7 @@
 import { expect, test } from "vitest";
 
 import type { MissionReading } from "../../src/api/types";
-import { countSteps, readSteps } from "../../src/model/step-numbers";
+import { countSteps, numbersText, readSteps, sortedNumbers } from "../../src/model/step-numbers";
 import { group, mission } from "./missions";
 
 type Entries = MissionReading["entries"];
@@ -53,4 +53,18 @@ test("the numbers are those of the script", () => {
 
 test("a mission without tasks has no steps", () => {
   expect(countSteps(mission(""), new Set()).size).toBe(0);
+});
+
+test.each([
+  [[], ""],
+  [["4"], "4"],
+  [["1", "2"], "1, 2"],
+  [["1", "2", "3", "5", "8", "9"], "1–3, 5, 8, 9"],
+  [["3", "4.1", "4.2", "4.3", "5"], "3, 4.1–4.3, 5"],
+])("numbers %j are written as %j", (numbers, text) => {
+  expect(numbersText(numbers)).toBe(text);
+});
+
+test("parts of a step are sorted by their numbers", () => {
+  expect(sortedNumbers(["10", "4.10", "4.9", "5"])).toEqual(["4.9", "4.10", "5", "10"]);
 });

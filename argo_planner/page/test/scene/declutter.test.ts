@@ -46,4 +46,9 @@ describe("labels", () => {
     const placed = declutter([wish("a", 300, 300)], 900, 700, new Map([["a", "below"]]));
     expect(placed[0]?.side).toBe("below");
   });
+
+  it("cover no box that is taken", () => {
+    const taken = [{ left: 105, top: 90, width: 100, height: 20 }];
+    expect(declutter([wish("a", 100, 100)], 900, 700, new Map(), Infinity, taken)[0]?.side).toBe("left");
+  });
 });

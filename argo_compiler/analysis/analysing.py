@@ -34,6 +34,7 @@ from argo_compiler.analysis.verification_claims import unproved
 from argo_compiler.analysis.witness_construction import make_witnesses
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.garbage_collector import collector_held
+from argo_compiler.base.message import Message
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.hfsm.lowering import lower
 from argo_compiler.il import Mission
@@ -53,10 +54,10 @@ _WITNESSED = frozenset(
 """codes of the diagnostics on what never or always happens, which a witness must prove"""
 
 _SUBJECTS = {
-    "analysis.too-long": "whether the mission takes too long on all paths",
-    "analysis.battery-exceeded": "whether the battery never suffices",
-    "analysis.window-late": "whether some windows are always missed",
-    "analysis.window-missed": "whether some windows are always missed",
+    "analysis.too-long": Message("whether the mission takes too long on all paths"),
+    "analysis.battery-exceeded": Message("whether the battery never suffices"),
+    "analysis.window-late": Message("whether some windows are always missed"),
+    "analysis.window-missed": Message("whether some windows are always missed"),
 }
 """for each code of a claim on a lower bound, what `unjudged` says if no witness proves the claim"""
 
@@ -95,8 +96,10 @@ def _analyse(mission: Mission, catalog: Catalog | None, travel: Travel | None) -
     )
     unjudged = []
     if len(fields.shift) < len(fields.scales):
-        names = ", ".join(sorted(fields.scales.keys() - fields.shift.keys())[:10])
-        unjudged.append(f"the values of some checkpoints along the paths ({names})")
+        names = tuple(sorted(fields.scales.keys() - fields.shift.keys())[:10])
+        unjudged.append(
+            Message("the values of some checkpoints along the paths ({names})", names=names)
+        )
     loops = tuple(find_loops_kept_by_readings(study))
     diagnostics = [
         *diagnose_unreachable_tasks(study),
@@ -108,12 +111,12 @@ def _analyse(mission: Mission, catalog: Catalog | None, travel: Travel | None) -
         None if study.bounds_if_computable is None else worst_case_duration_if_computable(study)
     )
     if study.bounds_if_computable is None:
-        unjudged.append("loops and durations")
+        unjudged.append(Message("loops and durations"))
     elif travel is not None:
         diagnostics += diagnose_limits_and_missing_paths(study, travel, longest)
         stale = stale_value_diagnostics_if_computable(study)
         if stale is None:
-            unjudged.append("ages of values")
+            unjudged.append(Message("ages of values"))
         else:
             diagnostics += stale
     bounds = study.bounds_if_computable

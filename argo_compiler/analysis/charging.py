@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from argo_compiler.analysis.docking import is_docked_after
 from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.travel import Travel
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Pose
 from argo_compiler.base.quantity_text import duration_text, rounded_down, rounded_up
 from argo_compiler.diagnostics import Diagnostic
@@ -42,27 +43,46 @@ def diagnose_charging(study: Study, travel: Travel) -> Iterator[Diagnostic]:
             reached = min(goal, level + limit * share_per_second)
             yield study.diagnostic(
                 "charge-cut-short",
-                f"the reaction to {reaction.event} charges for {duration_text(limit)} at most, and "
-                "then continues the mission with a charge of at most "
-                f"{rounded_up(100 * reached)}%, not {goal:.0%}: it takes at least "
-                f"{duration_text(needed, rounded_down)} to charge from {level:.0%}",
+                Message(
+                    "the reaction to {event} charges for {duration} at most, and then "
+                    "continues the mission with a charge of at most {value}%, not {goal:.0%}: "
+                    "it takes at least {duration_2} to charge from {level:.0%}",
+                    event=reaction.event,
+                    duration=duration_text(limit),
+                    value=rounded_up(100 * reached),
+                    goal=goal,
+                    duration_2=duration_text(needed, rounded_down),
+                    level=level,
+                ),
                 "allow more time, or charge to a level that is reached in this time",
                 subject=f"{subject}.hold_limit",
             )
         elif study.mission.max_duration is not None and needed > study.mission.max_duration:
             least = duration_text(needed, rounded_down)
             if to_level < needed:
-                charging = f"for at least {least}"
-                less = "recharge for a shorter time"
+                charging = Message("for at least {least}", least=least)
+                less = Message("recharge for a shorter time")
             else:
-                charging = f"from {level:.0%} to {goal:.0%}, which takes at least {least}"
+                charging = Message(
+                    "from {level:.0%} to {goal:.0%}, which takes at least {least}",
+                    level=level,
+                    goal=goal,
+                    least=least,
+                )
                 rate = 60.0 * 100.0 * share_per_second
-                less = f"recharge to a lower level (it charges {rate:.1f} % in a minute)"
+                less = Message(
+                    "recharge to a lower level (it charges {rate:.1f} % in a minute)", rate=rate
+                )
             yield study.diagnostic(
                 "charging-too-long",
-                f"the reaction to {reaction.event} charges the battery {charging}, longer than the "
-                f"mission's maximum duration of {duration_text(study.mission.max_duration)}",
-                f"{less}, or allow more time",
+                Message(
+                    "the reaction to {event} charges the battery {charging}, longer than the "
+                    "mission's maximum duration of {duration}",
+                    event=reaction.event,
+                    charging=charging,
+                    duration=duration_text(study.mission.max_duration),
+                ),
+                Message("{less}, or allow more time", less=less),
                 subject=subject,
             )
 
@@ -76,8 +96,11 @@ def diagnose_charge_and_place(study: Study) -> Iterator[Diagnostic]:
         if _waits_for_charge_elsewhere(reaction, docks):
             yield study.diagnostic(
                 "charge-elsewhere",
-                f"the reaction to {reaction.event} waits until the battery is charged, but not in "
-                "a docking station: nothing charges it there",
+                Message(
+                    "the reaction to {event} waits until the battery is charged, but not in a "
+                    "docking station: nothing charges it there",
+                    event=reaction.event,
+                ),
                 "return to the docking station, such as by `return, recharge and resume`",
                 subject=subject_of("reactions", reaction.event, ".until"),
             )
@@ -90,9 +113,13 @@ def diagnose_charge_and_place(study: Study) -> Iterator[Diagnostic]:
         if not any(is_docked_after(study, number, dock) for dock in docks):
             yield study.diagnostic(
                 "charge-elsewhere",
-                f"task '{study.name(number)}' waits until the battery is charged, but the robot "
-                "may be elsewhere than in a docking station, where nothing charges it "
-                f"(path: {study.shortest_path_text(number)})",
+                Message(
+                    "task '{task}' waits until the battery is charged, but the robot may be "
+                    "elsewhere than in a docking station, where nothing charges it (path: "
+                    "{shortest_path})",
+                    task=study.name(number),
+                    shortest_path=study.shortest_path_text(number),
+                ),
                 "let it return to the docking station before",
                 number,
             )
@@ -117,8 +144,11 @@ def _left_low(study: Study, reaction: Reaction) -> Iterator[Diagnostic]:
     if goes_on and reaction.until is None:
         yield study.diagnostic(
             "not-charged",
-            f"the reaction to {reaction.event} resumes the mission without charging the battery: "
-            "the robot reports a low battery again when 1 % less is left, and so on",
+            Message(
+                "the reaction to {event} resumes the mission without charging the battery: "
+                "the robot reports a low battery again when 1 % less is left, and so on",
+                event=reaction.event,
+            ),
             "wait until the battery is charged, such as by `return, recharge and resume`",
             subject=subject,
         )
@@ -126,9 +156,14 @@ def _left_low(study: Study, reaction: Reaction) -> Iterator[Diagnostic]:
     if level is not None and reaction.battery_below is None and level <= LOW:
         yield study.diagnostic(
             "charge-too-low",
-            f"the reaction to {reaction.event} charges the battery to {level:.0%}, and the robot "
-            f"calls a battery low below {LOW:.0%}: it leaves the dock with a battery that is "
-            "still low",
+            Message(
+                "the reaction to {event} charges the battery to {level:.0%}, and the robot "
+                "calls a battery low below {low:.0%}: it leaves the dock with a battery "
+                "that is still low",
+                event=reaction.event,
+                level=level,
+                low=LOW,
+            ),
             "charge to a higher level, or give a lower level for the reaction (`battery_below`)",
             subject=f"{subject}.charge_to",
         )

@@ -5,12 +5,13 @@ from collections.abc import Collection, Iterable, Iterator
 from argo_compiler.analysis.docking import is_docked_after
 from argo_compiler.analysis.non_terminating_loops import NonTerminatingLoop
 from argo_compiler.analysis.study import Study
-from argo_compiler.base.listing import brief_quoted_list
+from argo_compiler.base.listing import brief_quoted_list, listed
+from argo_compiler.base.message import Listing, Message
 from argo_compiler.base.quantity_text import limit_text
 from argo_compiler.diagnostics import Diagnostic, Severity
 
 _MOST_PATHS = 200  # diagnostics that show a path
-_REMEDY = (
+_REMEDY = Message(
     "lead a transition out of it, or make it a group with max_repeat_count or max_repeat_duration"
 )
 
@@ -44,33 +45,39 @@ def _endless_loops(study: Study) -> Iterator[Diagnostic]:
         trap = tuple(filter(study.flow.is_leaf, nodes))
         so = ""
         if never_ends and len(kept) == 1:
-            so = ", and so the mission"
+            so = Message(", and so the mission")
             if after_failure and not study.leads_out_if_failing(nodes):
-                so += " unless an action fails before"
+                so += Message(" unless an action fails before")
         yield study.diagnostic(
             "endless-loop",
-            f"{study.tasks_text(trap)} {_follow(trap)} for ever: nothing but "
-            f"{_what_ends(study, nodes)} ends the loop{so} "
-            f"(path: {study.shortest_path_text(trap[0])})",
+            Message(
+                "{tasks} {follow} for ever: nothing but {what_ends} ends the loop{so} "
+                "(path: {shortest_path})",
+                tasks=study.tasks_text(trap),
+                follow=_follow(trap),
+                what_ends=_what_ends(study, nodes),
+                so=so,
+                shortest_path=study.shortest_path_text(trap[0]),
+            ),
             _REMEDY,
             trap[0],
             severity=severity,
         )
     if never_ends and len(kept) != 1 and not study.ends_by_time_up:
         why = (
-            "each execution path runs into a loop that no transition leaves"
+            Message("each execution path runs into a loop that no transition leaves")
             if kept
-            else "no execution path leads to its end"
+            else Message("no execution path leads to its end")
         )
         unless = [
-            *(["an action fails"] if after_failure else []),
-            *(["a reaction ends it"] if study.may_end_by_reaction else []),
+            *([Message("an action fails")] if after_failure else []),
+            *([Message("a reaction ends it")] if study.may_end_by_reaction else []),
         ]
         if unless:
-            why += f", unless {' or '.join(unless)}"
+            why += Message(", unless {unless:or}", unless=Listing(unless))
         yield study.diagnostic(
             "no-end",
-            f"the mission never ends: {why}",
+            Message("the mission never ends: {why}", why=why),
             "let a task on each execution path have no unconditional transition, or leave the loop",
             subject="tasks",
             severity=severity,
@@ -82,12 +89,12 @@ def _what_ends(study: Study, nodes: Collection[int]) -> str:
     if study.ends_by_time_up:
         assert study.mission.max_duration is not None
         limit = limit_text(study.mission.max_duration)
-        by_reaction = [f"the reaction to time_up, after {limit},"]
+        by_reaction = [Message("the reaction to time_up, after {limit},", limit=limit)]
     else:
-        by_reaction = ["a reaction"] if study.may_end_by_reaction else []
-    by_failure = ["a failure"] if study.leads_out_if_failing(nodes) else []
-    *others, last = [*by_failure, *by_reaction, "a person"]
-    return f"{', '.join(others)} or {last}" if others else last
+        by_reaction = [Message("a reaction")] if study.may_end_by_reaction else []
+    by_failure = [Message("a failure")] if study.leads_out_if_failing(nodes) else []
+    *others, last = [*by_failure, *by_reaction, Message("a person")]
+    return Message("{others} or {last}", others=Listing(others), last=last) if others else last
 
 
 def _non_terminating_loops(
@@ -100,22 +107,33 @@ def _non_terminating_loops(
         name = study.object_text(loop.object_id)
         values = loop.readings & (loop.scale.missing_bit - 1)
         shown = [
-            *([f"shows {loop.scale.regions_text(values)}"] if values else []),
-            *(["has no value"] if loop.readings & loop.scale.without_value_bits else []),
+            *(
+                [Message("shows {regions}", regions=loop.scale.regions_text(values))]
+                if values
+                else []
+            ),
+            *([Message("has no value")] if loop.readings & loop.scale.without_value_bits else []),
         ]
         yield study.diagnostic(
             "kept-loop",
-            f"{study.tasks_text(leaves)} {_follow(leaves)} for ever if {name} "
-            f"{' or '.join(shown)} when '{study.name(loop.leaf)}' is reached: "
-            "nothing in the loop measures it, so nothing but a value that others report, "
-            f"{_what_ends(study, loop.nodes)} ends the loop",
-            f"measure {name} in the loop, or make it a group with a limit",
+            Message(
+                "{tasks} {follow} for ever if {name} {shown:or} when '{task}' is reached: "
+                "nothing in the loop measures it, so nothing but a value that others "
+                "report, {what_ends} ends the loop",
+                tasks=study.tasks_text(leaves),
+                follow=_follow(leaves),
+                name=name,
+                shown=Listing(shown),
+                task=study.name(loop.leaf),
+                what_ends=_what_ends(study, loop.nodes),
+            ),
+            Message("measure {name} in the loop, or make it a group with a limit", name=name),
             loop.leaf,
         )
 
 
 def _follow(leaves: tuple[int, ...]) -> str:
-    return "follows itself" if len(leaves) == 1 else "follow each other"
+    return Message("follows itself") if len(leaves) == 1 else Message("follow each other")
 
 
 def _unbounded_loops(study: Study, trapped: set[int]) -> Iterator[Diagnostic]:
@@ -138,26 +156,42 @@ def _unbounded_loops(study: Study, trapped: set[int]) -> Iterator[Diagnostic]:
         parts = [
             *([study.tasks_text(loop.leaves)] if loop.leaves else []),
             *(
-                [f"group{'s' if len(groups) > 1 else ''} {brief_quoted_list(groups)}"]
+                [
+                    Message("groups {groups}", groups=brief_quoted_list(groups))
+                    if len(groups) > 1
+                    else Message("group '{group}'", group=groups[0])
+                ]
                 if groups
                 else []
             ),
         ]
         if not study.repeats_when_late(nodes):
-            yield _loop_until_window(study, " and ".join(parts), nodes, first)
+            yield _loop_until_window(study, listed(parts), nodes, first)
             continue
         single = len(loop.leaves) + len(loop.groups) == 1
-        they = "it" if single else "they"
         remark = (
-            f"{they} can be left, but no count and no duration limits the repetitions"
+            (
+                Message("it can be left, but no count and no duration limits the repetitions")
+                if single
+                else Message(
+                    "they can be left, but no count and no duration limits the repetitions"
+                )
+            )
             if loop.has_exit
-            else f"the transitions out of {'it' if single else 'them'} come too late for a "
-            "hard stop"
+            else (
+                Message("the transitions out of it come too late for a hard stop")
+                if single
+                else Message("the transitions out of them come too late for a hard stop")
+            )
         )
         yield study.diagnostic(
             "unbounded-loop",
-            f"{' and '.join(parts)} may be repeated without limit: "
-            f"{remark}, so the duration of the mission has no upper bound",
+            Message(
+                "{parts:and} may be repeated without limit: {remark}, so the duration of "
+                "the mission has no upper bound",
+                parts=Listing(parts),
+                remark=remark,
+            ),
             "make it a group with max_repeat_count or max_repeat_duration that always ends",
             first,
         )
@@ -168,13 +202,20 @@ def _loop_until_window(study: Study, what: str, nodes: Collection[int], first: i
     leaves = study.flow.leaves
     closing = sorted(n for n in nodes if study.flow.is_leaf(n) and leaves[n].deadline is not None)
     last = max(leaves[n].deadline or 0.0 for n in closing)
-    windows = "window" if len(closing) == 1 else "windows"
-    close = "closes" if len(closing) == 1 else "have closed"
+    closed = (
+        Message("the window of {tasks} closes", tasks=study.tasks_text(closing))
+        if len(closing) == 1
+        else Message("the windows of {tasks} have closed", tasks=study.tasks_text(closing))
+    )
     return study.diagnostic(
         "loop-until-window",
-        f"{what} may be repeated until the {windows} of {study.tasks_text(closing)} {close}, "
-        f"{limit_text(last)} after the mission's start: no count and no other duration limits "
-        "the repetitions",
+        Message(
+            "{what} may be repeated until {closed}, {limit} after the mission's start: no count "
+            "and no other duration limits the repetitions",
+            what=what,
+            closed=closed,
+            limit=limit_text(last),
+        ),
         "make it a group with max_repeat_count or max_repeat_duration that always ends",
         first,
     )
@@ -200,12 +241,15 @@ def _ends_elsewhere(study: Study) -> Iterator[Diagnostic]:
         if any(
             _leads_to_end(study, target) for target in study.nominal.targets_when_missed(flow, leaf)
         ):
-            where = f"wherever the robot is when the window of task '{study.name(leaf)}' has closed"
+            where = Message(
+                "wherever the robot is when the window of task '{task}' has closed",
+                task=study.name(leaf),
+            )
             last_elsewhere[leaf] = where
         elif not is_docked_after(study, leaf, dock) and any(
             _leads_to_end(study, target) for target in study.nominal.targets(flow, leaf)
         ):
-            last_elsewhere[leaf] = f"after task '{study.name(leaf)}'"
+            last_elsewhere[leaf] = Message("after task '{task}'", task=study.name(leaf))
     for number, group in enumerate(flow.groups):
         if (
             group.hard
@@ -213,14 +257,30 @@ def _ends_elsewhere(study: Study) -> Iterator[Diagnostic]:
             and _leads_to_end(study, group.successor)
         ):
             last_elsewhere.setdefault(
-                group.last, f"wherever the robot is when the time of group '{group.name}' is up"
+                group.last,
+                Message(
+                    "wherever the robot is when the time of group '{group}' is up", group=group.name
+                ),
             )
-    for k, (leaf, where) in enumerate(sorted(last_elsewhere.items())):
-        path = f" (path: {study.shortest_path_text(leaf)})" if k < _MOST_PATHS else ""
+    for k, (leaf, place) in enumerate(sorted(last_elsewhere.items())):
+        shown: str = (
+            Message(" (path: {shortest_path})", shortest_path=study.shortest_path_text(leaf))
+            if k < _MOST_PATHS
+            else ""
+        )
         yield study.diagnostic(
             "end-elsewhere",
-            f"the mission must end docked in starting area {area}, but it can end {where}{path}",
-            f"let each execution path end with a WAYPOINT task at the dock of starting area {area}",
+            Message(
+                "the mission must end docked in starting area {area}, but it can end {where}{path}",
+                area=area,
+                where=place,
+                path=shown,
+            ),
+            Message(
+                "let each execution path end with a WAYPOINT task at the dock of starting "
+                "area {area}",
+                area=area,
+            ),
             leaf,
         )
 

@@ -12,6 +12,7 @@ from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.travel import NoPath, Travel
 from argo_compiler.analysis.windows import diagnose_task_time_limits, diagnose_windows
 from argo_compiler.base.listing import brief_quoted_list
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Pose
 from argo_compiler.base.quantity_text import (
     energy_text,
@@ -75,7 +76,11 @@ def _blocked_tasks(study: Study) -> Iterator[Diagnostic]:
     for leaf, reason in sorted(study.costs.blocked.items()):
         yield study.diagnostic(
             "unreachable-place",
-            f"the robot can't execute task '{study.name(leaf)}': {reason}",
+            Message(
+                "the robot can't execute task '{task}': {reason}",
+                task=study.name(leaf),
+                reason=reason,
+            ),
             "choose another pose or checkpoint, or remove the task",
             leaf,
         )
@@ -89,15 +94,20 @@ def _blocked_retreats(study: Study, travel: Travel) -> Iterator[Diagnostic]:
     """
     mission = study.mission
     retreats: list[tuple[Pose, str, str]] = []
+    aim: str
     back = any(r.response is Response.RETURN and r.pose is None for r in mission.reactions) or any(
         t.on_failure is OnFailure.RETURN for t in mission.tasks
     )
     if back and mission.dock is not None:
-        retreats.append((mission.dock, "dock", "return to the dock"))
+        retreats.append((mission.dock, "dock", Message("return to the dock")))
     for reaction in mission.reactions:
         if reaction.response.drives and reaction.pose is not None:
-            where = "dock" if reaction.response is Response.RETURN else "safe area"
-            aim = f"go to the {where} of the reaction to {reaction.event}"
+            where = (
+                Message("dock") if reaction.response is Response.RETURN else Message("safe area")
+            )
+            aim = Message(
+                "go to the {where} of the reaction to {event}", where=where, event=reaction.event
+            )
             retreats.append((reaction.pose, subject_of("reactions", reaction.event, ".pose"), aim))
     start = travel.start_pose(mission)
     for pose, subject, aim in retreats:
@@ -106,7 +116,7 @@ def _blocked_retreats(study: Study, travel: Travel) -> Iterator[Diagnostic]:
         if isinstance(leg, NoPath):
             yield study.diagnostic(
                 "unreachable-place",
-                f"the robot can't {aim}: {leg.reason}",
+                Message("the robot can't {aim}: {reason}", aim=aim, reason=leg.reason),
                 "choose a pose that it can reach",
                 subject=subject,
             )
@@ -117,27 +127,39 @@ def _too_long(study: Study, duration: Bounds, limit: float) -> Iterator[Diagnost
     if least is not None and least > limit:
         yield study.diagnostic(
             "too-long",
-            f"the mission takes at least {exceeding_duration_text(least, limit)} if nothing fails, "
-            f"longer than its maximum duration of {limit_text(limit)} (shortest: "
-            f"{bound_path_text(duration.least, least_duration_text)})",
+            Message(
+                "the mission takes at least {exceeding_duration} if nothing fails, longer "
+                "than its maximum duration of {limit} (shortest: {bound_path})",
+                exceeding_duration=exceeding_duration_text(least, limit),
+                limit=limit_text(limit),
+                bound_path=bound_path_text(duration.least, least_duration_text),
+            ),
             "leave out tasks, shorten groups, or allow more time",
             subject="max_duration",
         )
     elif most is not None and most > limit:
         yield study.diagnostic(
             "maybe-too-long",
-            f"the mission may take up to {most_duration_text(most)}, longer than its maximum "
-            f"duration of {limit_text(limit)} (longest: "
-            f"{bound_path_text(duration.most, most_duration_text)})",
+            Message(
+                "the mission may take up to {most_duration}, longer than its maximum "
+                "duration of {limit} (longest: {bound_path})",
+                most_duration=most_duration_text(most),
+                limit=limit_text(limit),
+                bound_path=bound_path_text(duration.most, most_duration_text),
+            ),
             "leave out tasks, shorten groups, or add a reaction to time_up",
             subject="max_duration",
         )
     elif most is None:
         yield study.diagnostic(
             "maybe-too-long",
-            f"the mission may take longer than its maximum duration of {limit_text(limit)}, as "
-            f"{_without_limit(study)} (shortest: "
-            f"{bound_path_text(duration.least, least_duration_text)})",
+            Message(
+                "the mission may take longer than its maximum duration of {limit}, as "
+                "{without_limit} (shortest: {bound_path})",
+                limit=limit_text(limit),
+                without_limit=_without_limit(study),
+                bound_path=bound_path_text(duration.least, least_duration_text),
+            ),
             "limit what is repeated, or add a reaction to time_up",
             subject="max_duration",
         )
@@ -145,7 +167,11 @@ def _too_long(study: Study, duration: Bounds, limit: float) -> Iterator[Diagnost
 
 def _without_limit(study: Study) -> str:
     """Return why a duration or energy has no upper bound, in words."""
-    return "no upper bound is known" if study.all_loops_end else "something in it has no limit"
+    return (
+        Message("no upper bound is known")
+        if study.all_loops_end
+        else Message("something in it has no limit")
+    )
 
 
 def _cut_short(
@@ -171,22 +197,38 @@ def _cut_short(
         for i in own
         if bounds.task_end_bounds[i].soonest <= limit < bounds.task_end_bounds[i].latest
     ]
-    up_to = f"up to {most_duration_text(most)}, " if most is not None else "without limit, "
+    up_to: str = (
+        Message("up to {most_duration}, ", most_duration=most_duration_text(most))
+        if most is not None
+        else Message("without limit, ")
+    )
     up_to = "" if most is None and study.all_loops_end else up_to
-    ends = "the reaction to time_up then ends it"
+    ends = Message("the reaction to time_up then ends it")
     if longest is not None and longest.value is not None:
-        ends += f", after {most_duration_text(longest.value)} at most"
+        ends += Message(
+            ", after {most_duration} at most", most_duration=most_duration_text(longest.value)
+        )
     yield study.diagnostic(
         "cut-short",
-        f"the mission may take {up_to}longer than its maximum duration of "
-        f"{limit_text(limit)}: {ends}"
+        Message(
+            "the mission may take {up_to}longer than its maximum duration of {limit}: {ends}",
+            up_to=up_to,
+            limit=limit_text(limit),
+            ends=ends,
+        )
         + (
-            f"; if nothing fails, {brief_quoted_list(lost)} will not be done in time"
+            Message(
+                "; if nothing fails, {lost} will not be done in time", lost=brief_quoted_list(lost)
+            )
             if lost
             else ""
         )
         + (
-            f"; {brief_quoted_list(unsure)} may not be done, or not in all rounds" if unsure else ""
+            Message(
+                "; {unsure} may not be done, or not in all rounds", unsure=brief_quoted_list(unsure)
+            )
+            if unsure
+            else ""
         ),
         "leave out tasks, shorten groups, or allow more time",
         subject="max_duration",
@@ -198,25 +240,45 @@ def _battery_exceeded(study: Study, energy: Bounds, battery: float) -> Iterator[
     if least is not None and least > battery and not _may_need_less_energy(study):
         yield study.diagnostic(
             "battery-exceeded",
-            f"the mission needs at least {least_energy_text(least)} if nothing fails, and the "
-            f"battery gives {energy_text(battery)} (least: "
-            f"{bound_path_text(energy.least, least_energy_text)})",
+            Message(
+                "the mission needs at least {least_energy} if nothing fails, and the "
+                "battery gives {energy} (least: {bound_path})",
+                least_energy=least_energy_text(least),
+                energy=energy_text(battery),
+                bound_path=bound_path_text(energy.least, least_energy_text),
+            ),
             "leave out tasks or rounds, or charge in between",
             subject="tasks",
         )
     elif most is None or most > battery:
-        need = "without limit" if most is None else f"up to {most_energy_text(most)}"
-        if most is None and study.all_loops_end:
-            need = f"above {energy_text(battery)}, as {_without_limit(study)}"
-        path = (
-            f"least: {bound_path_text(energy.least, least_energy_text)}"
+        need = (
+            Message("without limit")
             if most is None
-            else f"most: {bound_path_text(energy.most, most_energy_text)}"
+            else Message("up to {most_energy}", most_energy=most_energy_text(most))
+        )
+        if most is None and study.all_loops_end:
+            need = Message(
+                "above {energy}, as {without_limit}",
+                energy=energy_text(battery),
+                without_limit=_without_limit(study),
+            )
+        path = (
+            Message(
+                "least: {bound_path}", bound_path=bound_path_text(energy.least, least_energy_text)
+            )
+            if most is None
+            else Message(
+                "most: {bound_path}", bound_path=bound_path_text(energy.most, most_energy_text)
+            )
         )
         yield study.diagnostic(
             "battery-maybe-exceeded",
-            f"the mission may need energy {need}, and the battery gives {energy_text(battery)} "
-            f"({path})",
+            Message(
+                "the mission may need energy {need}, and the battery gives {energy} ({path})",
+                need=need,
+                energy=energy_text(battery),
+                path=path,
+            ),
             "limit what is repeated, or react to low_battery",
             subject="tasks",
         )
@@ -266,10 +328,17 @@ def _no_way_back(study: Study, energy: Bounds, travel: Travel) -> Iterator[Diagn
         if stretch.until + back + LOW * battery > battery:
             yield study.diagnostic(
                 "no-way-back",
-                f"after {stretch.task_or_rounds_text} the battery may not suffice for the way back "
-                f"to the dock with a reserve of {LOW:.0%}: up to "
-                f"{most_energy_text(stretch.until)} are used until then, the way back needs up to "
-                f"{most_energy_text(back)}, and the battery gives {energy_text(battery)}",
+                Message(
+                    "after {stretch} the battery may not suffice for the way back "
+                    "to the dock with a reserve of {low:.0%}: up to {most_energy} are used "
+                    "until then, the way back needs up to {most_energy_2}, and the battery "
+                    "gives {energy}",
+                    stretch=stretch.task_or_rounds_text,
+                    low=LOW,
+                    most_energy=most_energy_text(stretch.until),
+                    most_energy_2=most_energy_text(back),
+                    energy=energy_text(battery),
+                ),
                 "leave out tasks or rounds, charge in between, or react to low_battery",
                 after[0],
             )
@@ -328,11 +397,17 @@ def _stale_conditions(
             if math.isfinite(youngest) and youngest > condition.max_age:
                 yield study.diagnostic(
                     "always-stale",
-                    f"a condition of task '{study.name(leaf)}' never holds if nothing fails: "
-                    f"{condition_text(condition)}, but it takes at least "
-                    f"{exceeding_duration_text(youngest, condition.max_age)} "
-                    "from the measurement to this task",
-                    f"measure checkpoint {o} again before this task, or allow a greater age",
+                    Message(
+                        "a condition of task '{task}' never holds if nothing fails: {condition}, "
+                        "but it takes at least {exceeding_duration} from the measurement to this "
+                        "task",
+                        task=study.name(leaf),
+                        condition=condition_text(condition),
+                        exceeding_duration=exceeding_duration_text(youngest, condition.max_age),
+                    ),
+                    Message(
+                        "measure checkpoint {o} again before this task, or allow a greater age", o=o
+                    ),
                     leaf,
                     study.conditional_indices(leaf)[k],
                 )
@@ -373,16 +448,22 @@ def bound_path_text(bound: Bound, quantity_words: Callable[[float], str]) -> str
     is left out.
     """
 
-    def stretch_words(stretch: Stretch) -> str:
-        return f"{stretch.task_or_rounds_text} ({quantity_words(stretch.until)})"
+    def stretch_words(stretch: Stretch) -> Message:
+        return Message(
+            "{stretch} ({until})",
+            stretch=stretch.task_or_rounds_text,
+            until=quantity_words(stretch.until),
+        )
 
     path = bound.path
     if len(path) <= _SHOWN:
-        return " > ".join(map(stretch_words, path)) or "no task"
+        if not path:
+            return Message("no task")
+        return Message("{path:>}", path=tuple(map(stretch_words, path)))
     half = _SHOWN // 2
     shown = [
         *map(stretch_words, path[:half]),
-        f"({len(path) - 2 * half} more)",
+        Message("({count} more)", count=len(path) - 2 * half),
         *map(stretch_words, path[-half:]),
     ]
-    return " > ".join(shown)
+    return Message("{path:>}", path=tuple(shown))

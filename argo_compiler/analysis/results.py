@@ -3,6 +3,7 @@
 from enum import StrEnum
 
 from argo_compiler.analysis.witness import Witnesses
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic
 
@@ -12,7 +13,7 @@ class Verdict(StrEnum):
 
     NEVER = "never"
     """on no path, whatever is measured and whatever fails"""
-    AFTER_FAILURE = "after failure"
+    AFTER_FAILURE = Message("after failure")
     """only after an action failed, a measurement gave no value, or a person did or skipped a
     task"""
     POSSIBLE = "possible"
@@ -61,8 +62,10 @@ class Stretch(Model):
     @property
     def task_or_rounds_text(self) -> str:
         if self.task is not None:
-            return f"{self.task} missed" if self.missed else self.task
-        return f"'{self.group}' x {self.rounds} round{'s' if self.rounds != 1 else ''}"
+            return Message("{task} missed", task=self.task) if self.missed else self.task
+        if self.rounds == 1:
+            return Message("'{group}' x 1 round", group=self.group)
+        return Message("'{group}' x {rounds} rounds", group=self.group, rounds=self.rounds)
 
 
 class Bound(Model):

@@ -20,6 +20,7 @@ from argo_compiler.base.graphs import (
     shortest_path_predecessors,
 )
 from argo_compiler.base.listing import brief_quoted_list
+from argo_compiler.base.message import Message
 from argo_compiler.diagnostics import Diagnostic, Severity, diagnostic_of
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.il import Afterwards, EventKind, Mission, Response, Task
@@ -310,15 +311,19 @@ class Study:
     def tasks_text(self, leaves: Sequence[int]) -> str:
         """Return the names of leaves as text, such as `tasks 'A' and 'B'`."""
         names = brief_quoted_list([self.name(leaf) for leaf in leaves])
-        return f"task{'s' if len(leaves) > 1 else ''} {names}"
+        if len(leaves) > 1:
+            return Message("tasks {names}", names=names)
+        return Message("task {names}", names=names)
 
     def object_text(self, object_id: str) -> str:
         """Return the text that messages use for a checkpoint."""
         if self.catalog is not None and object_id.isdecimal():
             info = self.catalog.checkpoint(int(object_id))
             if info is not None:
-                return f"checkpoint {object_id} ({info.name})"
-        return f"checkpoint '{object_id}'"
+                return Message(
+                    "checkpoint {object_id} ({info})", object_id=object_id, info=info.name
+                )
+        return Message("checkpoint '{object_id}'", object_id=object_id)
 
     def leaf_task(self, leaf: int) -> Task:
         return self.flow.leaves[leaf].leaf.task
@@ -353,10 +358,13 @@ class Study:
         """Return the tasks on a path of nodes as text, `A > (3 more) > B` if they are many."""
         leaves = [n for n in path if n < len(self.flow.leaves)]
         if len(leaves) <= _MOST_NAMES + 1:
-            return " > ".join(map(self.name, leaves))
+            return Message("{path:>}", path=tuple(map(self.name, leaves)))
         half = _MOST_NAMES // 2
-        shown = [*map(self.name, leaves[:half]), f"({len(leaves) - 2 * half} more)"]
-        return " > ".join([*shown, *map(self.name, leaves[-half:])])
+        shown = [
+            *map(self.name, leaves[:half]),
+            Message("({count} more)", count=len(leaves) - 2 * half),
+        ]
+        return Message("{path:>}", path=(*shown, *map(self.name, leaves[-half:])))
 
     @cached_property
     def _path_tree(self) -> list[int | None]:

@@ -6,6 +6,7 @@ from argo_compiler.analysis.reachability import GuardStatus, compared_objects
 from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.value_regions import Scale
 from argo_compiler.base.graphs import path_to, shortest_path_predecessors
+from argo_compiler.base.message import Message
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.hfsm.conditions import condition_text, conjunction_text
 from argo_compiler.il import Action, Condition
@@ -49,7 +50,7 @@ def reason_never_taken(study: Study, leaf: int, k: int) -> str:
     """
     guards = study.with_failures.conditional_guards(study.flow, leaf)
     if k >= len(guards):
-        return "a transition before it is always taken"
+        return Message("a transition before it is always taken")
     taken = guards[k].state
     for condition in study.flow.leaves[leaf].conditional[k][0]:
         why = _why_not(study, condition, taken, guards[k].state)
@@ -58,7 +59,7 @@ def reason_never_taken(study: Study, leaf: int, k: int) -> str:
         scale, readings = _possible_readings(study, condition, taken)
         regions = readings & scale.satisfying_bits(condition)
         taken = study.with_failures.fields.set(taken, condition.object_id, regions)
-    return "its conditions exclude each other"
+    return Message("its conditions exclude each other")
 
 
 def _why_not(study: Study, condition: Condition, taken: int, before: int) -> str | None:
@@ -68,25 +69,35 @@ def _why_not(study: Study, condition: Condition, taken: int, before: int) -> str
         return None
     name = study.object_text(condition.object_id)
     if condition.type.compares and not scale.possible & satisfying:
-        return (
-            f"{name} shows {scale.regions_text(scale.possible)}, so {condition_text(condition)} "
-            "never holds"
+        return Message(
+            "{name} shows {regions}, so {condition} never holds",
+            name=name,
+            regions=scale.regions_text(scale.possible),
+            condition=condition_text(condition),
         )
     _, at_first = _possible_readings(study, condition, before)
     if condition.type.compares and not at_first & (scale.missing_bit - 1):
         possible = study.with_failures.fields.scales[condition.object_id].possible
         if condition.object_id in study.with_failures.fields.shift and possible:
-            return (
-                f"{name} has no value here: no path measures it before, or only where a "
-                "transition that is evaluated earlier covers all its values"
+            return Message(
+                "{name} has no value here: no path measures it before, or only where a "
+                "transition that is evaluated earlier covers all its values",
+                name=name,
             )
     if at_first & satisfying:
-        return "its conditions exclude each other"
+        return Message("its conditions exclude each other")
     if not condition.type.compares:
-        return f"the reading of {name} is never such that {condition_text(condition)} here"
+        return Message(
+            "the reading of {name} is never such that {condition} here",
+            name=name,
+            condition=condition_text(condition),
+        )
     values = scale.regions_text(at_first & (scale.missing_bit - 1))
-    return (
-        f"the value of {name} can only be {values} here, so {condition_text(condition)} never holds"
+    return Message(
+        "the value of {name} can only be {values} here, so {condition} never holds",
+        name=name,
+        values=values,
+        condition=condition_text(condition),
     )
 
 
@@ -113,14 +124,23 @@ def _is_never_measured(study: Study, leaf: int, object_id: str) -> bool:
 def _never_taken(study: Study, leaf: int, k: int, index: int) -> Diagnostic:
     task = study.leaf_task(leaf)
     target = task.transitions[index].target
-    start = f"the transition from task '{task.name}' to '{target}' is never taken: "
+    start = Message(
+        "the transition from task '{task}' to '{target}' is never taken: ",
+        task=task.name,
+        target=target,
+    )
     for condition in task.transitions[index].conditions:
         if _is_never_measured(study, leaf, condition.object_id):
             name = study.object_text(condition.object_id)
             return study.diagnostic(
                 "never-measured",
-                f"{start}no path to '{task.name}' measures {name} before",
-                f"measure {name} earlier, or compare another checkpoint",
+                Message(
+                    "{start}no path to '{task}' measures {name} before",
+                    start=start,
+                    task=task.name,
+                    name=name,
+                ),
+                Message("measure {name} earlier, or compare another checkpoint", name=name),
                 leaf,
                 index,
             )
@@ -160,9 +180,15 @@ def _always_taken(study: Study, leaf: int, k: int, index: int) -> Diagnostic:
     after = len(task.transitions) > 1
     return study.diagnostic(
         "transition-always",
-        f"the transition from task '{task.name}' to '{task.transitions[index].target}' is always "
-        f"taken{' if it is evaluated' if k else ''}: {held} holds for every possible value"
-        + ("; only a failed measurement leads elsewhere" if after else ""),
+        Message(
+            "the transition from task '{task}' to '{target}' is always taken{part}: "
+            "{held} holds for every possible value",
+            task=task.name,
+            target=task.transitions[index].target,
+            part=Message(" if it is evaluated") if k else "",
+            held=held,
+        )
+        + (Message("; only a failed measurement leads elsewhere") if after else ""),
         "correct its bounds, or make it unconditional if that is intended",
         leaf,
         index,
@@ -198,11 +224,20 @@ class _UnmeasuredPaths:
         path = self._path(leaf, object_id)
         return study.diagnostic(
             "maybe-unmeasured",
-            f"a transition from task '{task.name}' to '{task.transitions[index].target}' compares "
-            f"{name}, which has no value yet on some paths, so it is not taken there"
-            + (f", such as {path}" if path else ""),
-            f"measure {name} on every path to '{task.name}', or keep it if that is intended: "
-            "without a value the condition is false",
+            Message(
+                "a transition from task '{task}' to '{target}' compares {name}, which has "
+                "no value yet on some paths, so it is not taken there",
+                task=task.name,
+                target=task.transitions[index].target,
+                name=name,
+            )
+            + (Message(", such as {path}", path=path) if path else ""),
+            Message(
+                "measure {name} on every path to '{task}', or keep it if that is intended: "
+                "without a value the condition is false",
+                name=name,
+                task=task.name,
+            ),
             leaf,
             index,
         )

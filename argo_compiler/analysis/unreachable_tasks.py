@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from argo_compiler.analysis.study import Study
 from argo_compiler.analysis.transitions import reason_never_taken
 from argo_compiler.base.listing import brief_quoted_list
+from argo_compiler.base.message import Message
 from argo_compiler.diagnostics import Diagnostic
 
 _MOST_REASONS = 3  # transitions to a task that a message mentions
@@ -21,7 +22,11 @@ def diagnose_unreachable_tasks(study: Study) -> Iterator[Diagnostic]:
     for leaf in unreachable:
         yield study.diagnostic(
             "unreachable-task",
-            f"task '{study.name(leaf)}' can't be reached: {_why(*reasons[leaf])}",
+            Message(
+                "task '{task}' can't be reached: {why}",
+                task=study.name(leaf),
+                why=_why(*reasons[leaf]),
+            ),
             "lead a transition to it that can be taken, or remove the task",
             leaf,
         )
@@ -54,7 +59,10 @@ def _find_reasons(study: Study, unreachable: list[int]) -> dict[int, _Reasons]:
         if study.with_failures.is_reached(flow.round_end_node(number)):
             if len(reasons_for[group.successor][0]) < _MOST_REASONS:
                 reasons_for[group.successor][0].append(
-                    f"group '{group.name}', after which it would come, is repeated without limit"
+                    Message(
+                        "group '{group}', after which it would come, is repeated without limit",
+                        group=group.name,
+                    )
                 )
         else:
             _add_reason(study, reasons_for[group.successor], group.last, None)
@@ -69,23 +77,46 @@ def _add_reason(
         unreachable.append(study.name(source))
     elif len(reasons) < _MOST_REASONS:
         if conditional is None:
-            earlier = "a transition before its unconditional one is always taken"
-            reasons.append(f"it would come after '{study.name(source)}', where {earlier}")
+            earlier = Message("a transition before its unconditional one is always taken")
+            reasons.append(
+                Message(
+                    "it would come after '{task}', where {earlier}",
+                    task=study.name(source),
+                    earlier=earlier,
+                )
+            )
         else:
             why = reason_never_taken(study, source, conditional)
-            reasons.append(f"the transition from '{study.name(source)}' is never taken, as {why}")
+            reasons.append(
+                Message(
+                    "the transition from '{task}' is never taken, as {why}",
+                    task=study.name(source),
+                    why=why,
+                )
+            )
 
 
 def _why(reasons: list[str], unreachable: list[str]) -> str:
     names = list(dict.fromkeys(unreachable))
     if names and reasons:
-        reasons = [*reasons, f"{brief_quoted_list(names)} can't be reached either"]
+        reasons = [
+            *reasons,
+            Message("{names} can't be reached either", names=brief_quoted_list(names)),
+        ]
     elif len(names) == 1:
         reasons = [
-            f"only {brief_quoted_list(names)} leads to it, and that task can't be reached either"
+            Message(
+                "only {names} leads to it, and that task can't be reached either",
+                names=brief_quoted_list(names),
+            )
         ]
     elif names:
         reasons = [
-            f"only {brief_quoted_list(names)} lead to it, and those tasks can't be reached either"
+            Message(
+                "only {names} lead to it, and those tasks can't be reached either",
+                names=brief_quoted_list(names),
+            )
         ]
-    return "; ".join(reasons) or "no transition leads to it"
+    if not reasons:
+        return Message("no transition leads to it")
+    return Message("{reasons:;}", reasons=tuple(reasons))

@@ -14,6 +14,7 @@ from functools import cached_property
 
 from argo_compiler.base.catalog import Interval
 from argo_compiler.base.listing import listed
+from argo_compiler.base.message import Listing, Message
 from argo_compiler.il import Condition, ConditionType
 
 
@@ -104,25 +105,29 @@ class Scale:
             while k < count and regions >> k & 1:
                 k += 1
             pieces.append(self._stretch(first, k - 1))
-        return listed(pieces, "or") or "nothing"
+        return listed(pieces, "or") or Message("nothing")
 
     def _stretch(self, first: int, last: int) -> str:
         low = None if first == 0 else self.bounds[(first - 1) // 2]
         high = None if last == 2 * len(self.bounds) else self.bounds[last // 2]
         if low is None and high is None:
-            return "any value"
+            return Message("any value")
         if low is None:
-            return f"{'at most' if last % 2 else 'below'} {high:g}"
+            if last % 2:
+                return Message("at most {high:g}", high=high)
+            return Message("below {high:g}", high=high)
         if high is None:
-            return f"{'at least' if first % 2 else 'above'} {low:g}"
+            if first % 2:
+                return Message("at least {low:g}", low=low)
+            return Message("above {low:g}", low=low)
         if low == high:
-            return f"{low:g}"
+            return Message("{low:g}", low=low)
         open_ends = [
-            *([] if first % 2 else [f"{low:g}"]),
-            *([] if last % 2 else [f"{high:g}"]),
+            *([] if first % 2 else [Message("{low:g}", low=low)]),
+            *([] if last % 2 else [Message("{high:g}", high=high)]),
         ]
-        return f"{low:g} to {high:g}" + (
-            f" (without {' and '.join(open_ends)})" if open_ends else ""
+        return Message("{low:g} to {high:g}", low=low, high=high) + (
+            Message(" (without {open_ends:and})", open_ends=Listing(open_ends)) if open_ends else ""
         )
 
     def _below(self, bound: float, inclusive: bool) -> int:

@@ -10,6 +10,7 @@ from argo_compiler.analysis.results import (
 from argo_compiler.analysis.verification import Verifier
 from argo_compiler.analysis.verification_walk import Proved
 from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.message import Message
 from argo_compiler.il import Mission
 
 
@@ -20,23 +21,25 @@ def unproved(mission: Mission, catalog: Catalog | None, analysis: Analysis) -> t
     """
     witnesses = analysis.witnesses
     if witnesses is None:
-        return ("there are no witnesses",)
+        return (Message("there are no witnesses"),)
     verifier = Verifier(mission, catalog)
     nominal, with_failures = (
         verifier.check_invariant(witnesses.nominal),
         verifier.check_invariant(witnesses.all),
     )
     if nominal is None or with_failures is None or not witnesses.all.failures:
-        return ("what can't happen",)
+        return (Message("what can't happen"),)
     if witnesses.nominal.failures:
-        return ("what happens only after failures",)
+        return (Message("what happens only after failures"),)
     claims = _Claims(mission, nominal, with_failures)
     wrong = [claims.wrong_in_task(facts) for facts in analysis.tasks]
     wrong += [claims.wrong_in_group(facts) for facts in analysis.groups]
     if not _is_proved(analysis.ends, with_failures.ended, nominal.ended):
-        wrong.append(["how the mission ends"])
+        wrong.append([Message("how the mission ends")])
     traps = [
-        "endless loops" for t in witnesses.traps if not verifier.check_trap(t, witnesses.nominal)
+        Message("endless loops")
+        for t in witnesses.traps
+        if not verifier.check_trap(t, witnesses.nominal)
     ]
     return tuple(
         dict.fromkeys([*(claim for claims_of_one in wrong for claim in claims_of_one), *traps])
@@ -67,12 +70,18 @@ class _Claims:
     def wrong_in_task(self, facts: TaskFacts) -> list[str]:
         at = self.tasks.get(facts.task)
         if at is None:
-            return [f"task '{facts.task}'"]
+            return [Message("task '{task}'", task=facts.task)]
         right = _is_proved(facts.verdict, at in self.with_failures.tasks, at in self.nominal.tasks)
-        wrong = [] if right else [f"task '{facts.task}'"]
+        wrong: list[str] = [] if right else [Message("task '{task}'", task=facts.task)]
         for transition in facts.transitions:
             if not self._is_transition_proved(at, transition):
-                wrong.append(f"transition {transition.index} of task '{facts.task}'")
+                wrong.append(
+                    Message(
+                        "transition {index} of task '{task}'",
+                        index=transition.index,
+                        task=facts.task,
+                    )
+                )
         return wrong
 
     def _is_transition_proved(self, at: int, facts: TransitionFacts) -> bool:
@@ -91,8 +100,8 @@ class _Claims:
     def wrong_in_group(self, facts: GroupFacts) -> list[str]:
         at = self.groups.get(facts.group)
         if at is None:
-            return [f"group '{facts.group}'"]
+            return [Message("group '{group}'", group=facts.group)]
         with_failures, nominal = self.with_failures, self.nominal
         right = _is_proved(facts.repeats, at in with_failures.repeats, at in nominal.repeats)
         right = right and _is_proved(facts.ends, at in with_failures.ends, at in nominal.ends)
-        return [] if right else [f"group '{facts.group}'"]
+        return [] if right else [Message("group '{group}'", group=facts.group)]

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import ClassVar
 
-from argo_compiler.base.listing import listed
+from argo_compiler.base.message import Message, as_message
 
 INCOMPLETE = "incomplete"
 """code of the error of a draft with lines that are left to decide on"""
@@ -48,7 +48,7 @@ class RemedyChoice:
     values: tuple[str, ...]
 
     def __str__(self) -> str:
-        return f"choose {self.what} {listed(self.values, 'or')}"
+        return Message("choose {what} {values:or}", what=self.what, values=self.values)
 
 
 class ArgoError(Exception):
@@ -110,9 +110,10 @@ def with_message_prefix(error: ArgoError, prefix: str) -> ArgoError:
     """
     kinds = (NotFound, Invalid, Unreachable, Conflict, Unavailable)
     kind = next((kind for kind in kinds if isinstance(error, kind)), ArgoError)
-    return kind(f"{prefix}: {error}", remedies=error.remedies, about=error.about)
+    message = Message("{prefix}: {error}", prefix=prefix, error=error)
+    return kind(message, remedies=error.remedies, about=error.about)
 
 
-def reason_text(error: Exception) -> str:
+def reason_text(error: Exception) -> Message:
     """Return why something failed in words, without the number that an OSError begins with."""
-    return getattr(error, "strerror", None) or str(error)
+    return as_message(getattr(error, "strerror", None) or str(error))

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 
 from argo_compiler.base.errors import ArgoError, Conflict, NotFound, Unavailable
 from argo_compiler.base.extras import PROJECT
+from argo_compiler.base.message import Listing, Message, identifier
 from argo_compiler.base.model import Model
 from argo_compiler.base.nearest_name import nearest_name
 
@@ -110,10 +111,25 @@ class ExtensionPoint(Generic[T]):
             return self._own[name]
         offer = self._usable_offers().get(name)
         if offer is None:
-            raise NotFound(f"no {self.noun} `{name}`; {self._hint(name)}")
+            raise NotFound(
+                Message(
+                    "no {noun} `{name}`; {hint}",
+                    noun=identifier(self.noun),
+                    name=name,
+                    hint=self._hint(name),
+                )
+            )
         loaded = self._load(name, offer)
         if isinstance(loaded, str):
-            raise Unavailable(f"the {self.noun} `{name}` of {offer.package} {loaded}")
+            raise Unavailable(
+                Message(
+                    "the {noun} `{name}` of {package} {loaded}",
+                    noun=identifier(self.noun),
+                    name=name,
+                    package=offer.package,
+                    loaded=loaded,
+                )
+            )
         return loaded
 
     def require(self, name: str) -> None:
@@ -128,7 +144,13 @@ class ExtensionPoint(Generic[T]):
     def register(self, name: str, item: T) -> None:
         """Add an object in this process; raise Conflict if the name is taken."""
         if name in self or name in self._reserved:
-            raise Conflict(f"there is a {self.noun} `{name}` already; choose another name")
+            raise Conflict(
+                Message(
+                    "there is a {noun} `{name}` already; choose another name",
+                    noun=identifier(self.noun),
+                    name=name,
+                )
+            )
         self._registered[name] = item
 
     def discard(self, name: str) -> None:
@@ -168,10 +190,18 @@ class ExtensionPoint(Generic[T]):
 
     def _reason_for_refusal(self, name: str, used: Mapping[str, _Offer]) -> str:
         if name in used:
-            return f"is not used: {used[name].package} has a {self.noun} of that name"
+            return Message(
+                "is not used: {package} has a {noun} of that name",
+                package=used[name].package,
+                noun=identifier(self.noun),
+            )
         if name in self._own or name in self._reserved:
-            return f"is not used: Argo has a {self.noun} of that name"
-        return "is not used: a name has at most 40 letters of a to z, digits, and any of `_.-`"
+            return Message(
+                "is not used: Argo has a {noun} of that name", noun=identifier(self.noun)
+            )
+        return Message(
+            "is not used: a name has at most 40 letters of a to z, digits, and any of `_.-`"
+        )
 
     def _load(self, name: str, offer: _Offer) -> T | str:
         if name not in self._loaded:
@@ -184,18 +214,25 @@ class ExtensionPoint(Generic[T]):
         except (Exception, SystemExit) as error:  # a package may do anything when it is imported
             reason = str(error).strip().split("\n")[0]
             kind = type(error).__name__
-            return f"can't be imported: {f'{kind}: {reason}' if reason else kind}"
+            return Message(
+                "can't be imported: {part}",
+                part=Message("{kind}: {reason}", kind=kind, reason=reason) if reason else kind,
+            )
         problem = self._find_problem(name, item)
         return item if problem is None else problem
 
     def _hint(self, name: str) -> str:
         near = nearest_name(name, self.names())
-        return f"did you mean `{near}`?" if near else f"choose one of: {', '.join(self.names())}"
+        return (
+            Message("did you mean `{near}`?", near=near)
+            if near
+            else Message("choose one of: {names}", names=Listing(self.names()))
+        )
 
 
 def function_problem(name: str, item: object) -> str | None:  # noqa: ARG001
     """Return the reason why an object can't be called, for points whose objects are functions."""
-    return None if callable(item) else "is no function"
+    return None if callable(item) else Message("is no function")
 
 
 def package_failure(error: Exception) -> Unavailable | None:
@@ -212,7 +249,14 @@ def package_failure(error: Exception) -> Unavailable | None:
         trace = trace.tb_next
     if found is None:
         return None
-    return Unavailable(f"the package {found} has failed: {type(error).__name__}: {error}")
+    return Unavailable(
+        Message(
+            "the package {found} has failed: {name}: {error}",
+            found=found,
+            name=type(error).__name__,
+            error=error,
+        )
+    )
 
 
 @contextmanager
@@ -267,9 +311,9 @@ def _package_of(entry: "EntryPoint") -> str:
     """Return the name and version of the package that an entry point belongs to."""
     try:
         return (
-            "an unknown package"
+            Message("an unknown package")
             if entry.dist is None
             else f"{entry.dist.name} {entry.dist.version}"
         )
     except Exception:  # what remains of a package that was removed in part
-        return "a damaged package"
+        return Message("a damaged package")

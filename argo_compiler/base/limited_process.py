@@ -16,7 +16,8 @@ from contextlib import contextmanager, suppress
 from importlib import import_module
 from typing import IO, Any, NamedTuple, ParamSpec, TypeVar
 
-from argo_compiler.base.errors import ArgoError, Invalid, Unavailable
+from argo_compiler.base.errors import ArgoError, Invalid, Unavailable, reason_text
+from argo_compiler.base.message import Message
 from argo_compiler.base.operating_system import limit_processor_time_and_memory, sigint_blocked
 
 P = ParamSpec("P")
@@ -139,17 +140,37 @@ def exceeded_limit(limits: CallLimits, exit_code: int | None, timed_out: bool) -
     """Return the error for a limited process that has ended without an answer."""
     ended_by = -exit_code if exit_code is not None and exit_code < 0 else 0
     if timed_out:
-        return LimitExceeded(f"takes longer than {limits.total_seconds:.0f} s to read")
+        return LimitExceeded(
+            Message(
+                "takes longer than {total_seconds:.0f} s to read",
+                total_seconds=limits.total_seconds,
+            )
+        )
     if ended_by and ended_by == getattr(signal, "SIGXCPU", 0):
-        return LimitExceeded(f"takes more than {limits.seconds:.0f} s of processor time to read")
+        return LimitExceeded(
+            Message(
+                "takes more than {seconds:.0f} s of processor time to read", seconds=limits.seconds
+            )
+        )
     if ended_by == getattr(signal, "SIGABRT", None):  # how compiled libraries end without memory
-        return LimitExceeded(f"{_too_much_memory(limits)}, or makes its reader crash")
-    status = f"signal {ended_by}" if ended_by else f"status {exit_code}"
-    return LimitExceeded(f"makes its reader crash ({status})")
+        return LimitExceeded(
+            Message(
+                "{too_much_memory}, or makes its reader crash",
+                too_much_memory=_too_much_memory(limits),
+            )
+        )
+    status = (
+        Message("signal {ended_by}", ended_by=ended_by)
+        if ended_by
+        else Message("status {exit_code}", exit_code=exit_code)
+    )
+    return LimitExceeded(Message("makes its reader crash ({status})", status=status))
 
 
 def _too_much_memory(limits: CallLimits) -> str:
-    return f"takes more than {limits.memory // 1_000_000} MB of memory to read"
+    return Message(
+        "takes more than {memory} MB of memory to read", memory=limits.memory // 1_000_000
+    )
 
 
 class _Process:
@@ -167,8 +188,11 @@ class _Process:
             try:
                 self._process, self._owner = process, _ = _start(), os.getpid()
             except OSError as error:
-                message = f"the process that reads the file can't start: {error.strerror}"
-                raise Unavailable(f"{message}; try again") from None
+                message = Message(
+                    "the process that reads the file can't start: {reason}; try again",
+                    reason=reason_text(error),
+                )
+                raise Unavailable(message) from None
         timed_out = threading.Event()
 
         def stop() -> None:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from argo_compiler.base.message import Message, identifier
 from argo_compiler.checks.checked_item import CheckedItem
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Condition, ConditionType, Group, Task
@@ -24,28 +25,37 @@ class ConditionChecks:
 
         `field` is the path from the task or group to the condition, such as `.until[0]`.
         """
-        which = f"a {condition.type} condition of {_name(part)}"
+        which = Message("a {type} condition of {part}", type=condition.type, part=_name(part))
         yield from _check_bounds(item, condition, field, which)
         if self.known is not None and condition.object_id not in self.known:
             yield item.diagnostic(
                 "il.unknown-object",
-                f"{_name(part)} names checkpoint '{condition.object_id}', which the site does not "
-                "have",
+                Message(
+                    "{part} names checkpoint '{object_id}', which the site does not have",
+                    part=_name(part),
+                    object_id=condition.object_id,
+                ),
                 "use the number of a checkpoint in the site's catalogue",
                 field + ".object_id",
             )
         elif condition.object_id not in self.measured:
             yield item.diagnostic(
                 "il.never-measured",
-                f"a condition of {_name(part)} depends on checkpoint '{condition.object_id}', "
-                "which no task measures, so it never holds unless another source gives a value",
-                f"measure checkpoint '{condition.object_id}' before",
+                Message(
+                    "a condition of {part} depends on checkpoint '{object_id}', which no task "
+                    "measures, so it never holds unless another source gives a value",
+                    part=_name(part),
+                    object_id=condition.object_id,
+                ),
+                Message("measure checkpoint '{object_id}' before", object_id=condition.object_id),
                 field + ".object_id",
             )
 
 
-def _name(part: Task | Group) -> str:
-    return f"{'task' if isinstance(part, Task) else 'group'} '{part.name}'"
+def _name(part: Task | Group) -> Message:
+    if isinstance(part, Task):
+        return Message("task '{task}'", task=part.name)
+    return Message("group '{group}'", group=part.name)
 
 
 def _check_bounds(
@@ -58,7 +68,7 @@ def _check_bounds(
     if low is None:
         yield item.diagnostic(
             "il.condition-bound",
-            f"{which} has no param1",
+            Message("{which} has no param1", which=which),
             "set it to the bound that the value is compared with",
             field,
         )
@@ -66,21 +76,26 @@ def _check_bounds(
         if high is not None:
             yield item.diagnostic(
                 "il.unused-field",
-                f"{which} has a param2, which has no effect",
+                Message("{which} has a param2, which has no effect", which=which),
                 "only WITHIN has an upper bound as well: remove it",
                 field + ".param2",
             )
     elif high is None:
         yield item.diagnostic(
             "il.within-bounds",
-            f"{which} has no param2",
+            Message("{which} has no param2", which=which),
             "set it to the upper bound",
             field,
         )
     elif low > high or (low == high and not condition.inclusive):
         yield item.diagnostic(
             "il.within-bounds",
-            f"{which} never holds: no value lies between {low:g} and {high:g}",
+            Message(
+                "{which} never holds: no value lies between {low:g} and {high:g}",
+                which=which,
+                low=low,
+                high=high,
+            ),
             "param1 is the lower bound, param2 the upper one",
             field,
         )
@@ -96,7 +111,7 @@ def _check_state(
     if condition.type is ConditionType.STALE and condition.max_age is None:
         yield item.diagnostic(
             "il.stale-without-age",
-            f"{which} has no max_age",
+            Message("{which} has no max_age", which=which),
             "set it to the age (s) from which on a value is stale",
             field,
         )
@@ -111,7 +126,9 @@ def _check_state(
     for name in (name for name, is_unused in unused.items() if is_unused):
         yield item.diagnostic(
             "il.unused-field",
-            f"{which} has a {name}, which has no effect",
+            Message(
+                "{which} has a {name}, which has no effect", which=which, name=identifier(name)
+            ),
             "remove it",
             f"{field}.{name}",
         )

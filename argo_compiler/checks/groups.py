@@ -7,6 +7,7 @@ and only if its name says so.
 from bisect import bisect_left
 from collections.abc import Iterator, Mapping
 
+from argo_compiler.base.message import Message, identifier
 from argo_compiler.base.nearest_name import nearest_name
 from argo_compiler.checks.checked_item import CheckedItem
 from argo_compiler.checks.instant_loops import MIN_TIME_S
@@ -61,7 +62,7 @@ def _check_names(groups: tuple[Group, ...], subjects: Subjects) -> Iterator[Diag
         if group.name in seen:
             yield item.diagnostic(
                 "il.duplicate-group",
-                f"more than one group is named '{group.name}'",
+                Message("more than one group is named '{group}'", group=group.name),
                 "give each group a name of its own",
                 ".name",
             )
@@ -70,15 +71,22 @@ def _check_names(groups: tuple[Group, ...], subjects: Subjects) -> Iterator[Diag
         if not all(group.name.split("/")):
             yield item.diagnostic(
                 "il.group-name",
-                f"the group name '{group.name}' has an empty part",
+                Message("the group name '{group}' has an empty part", group=group.name),
                 "separate the names of nested groups by one '/', as in 'Alpha/Beta'",
                 ".name",
             )
         elif parent is not None and parent not in names:
             yield item.diagnostic(
                 "il.group-parent",
-                f"group '{group.name}' should lie in group '{parent}', which does not exist",
-                f"add a group '{parent}' around it or remove the '/' from its name",
+                Message(
+                    "group '{group}' should lie in group '{parent}', which does not exist",
+                    group=group.name,
+                    parent=parent,
+                ),
+                Message(
+                    "add a group '{parent}' around it or remove the '/' from its name",
+                    parent=parent,
+                ),
                 ".name",
             )
 
@@ -95,33 +103,57 @@ def _check_fields(mission: Mission, subjects: Subjects) -> Iterator[Diagnostic]:
             near = nearest_name(name, position) if hints <= _MOST_HINTS else None
             yield item.diagnostic(
                 "il.unknown-group-task",
-                f"group '{group.name}' starts or ends with '{name}', which is not a task of the "
-                "mission",
-                f"is '{near}' meant?" if near else "a group's start and end are names of tasks",
+                Message(
+                    "group '{group}' starts or ends with '{name}', which is not a task of the "
+                    "mission",
+                    group=group.name,
+                    name=name,
+                ),
+                Message("is '{near}' meant?", near=near)
+                if near
+                else Message("a group's start and end are names of tasks"),
                 field,
             )
         if not unknown and position[group.start] > position[group.end]:
             yield item.diagnostic(
                 "il.group-order",
-                f"group '{group.name}' starts with task '{group.start}', which comes after its "
-                f"end '{group.end}' in the list of tasks",
+                Message(
+                    "group '{group}' starts with task '{start}', which comes after its end "
+                    "'{end}' in the list of tasks",
+                    group=group.name,
+                    start=group.start,
+                    end=group.end,
+                ),
                 "swap its start and end or reorder the tasks",
                 ".start",
             )
         if group.stop is Stop.HARD and 0 < group.max_repeat_duration < MIN_TIME_S:
             yield item.diagnostic(
                 "il.group-duration",
-                f"the time of group '{group.name}' is up after {group.max_repeat_duration:g} s, "
-                "before any action could be executed",
-                f"allow it at least {MIN_TIME_S:g} s, or 0 for no limit",
+                Message(
+                    "the time of group '{group}' is up after {max_repeat_duration:g} s, before "
+                    "any action could be executed",
+                    group=group.name,
+                    max_repeat_duration=group.max_repeat_duration,
+                ),
+                Message(
+                    "allow it at least {min_time_s:g} s, or 0 for no limit", min_time_s=MIN_TIME_S
+                ),
                 ".max_repeat_duration",
             )
         if 0 < group.every < MIN_PERIOD_S:
             yield item.diagnostic(
                 "il.group-period",
-                f"the rounds of group '{group.name}' would start every {group.every:g} s, before "
-                "any of them could be over",
-                f"allow at least {MIN_PERIOD_S:g} s, or 0 for rounds without a pause",
+                Message(
+                    "the rounds of group '{group}' would start every {every:g} s, before any "
+                    "of them could be over",
+                    group=group.name,
+                    every=group.every,
+                ),
+                Message(
+                    "allow at least {min_period_s:g} s, or 0 for rounds without a pause",
+                    min_period_s=MIN_PERIOD_S,
+                ),
                 ".every",
             )
 
@@ -135,8 +167,16 @@ def _check_nesting(ranges: tuple[GroupRange, ...], subjects: Subjects) -> Iterat
         if parent and not (parent.contains(r.first) and parent.contains(r.last)):
             yield CheckedItem(subjects.group_subject(r.index), r.group.source).diagnostic(
                 "il.group-outside-parent",
-                f"group '{name}' reaches beyond group '{parent.group.name}', in which it must lie",
-                f"keep its tasks between '{parent.group.start}' and '{parent.group.end}'",
+                Message(
+                    "group '{name}' reaches beyond group '{group}', in which it must lie",
+                    name=name,
+                    group=parent.group.name,
+                ),
+                Message(
+                    "keep its tasks between '{start}' and '{end}'",
+                    start=parent.group.start,
+                    end=parent.group.end,
+                ),
             )
         while around and around[-1].last < r.first:
             around.pop()
@@ -145,11 +185,19 @@ def _check_nesting(ranges: tuple[GroupRange, ...], subjects: Subjects) -> Iterat
             same = (other.first, other.last) == (r.first, r.last)
             yield CheckedItem(subjects.group_subject(r.index), r.group.source).diagnostic(
                 "il.group-same-range" if same else "il.group-overlap",
-                f"groups '{other.group.name}' and '{name}' "
-                + ("have the same tasks" if same else f"both contain task '{r.group.start}'")
-                + ", and neither name says that one lies in the other",
-                f"name the inner one '{other.group.name}/{name.rpartition('/')[2]}' if it has to "
-                "lie in the other, else separate their tasks",
+                Message("groups '{group}' and '{name}' ", group=other.group.name, name=name)
+                + (
+                    Message("have the same tasks")
+                    if same
+                    else Message("both contain task '{start}'", start=r.group.start)
+                )
+                + Message(", and neither name says that one lies in the other"),
+                Message(
+                    "name the inner one '{group}/{rpartition}' if it has to lie in the other, "
+                    "else separate their tasks",
+                    group=other.group.name,
+                    rpartition=name.rpartition("/")[2],
+                ),
             )
         around.append(r)
 
@@ -163,7 +211,11 @@ def _check_starts(
         if i < len(starts) and r.contains(starts[i]):
             yield CheckedItem(subjects.group_subject(r.index), r.group.source).diagnostic(
                 "il.start-in-group",
-                f"the START task '{mission.tasks[starts[i]].name}' lies in group '{r.group.name}'",
+                Message(
+                    "the START task '{task}' lies in group '{group}'",
+                    task=mission.tasks[starts[i]].name,
+                    group=r.group.name,
+                ),
                 "move START before the group: it is not repeated",
             )
 
@@ -174,7 +226,10 @@ def _check_unused(groups: tuple[Group, ...], subjects: Subjects) -> Iterator[Dia
         if group.count_interruptions and not group.max_repeat_duration:
             yield item.diagnostic(
                 "il.unused-field",
-                f"group '{group.name}' has no duration, so `count_interruptions` has no effect",
+                Message(
+                    "group '{group}' has no duration, so `count_interruptions` has no effect",
+                    group=group.name,
+                ),
                 "give it max_repeat_duration, or remove count_interruptions",
                 ".count_interruptions",
             )
@@ -182,7 +237,11 @@ def _check_unused(groups: tuple[Group, ...], subjects: Subjects) -> Iterator[Dia
             for field in (f for f in ("every", "until") if getattr(group, f)):
                 yield item.diagnostic(
                     "il.unused-field",
-                    f"group '{group.name}' has one round only, so its `{field}` has no effect",
+                    Message(
+                        "group '{group}' has one round only, so its `{field}` has no effect",
+                        group=group.name,
+                        field=identifier(field),
+                    ),
                     "remove it, or allow more rounds",
                     f".{field}",
                 )
@@ -216,9 +275,14 @@ def _check_leaving_rounds(
                 continue
             yield CheckedItem(subjects.task_subject(i), task.source).diagnostic(
                 "il.leaves-round",
-                f"the transition from task '{task.name}' to '{target}' leaves the rounds of group "
-                f"'{group.name}' before they are over",
-                f"lead it to '{group.end}' if the round has to be completed",
+                Message(
+                    "the transition from task '{task}' to '{target}' leaves the rounds of "
+                    "group '{group}' before they are over",
+                    task=task.name,
+                    target=target,
+                    group=group.name,
+                ),
+                Message("lead it to '{end}' if the round has to be completed", end=group.end),
                 field or ".transitions",
             )
 
@@ -279,9 +343,12 @@ def _check_endless(
             )
             yield CheckedItem(subjects.group_subject(r.index), r.group.source).diagnostic(
                 "il.endless-group",
-                f"group '{r.group.name}' is repeated without end"
-                f"{' unless a task fails' if ending else ''}: it has neither a count nor a "
-                "duration, and no transition that can be taken leaves it",
+                Message(
+                    "group '{group}' is repeated without end{part}: it has neither a count nor "
+                    "a duration, and no transition that can be taken leaves it",
+                    group=r.group.name,
+                    part=Message(" unless a task fails") if ending else "",
+                ),
                 "give it max_repeat_count or max_repeat_duration, or a conditional transition to "
                 "a task outside",
             )

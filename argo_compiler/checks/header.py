@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.errors import Remedy, RemedyChoice
+from argo_compiler.base.message import Listing, Message
 from argo_compiler.diagnostics import Diagnostic, diagnostic_of
 from argo_compiler.il import Mission
 
@@ -15,7 +16,9 @@ def check_header(mission: Mission, catalog: Catalog | None) -> Iterator[Diagnost
     if mission.current is not None and mission.task(mission.current) is None:
         yield diagnostic_of(
             "il.unknown-current",
-            f"the current task '{mission.current}' is not a task of the mission",
+            Message(
+                "the current task '{current}' is not a task of the mission", current=mission.current
+            ),
             "name a task or leave it out: only the planner uses it",
             "current",
         )
@@ -23,8 +26,8 @@ def check_header(mission: Mission, catalog: Catalog | None) -> Iterator[Diagnost
         more = len(omitted) - _SHOWN
         yield diagnostic_of(
             "il.left-out",
-            f"left out when the order was chosen: {', '.join(omitted[:_SHOWN])}"
-            + (f" and {more} more" if more > 0 else ""),
+            Message("left out when the order was chosen: {names}", names=Listing(omitted[:_SHOWN]))
+            + (Message(" and {more} more", more=more) if more > 0 else ""),
             "they are not done: allow more time and choose the order again, or plan them in "
             "another mission",
             "left_out",
@@ -32,10 +35,14 @@ def check_header(mission: Mission, catalog: Catalog | None) -> Iterator[Diagnost
     if catalog is None:
         return
     if mission.site and mission.site != catalog.site:
-        choice = RemedyChoice(Remedy.CHOOSE_SITE, "the site", (mission.site,))
+        choice = RemedyChoice(Remedy.CHOOSE_SITE, Message("the site"), (mission.site,))
         yield diagnostic_of(
             "il.other-site",
-            f"the mission was planned for site `{mission.site}`, not for `{catalog.site}`",
+            Message(
+                "the mission was planned for site `{site}`, not for `{site_2}`",
+                site=mission.site,
+                site_2=catalog.site,
+            ),
             str(choice),
             "site",
             choice=choice,
@@ -43,10 +50,10 @@ def check_header(mission: Mission, catalog: Catalog | None) -> Iterator[Diagnost
         return
     for field, area in (("start_area", mission.start_area), ("end_area", mission.end_area)):
         if area is not None and catalog.area(area) is None:
-            known = ", ".join(str(a.number) for a in catalog.areas) or "none"
+            known = tuple(a.number for a in catalog.areas) or Message("none")
             yield diagnostic_of(
                 "il.unknown-area",
-                f"site {catalog.site} has no starting area {area}",
-                f"there are: {known}",
+                Message("site {site} has no starting area {area}", site=catalog.site, area=area),
+                Message("there are: {known}", known=known),
                 field,
             )

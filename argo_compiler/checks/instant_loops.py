@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from graphlib import CycleError, TopologicalSorter
 
+from argo_compiler.base.message import Listing, Message
 from argo_compiler.checks.checked_item import CheckedItem
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Action, Mission, OnFailure, Task
@@ -38,15 +39,21 @@ def check_instant_loops(mission: Mission) -> Iterator[Diagnostic]:
         # The error lists each task before its predecessor, and the first one again at the end.
         cycle = error.args[1][::-1]
         position = next(i for i, t in enumerate(mission.tasks) if t.name == cycle[0])
-        shown = " > ".join(cycle if len(cycle) <= _SHOWN else [*cycle[:_SHOWN], "..."])
+        shown = Listing(cycle if len(cycle) <= _SHOWN else [*cycle[:_SHOWN], "..."])
         yield CheckedItem(
             Subjects(mission).task_subject(position), mission.tasks[position].source
         ).diagnostic(
             "il.instant-loop",
-            f"the tasks {shown} form a loop in which nothing takes time, so the mission might "
-            "never leave it",
-            "give a WAIT in it a duration, give the group `every` or at most "
-            f"{MOST_ROUNDS} rounds, or remove a hard window",
+            Message(
+                "the tasks {shown:>} form a loop in which nothing takes time, so the mission "
+                "might never leave it",
+                shown=shown,
+            ),
+            Message(
+                "give a WAIT in it a duration, give the group `every` or at most "
+                "{most_rounds} rounds, or remove a hard window",
+                most_rounds=MOST_ROUNDS,
+            ),
         )
 
 

@@ -5,6 +5,7 @@ from functools import cached_property
 from graphlib import CycleError, TopologicalSorter
 
 from argo_compiler.base.graphs import Successors, components, reachable_from
+from argo_compiler.base.message import Message
 from argo_compiler.diagnostics import Diagnostic, Severity, diagnostic_of
 from argo_compiler.il import Mission, Order
 from argo_compiler.il.velocities import MISSION_START, possible_successor_pairs
@@ -30,7 +31,12 @@ def check_precedence(mission: Mission) -> Iterator[Diagnostic]:
             if name not in known:
                 yield diagnostic_of(
                     "il.unknown-before",
-                    f"'{pair[0]}' must come before '{pair[1]}', but there is no task '{name}'",
+                    Message(
+                        "'{pair}' must come before '{pair_2}', but there is no task '{name}'",
+                        pair=pair[0],
+                        pair_2=pair[1],
+                        name=name,
+                    ),
                     "name a task, or remove the pair",
                     f"before[{i}]",
                 )
@@ -38,7 +44,11 @@ def check_precedence(mission: Mission) -> Iterator[Diagnostic]:
     if cycle:
         yield diagnostic_of(
             "il.before-itself",
-            f"'{cycle[0]}' would have to come before itself: {' > '.join(cycle[:_SHOWN])}",
+            Message(
+                "'{cycle}' would have to come before itself: {names:>}",
+                cycle=cycle[0],
+                names=tuple(cycle[:_SHOWN]),
+            ),
             "remove one of these pairs",
             "before",
         )
@@ -69,13 +79,18 @@ def _check_order(mission: Mission, pairs: Iterable[tuple[str, str]]) -> Iterator
             return
         certain = graph.always_passes(second, first)
         severity = Severity.ERROR if precise and certain else Severity.WARNING
-        verb = "comes" if certain else "may come"
-        hint = "move one of them, or remove the pair"
+        verb = Message("comes") if certain else Message("may come")
+        hint = Message("move one of them, or remove the pair")
         if not precise:
-            hint = "choose the order again, or move one of them"
+            hint = Message("choose the order again, or move one of them")
         yield diagnostic_of(
             "il.order-broken",
-            f"'{first}' must come before '{second}', but '{second}' {verb} before it",
+            Message(
+                "'{first}' must come before '{second}', but '{second}' {verb} before it",
+                first=first,
+                second=second,
+                verb=verb,
+            ),
             hint,
             "before",
             severity=severity,

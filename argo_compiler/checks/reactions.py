@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from argo_compiler.base.message import Message, identifier
 from argo_compiler.base.quantity_text import duration_text
 from argo_compiler.checks.checked_item import CheckedItem
 from argo_compiler.diagnostics import Diagnostic
@@ -23,7 +24,7 @@ def check_reactions(mission: Mission) -> Iterator[Diagnostic]:
         if first[reaction.event] is not reaction:
             yield item.diagnostic(
                 "il.duplicate-reaction",
-                f"there is more than one reaction to {reaction.event}",
+                Message("there is more than one reaction to {event}", event=reaction.event),
                 "keep one reaction for each event",
                 ".event",
             )
@@ -41,8 +42,12 @@ def check_reactions(mission: Mission) -> Iterator[Diagnostic]:
             if event is EventKind.TIME_UP and mission.max_duration is None:
                 yield item.diagnostic(
                     "il.time-up-without-limit",
-                    f"the reaction to {reaction.event} waits for {event}, which never occurs: the "
-                    "mission has no max_duration",
+                    Message(
+                        "the reaction to {event} waits for {event_2}, which never occurs: the "
+                        "mission has no max_duration",
+                        event=reaction.event,
+                        event_2=event,
+                    ),
                     "give the mission a max_duration, or use another event",
                     f".{field}",
                 )
@@ -52,14 +57,17 @@ def _check_poses(item: CheckedItem, reaction: Reaction, mission: Mission) -> Ite
     if reaction.response is Response.SAFE_AREA and reaction.pose is None:
         yield item.diagnostic(
             "il.safe-area-without-pose",
-            f"the reaction to {reaction.event} has no pose of the safe area",
+            Message("the reaction to {event} has no pose of the safe area", event=reaction.event),
             "give the reaction a `pose`",
             ".response",
         )
     if reaction.response is Response.RETURN and mission.dock is None and reaction.pose is None:
         yield item.diagnostic(
             "il.no-dock",
-            f"the robot must return to the dock on {reaction.event}, but the mission has no dock",
+            Message(
+                "the robot must return to the dock on {event}, but the mission has no dock",
+                event=reaction.event,
+            ),
             "give the mission the pose of its docking station as `dock`, or the reaction a `pose`",
             ".response",
         )
@@ -84,9 +92,14 @@ def _check_rank(
         return
     yield item.diagnostic(
         "il.equal-priority",
-        f"the reactions to {other.event} and {reaction.event} have the same priority "
-        f"{reaction.urgency_score[1]}: the one whose event occurs later waits until the other is "
-        "over",
+        Message(
+            "the reactions to {event} and {event_2} have the same priority "
+            "{urgency_score}: the one whose event occurs later waits until the other "
+            "is over",
+            event=other.event,
+            event_2=reaction.event,
+            urgency_score=reaction.urgency_score[1],
+        ),
         "give the more urgent one the higher priority",
         ".priority",
     )
@@ -96,14 +109,20 @@ def _check_battery(item: CheckedItem, reaction: Reaction) -> Iterator[Diagnostic
     if reaction.battery_below is not None and reaction.event is not EventKind.LOW_BATTERY:
         yield item.diagnostic(
             "il.battery-level",
-            f"the reaction to {reaction.event} has `battery_below`, but that event does not depend "
-            "on the battery",
-            f"remove `battery_below`, or set the event of the reaction to {EventKind.LOW_BATTERY}",
+            Message(
+                "the reaction to {event} has `battery_below`, but that event does not "
+                "depend on the battery",
+                event=reaction.event,
+            ),
+            Message(
+                "remove `battery_below`, or set the event of the reaction to {low_battery}",
+                low_battery=EventKind.LOW_BATTERY,
+            ),
             ".battery_below",
         )
     yield from check_charging(
         item,
-        f"the reaction to {reaction.event}",
+        Message("the reaction to {event}", event=reaction.event),
         reaction,
         reaction.until,
         reaction.hold_limit,
@@ -114,8 +133,14 @@ def _check_battery(item: CheckedItem, reaction: Reaction) -> Iterator[Diagnostic
     if level is not None and goal is not None and goal <= level:
         yield item.diagnostic(
             "il.charge-below-level",
-            f"the reaction to {reaction.event} charges the battery to {goal:.0%}, and answers a "
-            f"charge below {level:.0%}: the robot leaves the dock with a battery that is still low",
+            Message(
+                "the reaction to {event} charges the battery to {goal:.0%}, and answers a "
+                "charge below {level:.0%}: the robot leaves the dock with a battery that "
+                "is still low",
+                event=reaction.event,
+                goal=goal,
+                level=level,
+            ),
             "charge to a higher level than `battery_below`",
             ".charge_to",
         )
@@ -145,15 +170,30 @@ def check_charging(
         if getattr(rule, field) is not None and awaited is not _CHARGED:
             yield item.diagnostic(
                 "il.charge-without-wait",
-                f"{what} has `{field}`, but does not wait for {_CHARGED}",
-                f"set `{field_of_event}` to {_CHARGED}, or remove `{field}`",
+                Message(
+                    "{what} has `{field}`, but does not wait for {charged}",
+                    what=what,
+                    field=identifier(field),
+                    charged=_CHARGED,
+                ),
+                Message(
+                    "set `{field_of_event}` to {charged}, or remove `{field}`",
+                    field_of_event=identifier(field_of_event),
+                    charged=_CHARGED,
+                    field=identifier(field),
+                ),
                 f"{path}.{field}",
             )
     if rule.charge_for is not None and limit is not None and limit <= rule.charge_for:
         yield item.diagnostic(
             "il.charge-after-limit",
-            f"{what} charges the battery for {duration_text(rule.charge_for)} at least, but waits "
-            f"for {duration_text(limit)} at most: that limit always ends the wait",
+            Message(
+                "{what} charges the battery for {duration} at least, but waits for "
+                "{duration_2} at most: that limit always ends the wait",
+                what=what,
+                duration=duration_text(rule.charge_for),
+                duration_2=duration_text(limit),
+            ),
             "allow more time, or charge for a shorter time",
             f"{path}.charge_for",
         )
@@ -177,9 +217,14 @@ def _check_unused(item: CheckedItem, reaction: Reaction) -> Iterator[Diagnostic]
     for field in (field for field, is_unused in unused.items() if is_unused):
         yield item.diagnostic(
             "il.unused-field",
-            f"the reaction to {reaction.event} has `{field}`, which has no effect on the response "
-            f"{response}",
-            f"remove `{field}` or choose another response",
+            Message(
+                "the reaction to {event} has `{field}`, which has no effect on the "
+                "response {response}",
+                event=reaction.event,
+                field=identifier(field),
+                response=response,
+            ),
+            Message("remove `{field}` or choose another response", field=identifier(field)),
             f".{field}",
         )
 
@@ -190,8 +235,11 @@ def _check_until(
     if reaction.until is reaction.event:
         yield item.diagnostic(
             "il.until-itself",
-            f"the reaction to {reaction.event} waits for {reaction.event} itself, which changes "
-            "nothing while it is active",
+            Message(
+                "the reaction to {event} waits for {event} itself, which changes nothing "
+                "while it is active",
+                event=reaction.event,
+            ),
             "wait for an event that reports its end, such as all_clear",
             ".until",
         )
@@ -200,8 +248,11 @@ def _check_until(
     if restored and reaction.event is not EventKind.CONNECTION_LOST and not reaction.hold_limit:
         yield item.diagnostic(
             "il.not-lost-before",
-            f"the reaction to {reaction.event} waits for connection_restored without a limit, "
-            "which the robot reports only after the connection was lost",
+            Message(
+                "the reaction to {event} waits for connection_restored without a limit, "
+                "which the robot reports only after the connection was lost",
+                event=reaction.event,
+            ),
             "wait for another event, or limit the wait (`hold_limit`)",
             ".until",
         )
@@ -213,8 +264,12 @@ def _check_until(
     ):
         yield item.diagnostic(
             "il.until-answered",
-            f"the reaction to {reaction.event} waits for {reaction.until}, which has a reaction of "
-            "higher priority that is executed instead",
+            Message(
+                "the reaction to {event} waits for {until}, which has a reaction of higher "
+                "priority that is executed instead",
+                event=reaction.event,
+                until=reaction.until,
+            ),
             "wait for another event, or give this reaction the higher priority",
             ".until",
         )
@@ -223,15 +278,20 @@ def _check_until(
 def _check_all_clear(item: CheckedItem, reaction: Reaction) -> Iterator[Diagnostic]:
     """Yield a diagnostic if the robot's own measurements may never end a wait for the all-clear."""
     event, response = reaction.event, reaction.response
-    limit = "limit the wait, such as `until all clear for at most 10 minutes` (`hold_limit`)"
+    limit = Message(
+        "limit the wait, such as `until all clear for at most 10 minutes` (`hold_limit`)"
+    )
     if not _may_hold(response) or event in (EventKind.PLATFORM_ALARM, EventKind.ALL_CLEAR):
         return
     if event is not EventKind.GAS_LEAK:
         yield item.diagnostic(
             "il.all-clear-not-sensed",
-            f"the reaction to {event} waits for all_clear without a limit, but the robot gives an "
-            "all-clear only after a gas leak or the platform alarm: otherwise the wait lasts until "
-            "somebody reports all_clear",
+            Message(
+                "the reaction to {event} waits for all_clear without a limit, but the "
+                "robot gives an all-clear only after a gas leak or the platform alarm: "
+                "otherwise the wait lasts until somebody reports all_clear",
+                event=event,
+            ),
             limit,
             ".until",
         )
@@ -241,7 +301,10 @@ def _check_all_clear(item: CheckedItem, reaction: Reaction) -> Iterator[Diagnost
             "the reaction to gas_leak drives away and waits for all_clear without a limit, but the "
             "robot gives the all-clear only where it has stood in the gas or has heard its hiss: "
             "if neither reaches the place of the wait, it lasts until somebody reports all_clear",
-            f"{limit}, or wait where the leak is noticed, as by `pause until all clear`",
+            Message(
+                "{limit}, or wait where the leak is noticed, as by `pause until all clear`",
+                limit=limit,
+            ),
             ".until",
         )
 

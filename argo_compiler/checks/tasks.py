@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 
+from argo_compiler.base.message import Listing, Message, identifier
 from argo_compiler.base.nearest_name import nearest_name
 from argo_compiler.checks.checked_item import CheckedItem
 from argo_compiler.checks.conditions import ConditionChecks
@@ -70,7 +71,7 @@ class TaskChecks:
                 if task.pose is None:
                     yield self._item(i, task).diagnostic(
                         "il.waypoint-without-pose",
-                        f"the WAYPOINT task '{task.name}' has no pose",
+                        Message("the WAYPOINT task '{task}' has no pose", task=task.name),
                         "give it the pose of its target",
                     )
             elif action is _WAIT:
@@ -81,7 +82,11 @@ class TaskChecks:
                 if starts > 1:
                     yield self._item(i, task).diagnostic(
                         "il.many-starts",
-                        f"'{task.name}' is a second START task; '{self.starts[0]}' is the first",
+                        Message(
+                            "'{task}' is a second START task; '{start}' is the first",
+                            task=task.name,
+                            start=self.starts[0],
+                        ),
                         "a mission begins at one pose: remove all START tasks but one",
                     )
                 yield from check_unused_fields(self._item(i, task), task)
@@ -96,8 +101,15 @@ class TaskChecks:
             if task.retries > MANY_RETRIES:
                 yield self._item(i, task).diagnostic(
                     "il.many-retries",
-                    f"task '{task.name}' would be tried again {task.retries} times",
-                    f"allow at most {MANY_RETRIES}, and set on_failure for what follows then",
+                    Message(
+                        "task '{task}' would be tried again {retries} times",
+                        task=task.name,
+                        retries=task.retries,
+                    ),
+                    Message(
+                        "allow at most {many_retries}, and set on_failure for what follows then",
+                        many_retries=MANY_RETRIES,
+                    ),
                     ".retries",
                 )
             if task.joint_states is not None:
@@ -140,22 +152,32 @@ class TaskChecks:
         if unconditional > 1:
             yield item.diagnostic(
                 "il.many-unconditional",
-                f"task '{task.name}' has {unconditional} unconditional transitions",
+                Message(
+                    "task '{task}' has {unconditional} unconditional transitions",
+                    task=task.name,
+                    unconditional=unconditional,
+                ),
                 "keep one and give the others conditions",
                 ".transitions",
             )
         if task.action is Action.START and unconditional < len(task.transitions):
             yield item.diagnostic(
                 "il.start-condition",
-                f"the START task '{task.name}' has a conditional transition, which is never taken: "
-                "nothing has been measured yet",
+                Message(
+                    "the START task '{task}' has a conditional transition, which is never "
+                    "taken: nothing has been measured yet",
+                    task=task.name,
+                ),
                 "remove it",
                 ".transitions",
             )
         elif task.transitions and not unconditional:
             yield item.diagnostic(
                 "il.no-unconditional",
-                f"the mission ends after task '{task.name}' if none of its conditions hold",
+                Message(
+                    "the mission ends after task '{task}' if none of its conditions hold",
+                    task=task.name,
+                ),
                 "add an unconditional transition if it has to continue",
                 ".transitions",
             )
@@ -166,19 +188,29 @@ class TaskChecks:
         if target in self.names:
             return item.diagnostic(
                 "il.start-as-target",
-                f"a transition of task '{task.name}' leads to the START task '{target}', which "
-                "only defines where the mission begins",
+                Message(
+                    "a transition of task '{task}' leads to the START task '{target}', which "
+                    "only defines where the mission begins",
+                    task=task.name,
+                    target=target,
+                ),
                 "lead it to the task that follows START",
                 field,
             )
         near = self._nearest(target)
         return item.diagnostic(
             "il.unknown-target",
-            f"a transition of task '{task.name}' leads to '{target}', which is not a task of the "
-            "mission",
-            f"is '{near}' meant?"
+            Message(
+                "a transition of task '{task}' leads to '{target}', which is not a task of "
+                "the mission",
+                task=task.name,
+                target=target,
+            ),
+            Message("is '{near}' meant?", near=near)
             if near
-            else f"add a task '{target}' or lead the transition to another one",
+            else Message(
+                "add a task '{target}' or lead the transition to another one", target=target
+            ),
             field,
         )
 
@@ -194,14 +226,16 @@ def _check_names(tasks: Iterable[Task], subjects: Subjects) -> Iterator[Diagnost
         if task.name in seen:
             yield item.diagnostic(
                 "il.duplicate-task",
-                f"more than one task is named '{task.name}'",
+                Message("more than one task is named '{task}'", task=task.name),
                 "give each task a name of its own: transitions and groups refer to it",
                 ".name",
             )
         if task.name in RESERVED_NAMES:
             yield item.diagnostic(
                 "il.reserved-name",
-                f"the machine needs the name '{task.name}' for a drive of its own",
+                Message(
+                    "the machine needs the name '{task}' for a drive of its own", task=task.name
+                ),
                 "give the task another name",
                 ".name",
             )
@@ -212,12 +246,16 @@ def _object_diagnostic(item: CheckedItem, task: Task) -> Diagnostic:
     if task.object_id is None:
         return item.diagnostic(
             "il.measure-without-object",
-            f"the MEASURE task '{task.name}' has no object_id",
+            Message("the MEASURE task '{task}' has no object_id", task=task.name),
             "set it to the number of the checkpoint that it measures",
         )
     return item.diagnostic(
         "il.unknown-object",
-        f"task '{task.name}' names checkpoint '{task.object_id}', which the site does not have",
+        Message(
+            "task '{task}' names checkpoint '{object_id}', which the site does not have",
+            task=task.name,
+            object_id=task.object_id,
+        ),
         "use the number of a checkpoint in the site's catalogue",
         ".object_id",
     )
@@ -232,18 +270,26 @@ def _check_joints(item: CheckedItem, task: Task) -> Iterator[Diagnostic]:
         "velocities": len(joints.velocities),
         "efforts": len(joints.efforts),
     }
-    mismatched = [f"{n} {what}" for what, n in lengths.items() if n not in (0, len(joints.names))]
+    mismatched = [
+        Message("{count} {what}", count=n, what=identifier(what))
+        for what, n in lengths.items()
+        if n not in (0, len(joints.names))
+    ]
     if mismatched:
-        fault = f"names {len(joints.names)} joints and gives {' and '.join(mismatched)}"
+        fault = Message(
+            "names {count} joints and gives {mismatched:and}",
+            count=len(joints.names),
+            mismatched=Listing(mismatched),
+        )
     elif not any(lengths.values()):
-        fault = "names joints, but has no positions, velocities or efforts for them"
+        fault = Message("names joints, but has no positions, velocities or efforts for them")
     elif len(set(joints.names)) != len(joints.names):
-        fault = "names a joint twice"
+        fault = Message("names a joint twice")
     else:
         return
     yield item.diagnostic(
         "il.joint-states",
-        f"task '{task.name}' {fault}",
+        Message("task '{task}' {fault}", task=task.name, fault=fault),
         "give one for each joint or none at all, and each joint once",
         ".joint_states",
     )
@@ -256,11 +302,17 @@ def _check_returns(mission: Mission, subjects: Subjects) -> Iterator[Diagnostic]
     returning = [i for i, t in enumerate(mission.tasks) if t.on_failure is _RETURN]
     if returning:
         task = mission.tasks[returning[0]]
-        others = f" (and {len(returning) - 1} more)" if len(returning) > 1 else ""
+        others = (
+            Message(" (and {count} more)", count=len(returning) - 1) if len(returning) > 1 else ""
+        )
         yield CheckedItem(subjects.task_subject(returning[0]), task.source).diagnostic(
             "il.no-dock",
-            f"task '{task.name}'{others} must return to the dock if it fails, but the mission has "
-            "no dock",
+            Message(
+                "task '{task}'{others} must return to the dock if it fails, but the "
+                "mission has no dock",
+                task=task.name,
+                others=others,
+            ),
             "give the mission the pose of its docking station as `dock`",
             ".on_failure",
         )

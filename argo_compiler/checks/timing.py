@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from argo_compiler.base.message import Message, identifier
 from argo_compiler.checks.checked_item import CheckedItem
 from argo_compiler.checks.reactions import check_charging
 from argo_compiler.diagnostics import Diagnostic
@@ -48,7 +49,12 @@ def check_unused_fields(item: CheckedItem, task: Task) -> Iterator[Diagnostic]:
         if task.action not in actions and getattr(task, field) != _DEFAULTS[field]:
             yield item.diagnostic(
                 "il.unused-field",
-                f"the {task.action} task '{task.name}' has `{field}`, which has no effect on it",
+                Message(
+                    "the {action} task '{task}' has `{field}`, which has no effect on it",
+                    action=task.action,
+                    task=task.name,
+                    field=identifier(field),
+                ),
                 "remove it",
                 f".{field}",
             )
@@ -58,16 +64,16 @@ def check_wait(item: CheckedItem, task: Task) -> Iterator[Diagnostic]:
     """Yield the diagnostics of the wait rule of a WAIT task, apart from its conditions."""
     rule = task.wait
     if rule is not None:
-        name = f"the WAIT task '{task.name}'"
+        name = Message("the WAIT task '{task}'", task=task.name)
         yield from check_charging(item, name, rule, rule.event, rule.limit, "event", ".wait")
     waits_for_something = rule is not None and (rule.event is not None or bool(rule.conditions))
     if rule is None or (rule.duration is None) == (not waits_for_something):
-        fault = "does not say how long it lasts"
+        fault = Message("does not say how long it lasts")
         if rule is not None and rule.duration is not None:
-            fault = "has both a duration and an event or conditions"
+            fault = Message("has both a duration and an event or conditions")
         yield item.diagnostic(
             "il.wait-rule",
-            f"the WAIT task '{task.name}' {fault}",
+            Message("the WAIT task '{task}' {fault}", task=task.name, fault=fault),
             "give its `wait` a `duration`, or else an `event`, `conditions` or both",
             ".wait" if rule else "",
         )
@@ -79,14 +85,17 @@ def check_wait(item: CheckedItem, task: Task) -> Iterator[Diagnostic]:
     ):
         yield item.diagnostic(
             "il.wait-without-limit",
-            f"the WAIT task '{task.name}' has no limit: it may last for ever",
+            Message("the WAIT task '{task}' has no limit: it may last for ever", task=task.name),
             "give its `wait` a `limit` in seconds",
             ".wait",
         )
     elif rule.duration is not None and rule.limit is not None:
         yield item.diagnostic(
             "il.unused-field",
-            f"the WAIT task '{task.name}' has a `duration`, so its `limit` has no effect",
+            Message(
+                "the WAIT task '{task}' has a `duration`, so its `limit` has no effect",
+                task=task.name,
+            ),
             "remove it",
             ".wait.limit",
         )
@@ -101,14 +110,21 @@ def check_failure_target_fits(item: CheckedItem, task: Task) -> Iterator[Diagnos
     if branches and task.failure_target is None:
         yield item.diagnostic(
             "il.branch-without-target",
-            f"task '{task.name}' must branch when it has failed, but has no target for that",
+            Message(
+                "task '{task}' must branch when it has failed, but has no target for that",
+                task=task.name,
+            ),
             "give it a `failure_target`",
             ".on_failure",
         )
     elif not branches and task.failure_target is not None:
         yield item.diagnostic(
             "il.unused-field",
-            f"task '{task.name}' has a `failure_target`, but its `on_failure` is {task.on_failure}",
+            Message(
+                "task '{task}' has a `failure_target`, but its `on_failure` is {on_failure}",
+                task=task.name,
+                on_failure=task.on_failure,
+            ),
             "set `on_failure` to branch, or remove the target",
             ".failure_target",
         )
@@ -122,17 +138,26 @@ def check_window(item: CheckedItem, task: Task) -> Iterator[Diagnostic]:
     if window.latest is not None and window.latest <= window.earliest:
         yield item.diagnostic(
             "il.window-order",
-            f"task '{task.name}' must be done between {window.earliest:g} s and "
-            f"{window.latest:g} s, which leaves no time",
+            Message(
+                "task '{task}' must be done between {earliest:g} s and {latest:g} s, which "
+                "leaves no time",
+                task=task.name,
+                earliest=window.earliest,
+                latest=window.latest,
+            ),
             "give `latest` a time after `earliest`, in s since the mission's start",
             ".window",
         )
     if window.missed_target is not None and (window.latest is None or not window.hard):
-        why = "has no `latest`" if window.latest is None else "is not hard"
+        why = Message("has no `latest`") if window.latest is None else Message("is not hard")
         yield item.diagnostic(
             "il.unused-field",
-            f"the window of task '{task.name}' {why}, so it is never missed and its "
-            "`missed_target` has no effect",
+            Message(
+                "the window of task '{task}' {why}, so it is never missed and its "
+                "`missed_target` has no effect",
+                task=task.name,
+                why=why,
+            ),
             "remove it, or give the window a hard `latest`",
             ".window.missed_target",
         )

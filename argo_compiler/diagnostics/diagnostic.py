@@ -7,6 +7,7 @@ from pydantic.json_schema import SkipJsonSchema
 
 from argo_compiler.base.errors import Remedy, RemedyChoice
 from argo_compiler.base.model import Model
+from argo_compiler.base.wording import Text, Wording, wording_field
 from argo_compiler.diagnostics.codes import CODES
 from argo_compiler.diagnostics.codes.code import Severity
 
@@ -49,15 +50,17 @@ class Diagnostic(Model):
 
     code: str
     severity: Severity
-    message: str
+    message: Text
+    message_wording: Wording | None = wording_field("message")
     span: Span | None = None
     place: str | None = None
     """place in a document, such as `Round!B7` or `page 2, row 3`; the span is then one in the text
     that was read from the document"""
     excerpt: str | None = None
     """source line that contains the span"""
-    hint: str | None = None
+    hint: Text | None = None
     """how to resolve the problem"""
+    hint_wording: Wording | None = wording_field("hint")
     subject: str | None = None
     """part of the mission concerned, as a path by names, such as
     `tasks['MEASURE 4'].transitions[0]`; see `argo_compiler.diagnostics.subject`"""

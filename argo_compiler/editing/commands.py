@@ -18,6 +18,7 @@ from pydantic import (
     model_serializer,
 )
 
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model, Pose
 from argo_compiler.base.quantity_text import with_article
 from argo_compiler.editing import groups, header, reactions, removal, tasks, transitions
@@ -320,10 +321,14 @@ def apply(mission: Mission, edit: Edit) -> Edited:
     mission or not an edit.
     """
     if not isinstance(mission, Mission):
-        message = f"{with_article(type(mission).__name__)} is not a mission"
+        message = Message(
+            "{with_article} is not a mission", with_article=with_article(type(mission).__name__)
+        )
         raise invalid("edit.value", message, "read the mission from its file first")
     if not isinstance(edit, EditCommand):
-        message = f"{with_article(type(edit).__name__)} is not an edit"
+        message = Message(
+            "{with_article} is not an edit", with_article=with_article(type(edit).__name__)
+        )
         raise invalid("edit.value", message, "read an edit in JSON with read_edit first")
     return FUNCTIONS[edit.kind](mission, **edit.given_fields())
 
@@ -341,5 +346,7 @@ def read_edit(text: str | bytes) -> Edit:
 def _require_unique_names(pairs: list[tuple[str, object]]) -> None:
     for name, count in Counter(name for name, _ in pairs).items():
         if count > 1:
-            message = f"`{name}` is given {count} times in one object"
+            message = Message(
+                "`{name}` is given {count} times in one object", name=name, count=count
+            )
             raise invalid("edit.value", message, "keep one of them")

@@ -3,7 +3,9 @@
 from collections import Counter
 from collections.abc import Iterator, Mapping
 
+from argo_compiler.base.message import Listing, Message
 from argo_compiler.base.model import Model
+from argo_compiler.base.wording import Text, Wording, wording_field
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import Diagnostic, Severity
 from argo_compiler.diagnostics.subject import subject_of
@@ -39,8 +41,9 @@ class Consequence(Model):
     subject: str
     """the changed part of the edited mission, named as in diagnostics; a removed part has its
     former name"""
-    message: str
+    message: Text
     """the change in words"""
+    message_wording: Wording | None = wording_field("message")
     before: str | None = None
     """former value; None if there was none"""
     after: str | None = None
@@ -137,11 +140,17 @@ def _task_consequences(
             yield from _transition_consequences(at, old, task, first)
         yield from _branch_consequences(at, old, task)
         if old.group != task.group:
-            where = f"in group '{task.group}'" if task.group else "outside of all groups"
-            message = f"task '{task.name}' is shown {where} now"
+            where = (
+                Message("in group '{group}'", group=task.group)
+                if task.group
+                else Message("outside of all groups")
+            )
+            message = Message("task '{task}' is shown {where} now", task=task.name, where=where)
             yield _consequence(f"{at}.group", message, old.group or None, task.group or None)
     if first != former and first is not None and renamed.get(former or "", former) != first:
-        message = f"the mission begins with '{first}' now" + (f", not '{former}'" if former else "")
+        message = Message("the mission begins with '{first}' now", first=first) + (
+            Message(", not '{former}'", former=former) if former else ""
+        )
         yield _consequence("tasks", message, former, first)
 
 
@@ -151,15 +160,30 @@ def _transition_consequences(
     was, is_now = default_target(old), default_target(new)
     if was != is_now:
         if new.action is Action.START and is_now is None and first is not None:
-            message = f"task '{new.name}' leads nowhere now; the mission begins with '{first}'"
+            message = Message(
+                "task '{new}' leads nowhere now; the mission begins with '{first}'",
+                new=new.name,
+                first=first,
+            )
         elif is_now is None:
-            message = f"the mission ends after task '{new.name}' now; it led to '{was}'"
+            message = Message(
+                "the mission ends after task '{new}' now; it led to '{was}'", new=new.name, was=was
+            )
         elif was is None and new.action is Action.START:
-            message = f"task '{new.name}' leads to '{is_now}' now"
+            message = Message("task '{new}' leads to '{is_now}' now", new=new.name, is_now=is_now)
         elif was is None:
-            message = f"task '{new.name}' leads to '{is_now}' now; the mission ended there"
+            message = Message(
+                "task '{new}' leads to '{is_now}' now; the mission ended there",
+                new=new.name,
+                is_now=is_now,
+            )
         else:
-            message = f"task '{new.name}' leads to '{is_now}' now, not to '{was}'"
+            message = Message(
+                "task '{new}' leads to '{is_now}' now, not to '{was}'",
+                new=new.name,
+                is_now=is_now,
+                was=was,
+            )
         position = next(
             (k for k, transition in enumerate(new.transitions) if not transition.conditions), None
         )
@@ -175,16 +199,19 @@ def _transition_consequences(
         if not transition.conditions:
             continue
         if now is None or now.conditions != transition.conditions:
-            message = (
-                f"a conditional transition of task '{new.name}', to '{transition.target}', was "
-                "removed"
+            message = Message(
+                "a conditional transition of task '{new}', to '{target}', was removed",
+                new=new.name,
+                target=transition.target,
             )
             yield _consequence(f"{at}.transitions", message, transition.target, None)
             continue
         if now.target != transition.target:
-            message = (
-                f"{_conditional_transition(new, transition)} leads to '{now.target}' now, not to "
-                f"'{transition.target}'"
+            message = Message(
+                "{conditional_transition} leads to '{target}' now, not to '{target_2}'",
+                conditional_transition=_conditional_transition(new, transition),
+                target=now.target,
+                target_2=transition.target,
             )
             yield _consequence(
                 f"{at}.transitions[{k}].target", message, transition.target, now.target
@@ -199,16 +226,27 @@ def _branch_consequences(at: str, old: Task, new: Task) -> Iterator[Consequence]
     for field, occasion in _BRANCHES.items():
         was, is_now = former.get(field), now.get(field)
         if was != is_now:
-            message = f"when task '{new.name}' has {occasion}, '{is_now}' follows now, not '{was}'"
+            message = Message(
+                "when task '{new}' has {occasion}, '{is_now}' follows now, not '{was}'",
+                new=new.name,
+                occasion=occasion,
+                is_now=is_now,
+                was=was,
+            )
             yield _consequence(f"{at}.{field}", message, was, is_now)
 
 
-_BRANCHES = {"failure_target": "failed", "window.missed_target": "missed its window"}
+_BRANCHES = {
+    "failure_target": Message("failed"),
+    "window.missed_target": Message("missed its window"),
+}
 
 
 def _conditional_transition(task: Task, transition: Transition) -> str:
-    about = " and ".join(f"checkpoint {c.object_id}" for c in transition.conditions)
-    return f"the transition of task '{task.name}' on {about}"
+    about = Listing(
+        Message("checkpoint {object_id}", object_id=c.object_id) for c in transition.conditions
+    )
+    return Message("the transition of task '{task}' on {about:and}", task=task.name, about=about)
 
 
 # ---- groups and header
@@ -229,21 +267,33 @@ def _group_consequences(
         if at in requested and not inherited:
             continue
         if new is None:
-            message = f"group '{old.name}' was removed because it has no tasks any more"
+            message = Message(
+                "group '{old}' was removed because it has no tasks any more", old=old.name
+            )
             yield _consequence(at, message, old.name, None)
             continue
         if name != old.name:
-            message = f"group '{old.name}' is called '{name}' now"
+            message = Message("group '{old}' is called '{name}' now", old=old.name, name=name)
             yield _consequence(f"{at}.name", message, old.name, name)
         yield from _border_consequences(at, old, new)
 
 
 def _border_consequences(at: str, old: Group, new: Group) -> Iterator[Consequence]:
     if old.start != new.start:
-        message = f"group '{new.name}' begins with task '{new.start}' now, not '{old.start}'"
+        message = Message(
+            "group '{new}' begins with task '{start}' now, not '{start_2}'",
+            new=new.name,
+            start=new.start,
+            start_2=old.start,
+        )
         yield _consequence(f"{at}.start", message, old.start, new.start)
     if old.end != new.end:
-        message = f"group '{new.name}' ends with task '{new.end}' now, not '{old.end}'"
+        message = Message(
+            "group '{new}' ends with task '{end}' now, not '{end_2}'",
+            new=new.name,
+            end=new.end,
+            end_2=old.end,
+        )
         yield _consequence(f"{at}.end", message, old.end, new.end)
 
 
@@ -251,14 +301,32 @@ def _header_consequences(
     before: Mission, after: Mission, requested: frozenset[str]
 ) -> Iterator[Consequence]:
     if before.current != after.current and "current" not in requested:
-        which = f"task '{after.current}' is" if after.current is not None else "no task is"
-        yield _consequence("current", f"{which} the current one now", before.current, after.current)
+        which = (
+            Message("task '{current}' is", current=after.current)
+            if after.current is not None
+            else Message("no task is")
+        )
+        yield _consequence(
+            "current",
+            Message("{which} the current one now", which=which),
+            before.current,
+            after.current,
+        )
     if len(after.before) < len(before.before) and "before" not in requested:
         removed = {task.name for task in before.tasks} - {task.name for task in after.tasks}
         for first, second in before.before:
             if not removed.isdisjoint((first, second)):
-                message = f"the rule that '{first}' comes before '{second}' was removed"
-                yield _consequence("before", message, f"'{first}' before '{second}'", None)
+                message = Message(
+                    "the rule that '{first}' comes before '{second}' was removed",
+                    first=first,
+                    second=second,
+                )
+                yield _consequence(
+                    "before",
+                    message,
+                    Message("'{first}' before '{second}'", first=first, second=second),
+                    None,
+                )
 
 
 def _consequence(subject: str, message: str, before: str | None, after: str | None) -> Consequence:

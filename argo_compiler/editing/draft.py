@@ -3,6 +3,7 @@
 from collections.abc import Collection
 from dataclasses import dataclass
 
+from argo_compiler.base.message import Message
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.errors import EditConflict, ambiguous, conflict, unknown
 from argo_compiler.editing.linked_list import LinkedList, ListItem
@@ -141,8 +142,11 @@ class MissionDraft:
         if into is not None and _is_only_task(entry, self.find_group(into)):
             raise conflict(
                 "edit.not-beside-group",
-                f"'{entry.task.name}' is the only task of group '{into}', which would be removed "
-                "with it",
+                Message(
+                    "'{task}' is the only task of group '{into}', which would be removed with it",
+                    task=entry.task.name,
+                    into=into,
+                ),
                 "add another task to the group first",
                 subject_of("groups", into),
             )
@@ -191,7 +195,11 @@ class MissionDraft:
             inside = position[id(g.first)] < at < position[id(g.last)]
             is_wanted = into == name or into.startswith(f"{name}/")
             if inside and not is_wanted:
-                message = f"this position is in group '{name}', which does not contain '{into}'"
+                message = Message(
+                    "this position is in group '{name}', which does not contain '{into}'",
+                    name=name,
+                    into=into,
+                )
             elif not is_wanted or inside:
                 continue
             elif g.last is entry.before:
@@ -202,8 +210,8 @@ class MissionDraft:
                 g.first = entry
                 continue
             else:
-                message = f"group '{name}' does not extend to this position"
-            hint = f"choose a position next to a task of group '{into}'"
+                message = Message("group '{name}' does not extend to this position", name=name)
+            hint = Message("choose a position next to a task of group '{into}'", into=into)
             raise conflict("edit.not-beside-group", message, hint, subject_of("groups", name))
 
     # ---- the mission
@@ -304,14 +312,28 @@ def _group_end_conflict(
 ) -> EditConflict:
     inner = max((g.group.name for g in groups), key=lambda name: name.count("/"))
     target = default_target(new_end.task)
-    leads = "ends the mission" if target is None else f"leads to '{target}'"
+    leads = (
+        Message("ends the mission")
+        if target is None
+        else Message("leads to '{target}'", target=target)
+    )
     old_name, new_name = entry.task.name, new_end.task.name
     return conflict(
         "edit.ends-round",
-        f"'{old_name}' ends the rounds of group '{inner}', and the round can't end with "
-        f"'{new_name}' in its place, which {leads}",
-        f"lead the unconditional transition of '{new_name}' to '{old_name}' first, or change where "
-        "the group ends",
+        Message(
+            "'{old_name}' ends the rounds of group '{inner}', and the round can't end "
+            "with '{new_name}' in its place, which {leads}",
+            old_name=old_name,
+            inner=inner,
+            new_name=new_name,
+            leads=leads,
+        ),
+        Message(
+            "lead the unconditional transition of '{new_name}' to '{old_name}' first, "
+            "or change where the group ends",
+            new_name=new_name,
+            old_name=old_name,
+        ),
         subject_of("tasks", new_name),
     )
 

@@ -5,6 +5,7 @@ import reprlib
 from collections.abc import Collection, Iterable, Sequence
 
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid, NotFound
+from argo_compiler.base.message import Message
 from argo_compiler.base.nearest_name import nearest_name
 from argo_compiler.diagnostics import Diagnostic, diagnostic_of, to_text
 from argo_compiler.diagnostics.subject import subject_of
@@ -48,8 +49,14 @@ def unknown(kind: str, name: str, known: Collection[str]) -> EditNotFound:
         [
             diagnostic_of(
                 f"edit.unknown-{kind}",
-                f"the mission has no {kind} '{name}'",
-                f"is '{near}' meant?" if near else f"name a {kind} of the mission",
+                Message("the mission has no task '{name}'", name=name)
+                if kind == "task"
+                else Message("the mission has no group '{name}'", name=name),
+                Message("is '{near}' meant?", near=near)
+                if near
+                else Message("name a task of the mission")
+                if kind == "task"
+                else Message("name a group of the mission"),
             )
         ]
     )
@@ -57,8 +64,8 @@ def unknown(kind: str, name: str, known: Collection[str]) -> EditNotFound:
 
 def ambiguous(name: str) -> EditConflict:
     """Return the error of an edit of one task where several tasks have its name."""
-    message = f"more than one task is named '{name}'"
-    hint = "give each task of the mission its own name first"
+    message = Message("more than one task is named '{name}'", name=name)
+    hint = Message("give each task of the mission its own name first")
     return conflict("edit.ambiguous-task", message, hint, subject_of("tasks", name))
 
 
@@ -80,8 +87,12 @@ def name_taken(kind: str, name: str, subject: str) -> EditConflict:
 
     `kind` is `task` or `group`; `subject` is the path of the one that has the name.
     """
-    hint = f"choose another name, or rename the {kind} that has it"
-    message = f"a {kind} '{name}' already exists"
+    if kind == "task":
+        hint = Message("choose another name, or rename the task that has it")
+        message = Message("a task '{name}' already exists", name=name)
+    else:
+        hint = Message("choose another name, or rename the group that has it")
+        message = Message("a group '{name}' already exists", name=name)
     return conflict("edit.name-taken", message, hint, subject)
 
 
@@ -98,22 +109,36 @@ def invalid(code: str, message: str, hint: str) -> EditInvalid:
 def require_kind(value: object, kind: type, what: str) -> None:
     """Raise EditInvalid if a value is not of the type `kind`; messages call the value `what`."""
     if not isinstance(value, kind):
-        message = f"{what} must be a {kind.__name__}, not {reprlib.repr(value)}"
-        raise invalid("edit.value", message, f"pass a {kind.__name__} instead")
+        message = Message(
+            "{what} must be a {name}, not {value}",
+            what=what,
+            name=kind.__name__,
+            value=reprlib.repr(value),
+        )
+        raise invalid("edit.value", message, Message("pass a {name} instead", name=kind.__name__))
 
 
 def require_name(thing: str, name: object) -> None:
     """Raise EditInvalid if a value can't be the name of a task or group, called `thing`."""
     if not isinstance(name, str):
         message, hint = (
-            f"{thing} needs a text as its name, not {reprlib.repr(name)}",
-            "give it a name",
+            Message(
+                "{thing} needs a text as its name, not {name}", thing=thing, name=reprlib.repr(name)
+            ),
+            Message("give it a name"),
         )
     elif not name:
-        message, hint = f"{thing} needs a name that is not empty", "give it a name"
+        message, hint = (
+            Message("{thing} needs a name that is not empty", thing=thing),
+            Message("give it a name"),
+        )
     elif _SURROGATE.search(name):
-        message = f"{thing} can't be named {name!a}, which contains half a character"
-        hint = "leave out the surrogates, which can't be written to a file"
+        message = Message(
+            "{thing} can't be named {name}, which contains half a character",
+            thing=thing,
+            name=ascii(name),
+        )
+        hint = Message("leave out the surrogates, which can't be written to a file")
     else:
         return
     raise invalid("edit.value", message, hint)

@@ -9,6 +9,7 @@ from typing import TypedDict, Unpack
 
 from pydantic import ValidationError
 
+from argo_compiler.base.message import Message
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.consequences import Edited, checked_edit_result
 from argo_compiler.editing.draft import DraftGroup, DraftTask, MissionDraft
@@ -52,7 +53,7 @@ def wrap_tasks(mission: Mission, group: Group) -> Edited:
             or it would never end.
         EditInvalid: its end comes before its start, or its name can't be a group's name.
     """
-    require_kind(group, Group, "the group")
+    require_kind(group, Group, Message("the group"))
     draft = MissionDraft(mission)
     new = _draft_group(draft, group)
     ranges = _TaskRanges(draft)
@@ -106,7 +107,7 @@ def rename_group(mission: Mission, name: str, own_name: str) -> Edited:
     draft = MissionDraft(mission)
     draft.find_group(name)
     if own_name != "":
-        require_name(f"group '{name}'", own_name)
+        require_name(Message("group '{name}'", name=name), own_name)
     outer = parent_name(name)
     prefix = "" if outer is None else f"{outer}/"
     own = own_name.removeprefix(prefix)
@@ -136,7 +137,7 @@ def change_group(mission: Mission, name: str, **fields: Unpack[GroupFields]) -> 
     """
     draft = MissionDraft(mission)
     changed = draft.find_group(name)
-    require_known_fields(fields, GroupFields.__annotations__, "a group")
+    require_known_fields(fields, GroupFields.__annotations__, Message("a group"))
     try:
         values = Group.model_validate({"name": name, "start": "", "end": "", **fields})
     except ValidationError as error:
@@ -198,13 +199,28 @@ class _TaskRanges:
         if target in self.names[at + 1 : last + 1]:
             return
         name, end = former_end.task.name, changed.group.end
-        leads = "ends the mission" if target is None else f"leads to '{target}'"
+        leads = (
+            Message("ends the mission")
+            if target is None
+            else Message("leads to '{target}'", target=target)
+        )
         following = self.names[at + 1]
         raise conflict(
             "edit.ends-round",
-            f"group '{changed.group.name}' ends with '{name}', which {leads}: a round would never "
-            f"reach '{end}'",
-            f"lead '{name}' to '{following}' first, and '{end}' to the task after the group",
+            Message(
+                "group '{group}' ends with '{name}', which {leads}: a round would never "
+                "reach '{end}'",
+                group=changed.group.name,
+                name=name,
+                leads=leads,
+                end=end,
+            ),
+            Message(
+                "lead '{name}' to '{following}' first, and '{end}' to the task after the group",
+                name=name,
+                following=following,
+                end=end,
+            ),
             subject_of("tasks", name),
         )
 
@@ -217,9 +233,16 @@ class _TaskRanges:
 def _overlap(other: Group, group: Group) -> Exception:
     return conflict(
         "edit.group-overlap",
-        f"the tasks from '{group.start}' to '{group.end}' and those of group '{other.name}', from "
-        f"'{other.start}' to '{other.end}', overlap",
-        f"nest one in the other, or dissolve group '{other.name}' first",
+        Message(
+            "the tasks from '{start}' to '{end}' and those of group '{other}', from "
+            "'{start_2}' to '{end_2}', overlap",
+            start=group.start,
+            end=group.end,
+            other=other.name,
+            start_2=other.start,
+            end_2=other.end,
+        ),
+        Message("nest one in the other, or dissolve group '{other}' first", other=other.name),
         subject_of("groups", other.name),
     )
 
@@ -248,14 +271,18 @@ def _draft_group(draft: MissionDraft, group: Group) -> DraftGroup:
         if entry.task.action is Action.START:
             raise conflict(
                 "edit.start-in-group",
-                f"the START task '{entry.task.name}' would be in group '{group.name}'",
+                Message(
+                    "the START task '{task}' would be in group '{group}'",
+                    task=entry.task.name,
+                    group=group.name,
+                ),
                 "move START before the group: START can't be repeated",
                 subject_of("tasks", entry.task.name),
             )
         if entry is last:
             return DraftGroup(group, first, last)
         entry = entry.after
-    message = f"task '{group.end}' comes before task '{group.start}'"
+    message = Message("task '{end}' comes before task '{start}'", end=group.end, start=group.start)
     raise invalid("edit.group-order", message, "swap the group's start and end, or move a task")
 
 
@@ -266,7 +293,7 @@ def _require_own_name(own: str) -> None:
     if not own or "/" in own:
         raise invalid(
             "edit.group-name",
-            f"'{own}' can't be a group's own name",
+            Message("'{own}' can't be a group's own name", own=own),
             "give it a name without `/`: the name of the group around it is added as a prefix",
         )
 

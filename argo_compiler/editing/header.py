@@ -5,6 +5,7 @@ from typing import TypedDict, Unpack
 
 from pydantic import ValidationError
 
+from argo_compiler.base.message import Listing, Message, identifier
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Diagnostic, diagnostic_of
 from argo_compiler.editing.consequences import Edited, checked_edit_result
@@ -39,7 +40,7 @@ def set_header(mission: Mission, **fields: Unpack[HeaderFields]) -> Edited:
         EditInvalid: a value is invalid, or the header has no such field.
         EditConflict: the mission needs the removed value, such as a dock to return to.
     """
-    require_known_fields(fields, HeaderFields.__annotations__, "the header")
+    require_known_fields(fields, HeaderFields.__annotations__, Message("the header"))
     try:
         checked = Mission.model_validate(dict(fields))
     except ValidationError as error:
@@ -60,10 +61,16 @@ def require_known_fields(given: Iterable[str], known: Collection[str], owner: st
     """
     unknown_names = [name for name in given if name not in known]
     if unknown_names:
-        hint = f"the fields that can be changed: {', '.join(known)}"
+        hint = Message("the fields that can be changed: {known}", known=Listing(known))
         raise EditInvalid(
             diagnostic_of(
-                "edit.value", f"`{name}` is not a field of {owner} that can be changed", hint
+                "edit.value",
+                Message(
+                    "`{name}` is not a field of {owner} that can be changed",
+                    name=identifier(name),
+                    owner=owner,
+                ),
+                hint,
             )
             for name in unknown_names
         )
@@ -83,5 +90,5 @@ def invalid_value_diagnostics(error: ValidationError) -> list[Diagnostic]:
 
 def _fault_message(location: tuple[int | str, ...], message: str) -> str:
     if not location:
-        return f"the edit can't be read: {message}"
+        return Message("the edit can't be read: {message}", message=message)
     return f"`{'.'.join(map(str, location))}`: {message[:1].lower()}{message[1:]}"

@@ -1,5 +1,6 @@
 """Edits of a mission's reactions, each of which is identified by its event."""
 
+from argo_compiler.base.message import Message
 from argo_compiler.diagnostics import diagnostic_of
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.consequences import Edited, checked_edit_result
@@ -14,7 +15,7 @@ def add_reaction(mission: Mission, reaction: Reaction) -> Edited:
         EditConflict: the event already has a reaction, or the mission has no dock to return to.
         EditInvalid: the reaction is invalid for every mission.
     """
-    require_kind(reaction, Reaction, "the reaction")
+    require_kind(reaction, Reaction, Message("the reaction"))
     _require_free(mission, reaction.event)
     return checked_edit_result(
         mission, mission.model_copy(update={"reactions": (*mission.reactions, reaction)})
@@ -26,7 +27,7 @@ def change_reaction(mission: Mission, event: EventKind, reaction: Reaction) -> E
 
     Raises EditNotFound if the event has no reaction, and the errors of `add_reaction`.
     """
-    require_kind(reaction, Reaction, "the reaction")
+    require_kind(reaction, Reaction, Message("the reaction"))
     at = _reaction_index(mission, event)
     if reaction.event != event:
         _require_free(mission, reaction.event)
@@ -48,14 +49,14 @@ def _reaction_index(mission: Mission, event: EventKind) -> int:
     for i, reaction in enumerate(mission.reactions):
         if reaction.event == event:
             return i
-    known = ", ".join(reaction.event for reaction in mission.reactions) or "none"
-    message = f"the mission has no reaction to {event}"
-    hint = f"it has reactions to: {known}"
+    known = tuple(reaction.event for reaction in mission.reactions) or Message("none")
+    message = Message("the mission has no reaction to {event}", event=event)
+    hint = Message("it has reactions to: {known}", known=known)
     raise EditNotFound([diagnostic_of("edit.unknown-reaction", message, hint)])
 
 
 def _require_free(mission: Mission, event: EventKind) -> None:
     if any(reaction.event == event for reaction in mission.reactions):
-        message = f"a reaction to {event} already exists"
-        hint = "change that reaction, or remove it first"
+        message = Message("a reaction to {event} already exists", event=event)
+        hint = Message("change that reaction, or remove it first")
         raise conflict("edit.second-reaction", message, hint, subject_of("reactions", event))

@@ -5,6 +5,7 @@ express that, the removal is refused: a conditional transition can't end a missi
 conditional transition or branch can end a round.
 """
 
+from argo_compiler.base.message import Listing, Message
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.consequences import Consequence, Edited, checked_edit_result
 from argo_compiler.editing.draft import DraftGroup, DraftTask, MissionDraft
@@ -34,7 +35,7 @@ def remove_task(mission: Mission, name: str) -> Edited:
     if draft.tasks.first is draft.tasks.last:
         raise conflict(
             "edit.last-task",
-            f"'{name}' is the only task of the mission",
+            Message("'{name}' is the only task of the mission", name=name),
             "add another task first: a mission that does nothing has a START task only",
             subject_of("tasks", name),
         )
@@ -53,8 +54,14 @@ def remove_task(mission: Mission, name: str) -> Edited:
         return result
     consequence = Consequence(
         subject="tasks",
-        message=f"a run that reached '{name}' stayed there, because it led to itself; it "
-        + ("ends now" if successor is None else f"continues with '{successor}' now"),
+        message=Message(
+            "a run that reached '{name}' stayed there, because it led to itself; it ", name=name
+        )
+        + (
+            Message("ends now")
+            if successor is None
+            else Message("continues with '{successor}' now", successor=successor)
+        ),
         before=name,
         after=successor,
     )
@@ -66,10 +73,19 @@ def _require_beginning(name: str, successor: str | None, before: Mission, after:
     required = successor if first == name else first
     actual = initial_task(after)
     if actual != required:
-        how = f"with '{required}'" if required is not None else "and end at once"
+        how = (
+            Message("with '{required}'", required=required)
+            if required is not None
+            else Message("and end at once")
+        )
         raise conflict(
             "edit.beginning",
-            f"without '{name}' the mission would begin with '{actual}', but it would have to begin "
+            Message(
+                "without '{name}' the mission would begin with '{actual}', but it would "
+                "have to begin ",
+                name=name,
+                actual=actual,
+            )
             + how,
             "lead a START task to the task that it must begin with, or move that task to the front",
             subject_of("tasks", name),
@@ -144,22 +160,30 @@ class _Removal:
             for transition in task.transitions
             if transition.conditions and transition.target == self.name
         ]
-        hint = f"lead it to another task before '{self.name}' is removed"
+        hint = Message("lead it to another task before '{name}' is removed", name=self.name)
         if dropped and not (
             ends and all(transition.target != self.name for transition in conditional)
         ):
             raise self._conflict(
                 "edit.ends-by-condition",
-                f"a conditional transition of task '{task.name}' leads to '{self.name}', after "
-                "which the mission ends, and no condition can end a mission",
+                Message(
+                    "a conditional transition of task '{task}' leads to '{name}', after which "
+                    "the mission ends, and no condition can end a mission",
+                    task=task.name,
+                    name=self.name,
+                ),
                 hint,
                 task.name,
             )
         if self._branches_to_it(task):
             raise self._conflict(
                 "edit.ends-by-condition",
-                f"when task '{task.name}' has failed or missed its window, '{self.name}' follows, "
-                "after which the mission ends, and no branch can end a mission",
+                Message(
+                    "when task '{task}' has failed or missed its window, '{name}' follows, "
+                    "after which the mission ends, and no branch can end a mission",
+                    task=task.name,
+                    name=self.name,
+                ),
                 hint,
                 task.name,
             )
@@ -189,13 +213,23 @@ class _Removal:
             wrong[self.name] = None
         if wrong:
             inner = min(ended, key=lambda g: -g.group.name.count("/"))
-            listed = ", ".join(f"'{name}'" for name in list(wrong)[:_NAMES])
+            listed = Listing(Message("'{name}'", name=name) for name in list(wrong)[:_NAMES])
             raise self._conflict(
                 "edit.ends-round",
-                f"'{self.name}' ends the rounds of group '{inner.group.name}', and the round can't "
-                f"end with '{before.task.name}' in its place: see the transitions of {listed}",
-                f"lead only the unconditional transition of '{before.task.name}' to "
-                f"'{self.name}', or change where the group ends",
+                Message(
+                    "'{name}' ends the rounds of group '{group}', and the round can't end with "
+                    "'{task}' in its place: see the transitions of {listed}",
+                    name=self.name,
+                    group=inner.group.name,
+                    task=before.task.name,
+                    listed=listed,
+                ),
+                Message(
+                    "lead only the unconditional transition of '{task}' to '{name}', or change "
+                    "where the group ends",
+                    task=before.task.name,
+                    name=self.name,
+                ),
                 next(iter(wrong)),
             )
 
@@ -208,9 +242,19 @@ class _Removal:
             if self.successor != after.task.name:
                 raise self._conflict(
                     "edit.starts-round",
-                    f"'{self.name}' begins the rounds of group '{g.group.name}' and leads to "
-                    f"'{self.successor}', but without it they would begin with '{after.task.name}'",
-                    f"lead '{self.name}' to '{after.task.name}', or change where the group starts",
+                    Message(
+                        "'{name}' begins the rounds of group '{group}' and leads to '{successor}', "
+                        "but without it they would begin with '{task}'",
+                        name=self.name,
+                        group=g.group.name,
+                        successor=self.successor,
+                        task=after.task.name,
+                    ),
+                    Message(
+                        "lead '{name}' to '{task}', or change where the group starts",
+                        name=self.name,
+                        task=after.task.name,
+                    ),
                     self.name,
                 )
 
@@ -226,10 +270,14 @@ class _Removal:
                 if self._contains(g, other) and self._is_jump_in_round(other, g):
                     raise self._conflict(
                         "edit.leaves-group",
-                        f"task '{other.task.name}' leaves group '{g.group.name}' and enters it "
-                        f"again through '{self.name}'; without '{self.name}' it would jump inside "
-                        "the round",
-                        f"lead '{other.task.name}' elsewhere first",
+                        Message(
+                            "task '{task}' leaves group '{group}' and enters it again through "
+                            "'{name}'; without '{name}' it would jump inside the round",
+                            task=other.task.name,
+                            group=g.group.name,
+                            name=self.name,
+                        ),
+                        Message("lead '{task}' elsewhere first", task=other.task.name),
                         other.task.name,
                     )
 

@@ -5,6 +5,7 @@ from typing import TypedDict, Unpack
 
 from pydantic import ValidationError
 
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.consequences import Edited, checked_edit_result
@@ -62,7 +63,7 @@ def add_task(
         EditNotFound: the task that it is placed next to or leads to does not exist, or the group.
         EditInvalid: more than one position is given, or the task is invalid for every mission.
     """
-    require_kind(task, Task, "the task")
+    require_kind(task, Task, Message("the task"))
     draft = MissionDraft(mission)
     if draft.has_task(task.name):
         raise name_taken("task", task.name, subject_of("tasks", task.name))
@@ -84,7 +85,7 @@ def replace_task(mission: Mission, name: str, task: Task) -> Edited:
 
     Raises EditNotFound, EditConflict and EditInvalid as `add_task` does.
     """
-    require_kind(task, Task, "the task")
+    require_kind(task, Task, Message("the task"))
     draft = MissionDraft(mission)
     entry = draft.find(name)
     if task.name != name:
@@ -120,7 +121,7 @@ def change_task(mission: Mission, name: str, **fields: Unpack[TaskFields]) -> Ed
     positions = [i for i, task in enumerate(mission.tasks) if task.name == name]
     at = require_single_position(name, positions, known)
     task = mission.tasks[at]
-    require_known_fields(fields, TaskFields.__annotations__, "a task")
+    require_known_fields(fields, TaskFields.__annotations__, Message("a task"))
     try:
         values = Task.model_validate({"name": name, "action": task.action, **fields})
     except ValidationError as error:
@@ -153,7 +154,7 @@ def move_task(
     draft = MissionDraft(mission)
     entry = draft.find(name)
     if name in (before, after):
-        message = f"task '{name}' can't be moved before or after itself"
+        message = Message("task '{name}' can't be moved before or after itself", name=name)
         raise invalid("edit.place", message, "name another task")
     draft.move(entry, _anchor(draft, before, after, first), into)
     return checked_edit_result(mission, draft.mission())
@@ -166,7 +167,7 @@ def rename_task(mission: Mission, name: str, new_name: str) -> Edited:
     """
     draft = MissionDraft(mission)
     entry = draft.find(name)
-    require_name(f"task '{name}'", new_name)
+    require_name(Message("task '{name}'", name=name), new_name)
     if new_name != name:
         if draft.has_task(new_name):
             raise name_taken("task", new_name, subject_of("tasks", new_name))
@@ -179,7 +180,9 @@ def _anchor(
 ) -> DraftTask | None:
     """Return the task behind which a task is inserted, or None for the start of the list."""
     if (before is not None) + (after is not None) + first > 1:
-        message = "more than one of `before`, `after` and `first` is given for the task's position"
+        message = Message(
+            "more than one of `before`, `after` and `first` is given for the task's position"
+        )
         raise invalid("edit.place", message, "keep one of them")
     if after is not None:
         return draft.find(after)

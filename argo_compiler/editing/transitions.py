@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from argo_compiler.base.message import Message
 from argo_compiler.diagnostics import diagnostic_of
 from argo_compiler.diagnostics.subject import subject_of
 from argo_compiler.editing.consequences import Edited, checked_edit_result
@@ -26,15 +27,21 @@ def set_transitions(mission: Mission, task: str, transitions: Sequence[Transitio
     at = _task_index(mission, task)
     names = {other.name for other in mission.tasks}
     for transition in transitions:
-        require_kind(transition, Transition, f"a transition of task '{task}'")
+        require_kind(transition, Transition, Message("a transition of task '{task}'", task=task))
         if transition.target not in names:
             raise unknown("task", transition.target, names)
     unconditional = [k for k, transition in enumerate(transitions) if not transition.conditions]
     if len(unconditional) > 1:
-        first, second = (f"'{transitions[k].target}'" for k in unconditional[:2])
+        first, second = (Message("'{name}'", name=transitions[k].target) for k in unconditional[:2])
         raise conflict(
             "edit.second-default",
-            f"task '{task}' would have an unconditional transition to {first} and one to {second}",
+            Message(
+                "task '{task}' would have an unconditional transition to {first} and one "
+                "to {second}",
+                task=task,
+                first=first,
+                second=second,
+            ),
             "give one of them a condition, or remove one",
             subject_of("tasks", task, f".transitions[{unconditional[0]}]"),
         )
@@ -55,9 +62,11 @@ def add_transition(
     """
     old_transitions = _find_task(mission, task).transitions
     at = len(old_transitions) if at is None else at
-    require_kind(at, int, "the position")
+    require_kind(at, int, Message("the position"))
     if not 0 <= at <= len(old_transitions):
-        raise _unknown_position("transition", f"task '{task}'", at, len(old_transitions))
+        raise _unknown_position(
+            "transition", Message("task '{task}'", task=task), at, len(old_transitions)
+        )
     return set_transitions(
         mission, task, (*old_transitions[:at], transition, *old_transitions[at:])
     )
@@ -85,7 +94,7 @@ def set_conditions(mission: Mission, task: str, at: int, conditions: Sequence[Co
     Raises as `add_transition` does.
     """
     for condition in conditions:
-        require_kind(condition, Condition, f"a condition of task '{task}'")
+        require_kind(condition, Condition, Message("a condition of task '{task}'", task=task))
     return _change_transition(mission, task, at, {"conditions": tuple(conditions)})
 
 
@@ -103,11 +112,14 @@ def remove_condition(mission: Mission, task: str, at: int, condition: int) -> Ed
 
     A transition without conditions is unconditional. Raises as `add_transition` does.
     """
-    require_kind(condition, int, "the position of the condition")
+    require_kind(condition, int, Message("the position of the condition"))
     conditions = _transition_at(task, _find_task(mission, task).transitions, at).conditions
     if not 0 <= condition < len(conditions):
         raise _unknown_position(
-            "condition", f"transition {at} of task '{task}'", condition, len(conditions)
+            "condition",
+            Message("transition {at} of task '{task}'", at=at, task=task),
+            condition,
+            len(conditions),
         )
     return set_conditions(
         mission, task, at, (*conditions[:condition], *conditions[condition + 1 :])
@@ -123,16 +135,26 @@ def _change_transition(mission: Mission, task: str, at: int, update: dict[str, o
 
 
 def _transition_at(task: str, transitions: Sequence[Transition], at: int) -> Transition:
-    require_kind(at, int, "the position")
+    require_kind(at, int, Message("the position"))
     if not 0 <= at < len(transitions):
-        raise _unknown_position("transition", f"task '{task}'", at, len(transitions))
+        raise _unknown_position(
+            "transition", Message("task '{task}'", task=task), at, len(transitions)
+        )
     return transitions[at]
 
 
 def _unknown_position(kind: str, owner: str, at: int, count: int) -> EditNotFound:
-    hint = f"it has {count}, counted from 0"
+    hint = Message("it has {count}, counted from 0", count=count)
     return EditNotFound(
-        [diagnostic_of(f"edit.unknown-{kind}", f"{owner} has no {kind} {at}", hint)]
+        [
+            diagnostic_of(
+                f"edit.unknown-{kind}",
+                Message("{owner} has no transition {at}", owner=owner, at=at)
+                if kind == "transition"
+                else Message("{owner} has no condition {at}", owner=owner, at=at),
+                hint,
+            )
+        ]
     )
 
 

@@ -4,8 +4,10 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from argo_compiler.base.message import Message
 from argo_compiler.hfsm.kinds import ReadingKind
 from argo_compiler.il import Condition, ConditionType, EventKind, Reaction, WaitRule
+from argo_compiler.il.events import event_text
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,35 +99,42 @@ def is_satisfied(
     return reading is not None and reading_test(condition)(reading, now)
 
 
-def condition_text(condition: Condition) -> str:
+def condition_text(condition: Condition) -> Message:
     """Return the condition as text, such as `2 < #4 < 5.5, at most 60 s old`."""
     name = f"#{condition.object_id}"
     equal = "=" if condition.inclusive else ""
+    low, high = condition.param1, condition.param2
     if not condition.type.compares:
         return _state_text(condition, name)
     if condition.type is ConditionType.LESS:
-        text = f"{name} <{equal} {condition.param1:g}"
+        text = Message("{name} <{equal} {high:g}", name=name, equal=equal, high=low)
     elif condition.type is ConditionType.GREATER:
-        text = f"{name} >{equal} {condition.param1:g}"
+        text = Message("{name} >{equal} {low:g}", name=name, equal=equal, low=low)
     else:
-        text = f"{condition.param1:g} <{equal} {name} <{equal} {condition.param2:g}"
+        text = Message(
+            "{low:g} <{equal} {name} <{equal} {high:g}", low=low, equal=equal, name=name, high=high
+        )
     if condition.max_age is not None:
-        text += f", at most {condition.max_age:g} s old"
+        text += Message(", at most {age:g} s old", age=condition.max_age)
     return text
 
 
-def conjunction_text(conditions: Iterable[Condition]) -> str:
-    """Return conditions that must all be satisfied, as text."""
-    return " and ".join(map(condition_text, conditions))
+def conjunction_text(conditions: Iterable[Condition]) -> Message:
+    """Return conditions that must all be satisfied, at least one, as text."""
+    first, *others = map(condition_text, conditions)
+    text = first
+    for other in others:
+        text = Message("{first} and {second}", first=text, second=other)
+    return text
 
 
 def awaited_event_text(event: EventKind, rule: WaitRule | Reaction) -> str:
     """Return the event that ends a WAIT or a hold, such as `battery charged to 60 %`."""
-    text = event.replace("_", " ")
+    text = event_text(event)
     if rule.charge_to is not None:
-        text += f" to {100 * rule.charge_to:g} %"
+        text += Message(" to {value:g} %", value=100 * rule.charge_to)
     if rule.charge_for is not None:
-        text += f" for at least {rule.charge_for:g} s"
+        text += Message(" for at least {charge_for:g} s", charge_for=rule.charge_for)
     return text
 
 
@@ -136,15 +145,17 @@ def wait_end_text(rule: WaitRule) -> str:
     return " or ".join(ends)
 
 
-def _state_text(condition: Condition, name: str) -> str:
+def _state_text(condition: Condition, name: str) -> Message:
     match condition.type:
         case ConditionType.UNREADABLE:
-            return f"{name} unreadable"
+            return Message("{name} unreadable", name=name)
         case ConditionType.UNREACHABLE:
-            return f"{name} unreachable"
+            return Message("{name} unreachable", name=name)
         case ConditionType.FAILED:
-            return f"{name} failed"
+            return Message("{name} failed", name=name)
         case ConditionType.STALE:
-            return f"{name} older than {condition.max_age or 0:g} s"
-    age = "" if condition.max_age is None else f", at most {condition.max_age:g} s old"
-    return f"{name} abnormal{age}"
+            return Message("{name} older than {age:g} s", name=name, age=condition.max_age or 0)
+    text = Message("{name} abnormal", name=name)
+    if condition.max_age is not None:
+        text += Message(", at most {age:g} s old", age=condition.max_age)
+    return text

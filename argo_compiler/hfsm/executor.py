@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 
+from argo_compiler.base.message import Message
 from argo_compiler.hfsm.charging import AwaitedCharge
 from argo_compiler.hfsm.conditions import CheckpointReading, Measured
 from argo_compiler.hfsm.control import Control
@@ -42,6 +43,7 @@ from argo_compiler.hfsm.tables import LeafNode, build_tables
 from argo_compiler.hfsm.trace import TraceEntry, new_tuple, raw_entry, trace_entry
 from argo_compiler.hfsm.views import View
 from argo_compiler.il import MAX_TIME_S, EventKind, Task
+from argo_compiler.il.events import event_text
 
 _ENDS = (ActionSucceeded, ActionFailed, ActionStopped)
 _OTHER_ENDS = (ActionFailed, ActionStopped)
@@ -428,17 +430,17 @@ class Executor:
 
     def _cancel_reason(self) -> str:
         if self._control.outcome is not None:
-            return f"the mission was {self._control.outcome}"
+            return Message("the mission was {outcome}", outcome=self._control.outcome)
         if self.reaction is not None:
-            return f"reaction to {self.reaction.replace('_', ' ')}"
+            return Message("reaction to {event}", event=event_text(self.reaction))
         if self.paused:
-            return "the mission is paused"
+            return Message("the mission is paused")
         for entry in map(raw_entry, reversed(self._control.mission.trace)):
             if entry.timed_out is not None:
-                return f"the time of '{entry.timed_out}' is up"
+                return Message("the time of '{group}' is up", group=entry.timed_out)
             if entry.failure is not None:
                 return entry.failure
-        return "the mission was interrupted in the meantime"
+        return Message("the mission was interrupted in the meantime")
 
     def _succeed(self, event: ActionSucceeded) -> None:
         """Handle the success of the running action: of a task, or of a reaction's drive."""

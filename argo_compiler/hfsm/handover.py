@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import TypeVar
 
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, diagnostic_of
 from argo_compiler.hfsm.progress import ByHand, GroupProgress, Progress
@@ -92,7 +93,10 @@ def _check_active(progress: Progress, mission: Mission) -> Iterator[Diagnostic]:
     if task is None or task.action is Action.START:
         yield diagnostic_of(
             "handover.task-gone",
-            f"the mission is at task '{name}', which the mission plan does not have any more",
+            Message(
+                "the mission is at task '{name}', which the mission plan does not have any more",
+                name=name,
+            ),
             "add a task of that name again, or set `active` in the progress to the task at which "
             "the mission is to continue",
         )
@@ -115,8 +119,12 @@ def _match_groups(
     diagnostics = [
         diagnostic_of(
             "handover.new-group",
-            f"group '{name}' is new around task '{progress.active}': it starts in round 1, with "
-            "its clock at 0",
+            Message(
+                "group '{name}' is new around task '{active}': it starts in round 1, with "
+                "its clock at 0",
+                name=name,
+                active=progress.active,
+            ),
             "set its round in the progress if it has to start in another one",
         )
         for name in around
@@ -125,8 +133,13 @@ def _match_groups(
     diagnostics += [
         diagnostic_of(
             "handover.group-gone",
-            f"group '{name}' is not around task '{progress.active}' any more: its round "
-            f"{p.round} and its clock are dropped",
+            Message(
+                "group '{name}' is not around task '{active}' any more: its round {round} "
+                "and its clock are dropped",
+                name=name,
+                active=progress.active,
+                round=p.round,
+            ),
             "keep the group if its rounds have to be completed",
         )
         for name, p in known.items()
@@ -146,7 +159,10 @@ def _match_by_hand(
             diagnostics.append(
                 diagnostic_of(
                     "handover.by-hand-gone",
-                    f"task '{done.task}' was done by hand, but the mission plan does not have it",
+                    Message(
+                        "task '{task}' was done by hand, but the mission plan does not have it",
+                        task=done.task,
+                    ),
                     "add it to the mission plan again if it has to count",
                 )
             )
@@ -156,7 +172,10 @@ def _match_by_hand(
             diagnostics.append(
                 diagnostic_of(
                     "handover.by-hand-value",
-                    f"a value was given for task '{done.task}', which measures nothing",
+                    Message(
+                        "a value was given for task '{task}', which measures nothing",
+                        task=done.task,
+                    ),
                     "leave the value out, or give it for the task that measures it",
                 )
             )
@@ -171,8 +190,11 @@ def _match_reactions(
     diagnostics = [
         diagnostic_of(
             "handover.reaction-gone",
-            f"the mission plan does not react to {w.event} any more; that reaction was waiting to "
-            "start",
+            Message(
+                "the mission plan does not react to {event} any more; that reaction was "
+                "waiting to start",
+                event=w.event,
+            ),
             "add the reaction to the mission plan again if it has to be executed",
         )
         for w in progress.waiting
@@ -186,8 +208,11 @@ def _match_reactions(
         diagnostics.append(
             diagnostic_of(
                 "handover.reaction-gone",
-                f"{active.event} interrupted the mission, but the mission plan has no such "
-                "reaction any more: the mission is paused",
+                Message(
+                    "{event} interrupted the mission, but the mission plan has no such "
+                    "reaction any more: the mission is paused",
+                    event=active.event,
+                ),
                 "resume it when it is safe to continue",
             )
         )

@@ -5,6 +5,7 @@ from collections import defaultdict, deque
 from collections.abc import Iterable
 from typing import NamedTuple
 
+from argo_compiler.base.message import Message
 from argo_compiler.hfsm.conditions import CheckpointReading, conjunction_text
 from argo_compiler.hfsm.configuration import Configuration
 from argo_compiler.hfsm.kinds import Cause, Outcome, ReadingKind
@@ -15,7 +16,7 @@ from argo_compiler.hfsm.trace import RawEntry, StoredStep, TracedRound, groups_l
 from argo_compiler.il import EventKind
 
 _VALUE = ReadingKind.VALUE
-_OVER = "its time window is over"
+_OVER = Message("its time window is over")
 
 
 class DoneByHand(NamedTuple):
@@ -177,10 +178,12 @@ class MachineState:
         elif visit.window_missed_at(configuration.started_at) <= self.now:
             self._fail_for_good(leaf, _OVER, leaf.missed or leaf.failure)
         elif visit.action_due <= self.now:
-            self.retry_or_fail(leaf, f"not done within {leaf.time_limit:g} s")
+            self.retry_or_fail(leaf, Message("not done within {limit:g} s", limit=leaf.time_limit))
         elif visit.wait_limit_at <= self.now:
             assert leaf.wait is not None
-            self._fail_for_good(leaf, f"waited {leaf.wait.limit:g} s in vain", leaf.failure)
+            self._fail_for_good(
+                leaf, Message("waited {limit:g} s in vain", limit=leaf.wait.limit), leaf.failure
+            )
         else:
             return False
         return True

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 from argo_compiler.base.errors import Conflict
+from argo_compiler.base.message import Message
 from argo_compiler.hfsm.conditions import CheckpointReading
 from argo_compiler.hfsm.configuration import Configuration, Frame
 from argo_compiler.hfsm.interrupt_state import InterruptState, Pending
@@ -22,7 +23,7 @@ from argo_compiler.hfsm.visits import TaskVisit
 from argo_compiler.il import EventKind, Reaction, Response
 from argo_compiler.il.reserved import RETURN_TASK
 
-_OTHER = "use the mission that it was saved from, or match it to this one first"
+_OTHER = Message("use the mission that it was saved from, or match it to this one first")
 
 
 def restore_configuration(
@@ -66,9 +67,14 @@ def restore_configuration(
         configuration.awaited_round = next(awaited, None)
         if configuration.awaited_round is None:
             raise Conflict(
-                f"the progress waits for a round of group '{progress.round_of}', but task "
-                f"'{leaf.name}' is not in a group of that name whose rounds start at planned "
-                f"times; {_OTHER}"
+                Message(
+                    "the progress waits for a round of group '{round_of}', but task '{leaf}' "
+                    "is not in a group of that name whose rounds start at planned times; "
+                    "{other}",
+                    round_of=progress.round_of,
+                    leaf=leaf.name,
+                    other=_OTHER,
+                )
             )
     return configuration
 
@@ -161,7 +167,11 @@ def leaf_for(tables: Tables, name: str) -> LeafNode:
     leaf = tables.leaves.get(RETURN if name == RETURN_TASK else task_id(name))
     if leaf is None:
         raise Conflict(
-            f"the progress is at task '{name}', which the mission does not have; {_OTHER}"
+            Message(
+                "the progress is at task '{name}', which the mission does not have; {other}",
+                name=name,
+                other=_OTHER,
+            )
         )
     return leaf
 
@@ -170,7 +180,11 @@ def _groups(leaf: LeafNode, progress: Progress) -> list[GroupNode]:
     groups = [*leaf.groups_outward][::-1]
     if [group.name for group in groups] != [known.group for known in progress.groups]:
         raise Conflict(
-            f"task '{leaf.name}' is in other groups in the progress than in the mission; {_OTHER}"
+            Message(
+                "task '{leaf}' is in other groups in the progress than in the mission; {other}",
+                leaf=leaf.name,
+                other=_OTHER,
+            )
         )
     return groups
 
@@ -184,6 +198,10 @@ def _reaction(tables: Tables, event: EventKind) -> Reaction:
     reaction = None if node is None else node.state.reaction
     if reaction is None or reaction.response in (Response.REPORT, Response.ABORT):
         raise Conflict(
-            f"the progress has a reaction to {event}, which the mission does not have; {_OTHER}"
+            Message(
+                "the progress has a reaction to {event}, which the mission does not have; {other}",
+                event=event,
+                other=_OTHER,
+            )
         )
     return reaction

@@ -2,6 +2,8 @@
 
 from enum import StrEnum
 
+from argo_compiler.base.message import Message, identifier
+
 
 class EventKind(StrEnum):
     """Kind of event that may occur, other than the end of an action.
@@ -33,6 +35,11 @@ class EventKind(StrEnum):
     """a danger is over"""
     BATTERY_CHARGED = "battery_charged"
     CONNECTION_RESTORED = "connection_restored"
+
+
+def event_text(event: EventKind) -> Message:
+    """Return an event in words, such as `gas leak`."""
+    return identifier(event.replace("_", " "))
 
 
 DEFAULT_PRIORITIES = {

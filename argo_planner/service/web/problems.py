@@ -25,6 +25,7 @@ from argo_compiler.base.errors import (
 )
 from argo_compiler.base.extensions import package_failure
 from argo_compiler.base.model import Model
+from argo_compiler.base.wording import Text, Wording, wording_field
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError
 from argo_planner.service.core.commands import Revision
 from argo_planner.service.core.refusals import ChangedSince, EditRefused, StaleRevision
@@ -42,8 +43,9 @@ class Problem(Model):
     """status of the HTTP response"""
     code: str
     """kind of problem, for programs; it stays the same in later versions"""
-    detail: str
+    detail: Text
     """message for people, with the place and the remedy"""
+    detail_wording: Wording | None = wording_field("detail")
     diagnostics: tuple[Diagnostic, ...] = ()
     remedies: tuple[str, ...] = ()
     place: int | None = None
@@ -92,13 +94,17 @@ def problem_from_error(error: ArgoError) -> Problem:
     return Problem.model_construct(
         status=int(status),
         code=error.code,
-        detail=str(error)[:_MAX_DETAIL_LENGTH],
+        detail=_limited(str(error)),
         diagnostics=diagnostics,
         remedies=tuple(dict.fromkeys(map(str, remedies))),
         place=error.place if isinstance(error, EditRefused) else None,
         newest=error.newest if isinstance(error, StaleRevision) else None,
         since=error.since if isinstance(error, StaleRevision) else None,
     )
+
+
+def _limited(detail: str) -> str:
+    return detail if len(detail) <= _MAX_DETAIL_LENGTH else detail[:_MAX_DETAIL_LENGTH]
 
 
 def problem_response(problem: Problem, headers: dict[str, str] | None = None) -> Response:
@@ -112,7 +118,7 @@ def plain_problem(status: HTTPStatus | int, code: str, detail: str) -> Problem:
     return Problem.model_construct(
         status=int(status),
         code=code,
-        detail=detail[:_MAX_DETAIL_LENGTH],
+        detail=_limited(detail),
         diagnostics=(),
         remedies=(),
     )

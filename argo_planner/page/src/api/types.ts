@@ -20,6 +20,7 @@ export type PlanSummary = Schemas["PlanSummary"];
 export type ExampleSummary = Schemas["ExampleSummary"];
 export type RunSummary = Schemas["RunSummary"];
 export type PlanState = Schemas["PlanState"];
+export type Wording = Schemas["Wording"];
 export type Findings = Schemas["Findings"];
 export type Diagnostic = Schemas["Diagnostic"];
 export type AnalysisFound = Schemas["AnalysisFound"];

@@ -2,10 +2,11 @@
 
 import { responseData, Refusal } from "../api/client";
 import { uploadFile } from "../api/upload";
-import { showNotice, showError } from "../state/notices";
+import { messageOf, showNotice, showError } from "../state/notices";
 import { mayPlan } from "../state/session";
 import { world } from "../state/world";
 import { t } from "../texts";
+import { said } from "../texts/messages";
 import { placeBefore } from "../texts/place";
 import { choice } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
@@ -150,8 +151,8 @@ export class MissionImport extends PageElement {
   private tellImport(name: string, error: unknown): void {
     if (!(error instanceof Refusal)) return showError(error);
     const found = error.problem.diagnostics.filter((one) => one.severity === "error");
-    const details = found.map((one) => `${placeBefore(one)}${one.message}${one.hint ? ` – ${one.hint}` : ""}`);
-    const text = found.length > 0 ? t().frame.cantImport(name) : error.message;
+    const details = found.map((one) => `${placeBefore(one)}${said(one.message, one.message_wording)}${one.hint ? ` – ${said(one.hint, one.hint_wording)}` : ""}`);
+    const text = found.length > 0 ? t().frame.cantImport(name) : messageOf(error);
     showNotice("bad", text, { details: details.slice(0, 6) });
   }
 }

@@ -6,6 +6,7 @@ import { select } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { panel } from "../state/view";
 import { t } from "../texts";
+import { said } from "../texts/messages";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { icon } from "../ui/icons";
 import { fixOf } from "./fixes";
@@ -88,8 +89,8 @@ export class MissionProblems extends PageElement {
     return html`<li>
       <span class=${one.severity}>${icon("warning", 16)}</span>
       <div>
-        <button class="to" @click=${show}>${one.message}</button>
-        ${one.hint ? html`<p class="dim">${one.hint}</p>` : nothing}
+        <button class="to" @click=${show}>${said(one.message, one.message_wording)}</button>
+        ${one.hint ? html`<p class="dim">${said(one.hint, one.hint_wording)}</p>` : nothing}
         ${fix ? html`<button @click=${() => editInTurn((make) => make(...fix.edits()))}>${fix.label}</button>` : nothing}
       </div>
     </li>`;

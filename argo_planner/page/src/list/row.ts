@@ -6,6 +6,7 @@ import type { Action } from "../api/types";
 import { ownName, type Row } from "../model/outline";
 import { groupDetail, stepNumbers, taskDetail, taskTitle } from "../state/task-labels";
 import { t } from "../texts";
+import { said } from "../texts/messages";
 import { css, html, nothing } from "../ui/element";
 import { styled } from "../ui/styled";
 import { icon, type Icon } from "../ui/icons";
@@ -192,7 +193,7 @@ export function rowView(row: Row, index: number, shown: RowState) {
       )}
       ${marks.run ? runMark(marks.run) : nothing}
       ${marks.problem
-        ? html`<span class=${marks.problem.severity} role="img" title=${marks.problem.message} aria-label=${marks.problem.message}
+        ? html`<span class=${marks.problem.severity} role="img" title=${said(marks.problem.message, marks.problem.message_wording)} aria-label=${said(marks.problem.message, marks.problem.message_wording)}
             >${icon("warning", 18)}</span
           >`
         : nothing}

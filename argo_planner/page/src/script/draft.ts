@@ -6,7 +6,7 @@ import { responseData, client, Refusal, Unreached } from "../api/client";
 import { uploadFile } from "../api/upload";
 import type { Diagnostic } from "../api/types";
 import { commandId, allAnswered } from "../state/commands";
-import { showError, withErrorNotice } from "../state/notices";
+import { messageOf, showError, withErrorNotice } from "../state/notices";
 import { missionHasErrors, planId, planName, revision, takePlanState } from "../state/plan";
 import { storeSetting, storedSetting } from "../state/session";
 import { readNotes } from "./notes";
@@ -75,7 +75,7 @@ async function readScript(id: string, at: number): Promise<void> {
     if (baseScript.value?.revision === at) return;
     if (planId.value === id && revision.value === at) takeBase({ revision: at, text, own: false });
   } catch (error) {
-    if (error instanceof Refusal) noScriptReason.value = error.problem.detail;
+    if (error instanceof Refusal) noScriptReason.value = messageOf(error);
     else if (!(error instanceof Unreached)) throw error;
     else waiting = setTimeout(() => void readScript(id, at), 4 * PAUSE_MS);
   }

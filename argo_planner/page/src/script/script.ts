@@ -3,6 +3,7 @@
 import { missionHasErrors } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { t } from "../texts";
+import { said } from "../texts/messages";
 import { css, customElement, html, nothing, PageElement, query, state } from "../ui/element";
 import { icon } from "../ui/icons";
 import {
@@ -141,8 +142,8 @@ export class ScriptPanel extends PageElement {
               ${one.span
                 ? html`<button @click=${() => this.sheet?.goTo(one)}>${texts.line(one.span.line)}</button>`
                 : nothing}
-              <span class=${one.severity === "error" ? "error-said" : ""}>${one.message}</span>
-              ${one.hint ? html`<br /><span class="dim">${texts.hint(one.hint)}</span>` : nothing}
+              <span class=${one.severity === "error" ? "error-said" : ""}>${said(one.message, one.message_wording)}</span>
+              ${one.hint ? html`<br /><span class="dim">${texts.hint(said(one.hint, one.hint_wording))}</span>` : nothing}
             </li>`,
         )}
       </ul>
@@ -169,7 +170,7 @@ export class ScriptPanel extends PageElement {
             html`<li class="row">
               <span class="grow">
                 ${note.said.span ? html`<span class="dim">${texts.line(note.said.span.line)}:</span>` : nothing}
-                ${note.said.message}
+                ${said(note.said.message, note.said.message_wording)}
                 ${note.said.excerpt ? html`<br /><span class="dim">${note.said.excerpt}</span>` : nothing}
               </span>
               <button @click=${() => confirmNotes([note])}>${icon("check", 14)} ${texts.confirm}</button>

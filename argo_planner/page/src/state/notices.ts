@@ -3,7 +3,9 @@
 import { signal } from "@preact/signals-core";
 
 import { Refusal, Unreached } from "../api/client";
+import type { Diagnostic } from "../api/types";
 import { t } from "../texts";
+import { said } from "../texts/messages";
 
 export interface Notice {
   readonly id: number;
@@ -60,8 +62,7 @@ export function dismiss(id: number): void {
 export function showError(error: unknown): void {
   if (error instanceof Refusal) {
     const { diagnostics } = error.problem;
-    const details = diagnostics.flatMap((one) => (one.hint ? [one.hint] : []));
-    showNotice("bad", messageOf(error), { details: [...new Set(details)].slice(0, 5) });
+    showNotice("bad", messageOf(error), { details: [...new Set(hintsOf(diagnostics))].slice(0, 5) });
   } else if (error instanceof Unreached) {
     showNotice("warn", t().frame.notReached);
   } else throw error;
@@ -87,13 +88,17 @@ export async function reasonOfFailure(work: () => Promise<unknown>): Promise<str
   } catch (error) {
     if (error instanceof Unreached) return t().frame.notReached;
     if (!(error instanceof Refusal)) throw error;
-    const hints = error.problem.diagnostics.flatMap((one) => (one.hint ? [one.hint] : []));
-    return [messageOf(error), ...new Set(hints)].join(" – ");
+    return [messageOf(error), ...new Set(hintsOf(error.problem.diagnostics))].join(" – ");
   }
 }
 
 /** Return the reason of a refusal as a sentence. */
 export function messageOf(refusal: Refusal): string {
   const errors = refusal.problem.diagnostics.filter((one) => one.severity === "error");
-  return errors.length > 0 ? errors.map((one) => one.message).join("; ") : refusal.problem.detail;
+  if (errors.length > 0) return errors.map((one) => said(one.message, one.message_wording)).join("; ");
+  return said(refusal.problem.detail, refusal.problem.detail_wording);
+}
+
+function hintsOf(diagnostics: readonly Diagnostic[]): string[] {
+  return diagnostics.flatMap((one) => (one.hint ? [said(one.hint, one.hint_wording)] : []));
 }

@@ -4,6 +4,8 @@ import { both } from "./both";
 
 export const words = both(
   {
+    and: "and",
+    or: "or",
     action: { START: "Start", WAYPOINT: "Waypoint", MEASURE: "Measure", WAIT: "Wait" },
     event: {
       gas_leak: "gas leak",
@@ -39,6 +41,8 @@ export const words = both(
     boundSeconds: (s: number, toWhole: (value: number) => number) => duration(s, "en", toWhole),
   },
   {
+    and: "und",
+    or: "oder",
     action: { START: "Start", WAYPOINT: "Wegpunkt", MEASURE: "Messen", WAIT: "Warten" },
     event: {
       gas_leak: "Gasleck",

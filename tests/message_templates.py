@@ -33,7 +33,7 @@ def templates(path: Path) -> Iterator[Template]:
     """Yield the templates in a file: literals given to `Message` and to the functions of SINKS."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
     for node in ast.walk(tree):
-        if not isinstance(node, ast.Call):
+        if not isinstance(node, ast.Call) or _is_log(node):
             continue
         if name_of(node.func) == "Message" and node.args:
             text = node.args[0]
@@ -48,7 +48,12 @@ def templates(path: Path) -> Iterator[Template]:
                         yield Template(literal, frozenset(), f"{path}:{text.lineno}")
 
 
-_TEXTS = ("message", "hint", "detail", "reason")
+def _is_log(node: ast.Call) -> bool:
+    function = node.func
+    return isinstance(function, ast.Attribute) and name_of(function.value) in ("_log", "log")
+
+
+_TEXTS = ("message", "hint", "detail", "reason", "problem")
 
 
 def is_error(node: ast.Call) -> bool:
@@ -57,8 +62,14 @@ def is_error(node: ast.Call) -> bool:
 
 
 ERRORS = frozenset(
-    ["Invalid", "NotFound", "Conflict", "Unavailable", "Unreachable", "ArgoError", "LimitExceeded"]
+    [
+        *("Invalid", "NotFound", "Conflict", "Unavailable", "Unreachable", "ArgoError"),
+        *("LimitExceeded", "RevisionMissing", "AccessDenied", "TokenMissing", "TooLarge"),
+        *("StaleRevision", "CommandIdTaken", "NothingToUndo", "ChangedSince", "EditRefused"),
+        *("PlanTooLarge", "IncompleteDraft", "PoorViewError"),
+    ]
 )
+"""classes of errors whose argument is a message"""
 
 
 def is_message(text: str) -> bool:

@@ -4,7 +4,8 @@ A model with a text for people has the English text in a field of the type `Text
 field made by `wording_field`, which is None if the text is its own template.
 """
 
-from typing import Annotated, Any
+from collections.abc import Iterable, Mapping
+from typing import Annotated, Any, Self
 
 from pydantic import Field, GetCoreSchemaHandler
 from pydantic_core import CoreSchema, core_schema
@@ -40,6 +41,9 @@ class Wording(Model):
     parameters: "dict[str, _WordingParameter]"
     """values by the names of the fields; a wording is a message within the message"""
 
+    def __hash__(self) -> int:
+        return hash(self.template)
+
 
 _Item = str | int | float | Wording
 _WordingParameter = _Item | tuple[_Item, ...]
@@ -53,9 +57,29 @@ def wording_of(text: str | None) -> Wording | None:
     return None
 
 
+def wordings_of(texts: Iterable[str]) -> tuple[Wording | None, ...]:
+    """Return the wordings of texts."""
+    return tuple(map(wording_of, texts))
+
+
 def wording_field(name: str) -> Any:
-    """Return the field for the wording of the text in the field `name` above it."""
-    return Field(default_factory=lambda data: wording_of(data.get(name)))
+    """Return the field for the wording of the text, or of the texts, in the field `name` above."""
+
+    def wording(data: dict[str, Any]) -> Wording | tuple[Wording | None, ...] | None:
+        value = data.get(name)
+        return wordings_of(value) if isinstance(value, tuple) else wording_of(value)
+
+    return Field(default_factory=wording)
+
+
+class Worded(Model):
+    """Record with texts and their wordings, which a copy with other texts has as well."""
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        changed = dict(update or {})
+        for name in [name for name in changed if f"{name}_wording" in type(self).model_fields]:
+            changed.setdefault(f"{name}_wording", wording_of(changed[name]))
+        return super().model_copy(update=changed, deep=deep)
 
 
 def worded(text: str, wording: Wording | None) -> Message:

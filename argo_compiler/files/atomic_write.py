@@ -8,7 +8,8 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from argo_compiler.base.errors import Conflict, NotFound, Unavailable
+from argo_compiler.base.errors import Conflict, NotFound, Unavailable, reason_text
+from argo_compiler.base.message import Message
 
 OPEN_FILES = (Path("/dev/fd"), Path("/proc/self/fd"))
 """Folders with the files that this process has open."""
@@ -35,14 +36,29 @@ def check_writable(file: Path) -> None:
         return
     path = Path(os.path.realpath(file)) if os.path.islink(file) else file.absolute()
     if os.path.isdir(path):
-        raise Conflict(f"{file} is a folder; choose another name")
+        raise Conflict(Message("{file} is a folder; choose another name", file=file))
     if os.path.isfile(path.parent):
-        raise Conflict(f"{file}: {file.parent} is a file, not a folder; choose another folder")
+        raise Conflict(
+            Message(
+                "{file}: {parent} is a file, not a folder; choose another folder",
+                file=file,
+                parent=file.parent,
+            )
+        )
     if not os.path.isdir(path.parent):
-        raise NotFound(f"{file}: folder {file.parent} does not exist; create it or choose another")
+        raise NotFound(
+            Message(
+                "{file}: folder {parent} does not exist; create it or choose another",
+                file=file,
+                parent=file.parent,
+            )
+        )
     if not os.access(path.parent, os.W_OK | os.X_OK):
         raise Unavailable(
-            f"{file} can't be written: its folder is not writable; choose another folder"
+            Message(
+                "{file} can't be written: its folder is not writable; choose another folder",
+                file=file,
+            )
         )
     try:
         path.lstat()
@@ -50,7 +66,11 @@ def check_writable(file: Path) -> None:
         return
     except OSError as error:  # for example, the name is too long
         raise Unavailable(
-            f"{file} can't be written: {error.strerror}; choose another path"
+            Message(
+                "{file} can't be written: {reason}; choose another path",
+                file=file,
+                reason=reason_text(error),
+            )
         ) from None
 
 

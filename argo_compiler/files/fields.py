@@ -2,6 +2,7 @@
 
 from typing import Any, get_args
 
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_compiler.base.nearest_name import nearest_name
 from argo_compiler.files.json_places import JsonPath
@@ -14,7 +15,11 @@ def unknown_field_hint(model: type[Model], path: JsonPath) -> str:
     """
     names = [name for owner in _models_at(model, path[:-1]) for name in owner.model_fields]
     nearest = nearest_name(str(path[-1]), tuple(dict.fromkeys(names)))
-    return f"is `{nearest}` meant?" if nearest else "check its spelling or remove it"
+    return (
+        Message("is `{nearest}` meant?", nearest=nearest)
+        if nearest
+        else Message("check its spelling or remove it")
+    )
 
 
 def _models_at(model: type[Model], path: JsonPath) -> list[type[Model]]:

@@ -7,9 +7,10 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from argo_compiler.base.message import Message
 from argo_compiler.diagnostics import Span
 
-LONG_NUMBER = "it has a number with thousands of digits"
+LONG_NUMBER = Message("it has a number with thousands of digits")
 """meaning of a ValueError of `json.loads` that is no JSONDecodeError"""
 
 Step = str | int

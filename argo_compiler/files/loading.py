@@ -8,7 +8,8 @@ from enum import StrEnum
 from pathlib import Path
 from typing import BinaryIO
 
-from argo_compiler.base.errors import ArgoError, Invalid, NotFound
+from argo_compiler.base.errors import ArgoError, Invalid, NotFound, reason_text
+from argo_compiler.base.message import Message
 from argo_compiler.base.quantity_text import with_article
 from argo_compiler.files.atomic_write import OPEN_FILES
 from argo_compiler.files.encodings import detect_encoding
@@ -89,8 +90,10 @@ def open_file(path: Path, kind: str) -> Iterator[BinaryIO]:
     """
     try:
         if os.path.isdir(path):
-            message = "can't be read: it is a directory"
-            raise UnreadableFile(path, FileProblem.DIRECTORY, message, f"name the {kind} in it")
+            message = Message("can't be read: it is a directory")
+            raise UnreadableFile(
+                path, FileProblem.DIRECTORY, message, Message("name the {kind} in it", kind=kind)
+            )
         with path.open("rb") as file:
             yield file
     except FileNotFoundError:
@@ -98,13 +101,13 @@ def open_file(path: Path, kind: str) -> Iterator[BinaryIO]:
             path,
             FileProblem.MISSING,
             "can't be read: it does not exist (no such file)",
-            f"check the name of the {kind}",
+            Message("check the name of the {kind}", kind=kind),
         ) from None
     except OSError as error:
-        message = f"can't be read: {error.strerror}"
+        message = Message("can't be read: {reason}", reason=reason_text(error))
         raise UnreadableFile(path, FileProblem.UNREADABLE, message, "check the file") from error
     except ValueError as error:  # a NUL in the path
-        message = f"can't be read: {error}"
+        message = Message("can't be read: {error}", error=error)
         raise UnreadableFile(path, FileProblem.UNREADABLE, message, "check its name") from error
 
 
@@ -157,8 +160,11 @@ def require_size(content: bytes, name: object, kind: str, max_bytes: int) -> Non
         raise UnreadableFile(
             name,
             FileProblem.TOO_LARGE,
-            f"is larger than {max_bytes} bytes",
-            f"{with_article(kind)} is far smaller: is it the right file?",
+            Message("is larger than {max_bytes} bytes", max_bytes=max_bytes),
+            Message(
+                "{with_article} is far smaller: is it the right file?",
+                with_article=with_article(kind),
+            ),
         )
 
 
@@ -171,15 +177,19 @@ def decode_text(content: bytes, name: object, kind: str) -> str:
     """
     for first_bytes, document in _DOCUMENTS.items():
         if content.startswith(first_bytes):
-            message = f"is a document ({document}), not plain text"
+            message = Message("is a document ({document}), not plain text", document=document)
             raise UnreadableFile(name, FileProblem.NOT_TEXT, message, "save it as plain text")
     encoding = detect_encoding(content)
     try:
         text = "\0" if encoding is None else content.decode(encoding).removeprefix("\ufeff")
     except UnicodeDecodeError as error:
         line = content[: error.start].decode(error.encoding, "replace").count("\n") + 1
-        position = f"(byte {error.start + 1}, line {line})"
-        problem = "is not UTF-8" if encoding == "utf-8" else f"is damaged {error.encoding.upper()}"
+        position = Message("(byte {start}, line {line})", start=error.start + 1, line=line)
+        problem = (
+            Message("is not UTF-8")
+            if encoding == "utf-8"
+            else Message("is damaged {upper}", upper=error.encoding.upper())
+        )
         raise UnreadableFile(
             name, FileProblem.NOT_TEXT, f"{problem} {position}", "save it as UTF-8"
         ) from error
@@ -188,6 +198,6 @@ def decode_text(content: bytes, name: object, kind: str) -> str:
             name,
             FileProblem.NOT_TEXT,
             "is a binary file, not text",
-            f"{with_article(kind)} is plain text",
+            Message("{with_article} is plain text", with_article=with_article(kind)),
         )
     return text

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from argo_compiler.base.listing import brief_quoted_list
+from argo_compiler.base.message import Message
 from argo_compiler.diagnostics import Diagnostic, diagnostic_of
 from argo_compiler.files.json_places import JsonPath
 from argo_compiler.il import (
@@ -157,8 +158,10 @@ def _changes(mission: Mission) -> Iterator[Diagnostic]:
     if failing:
         yield diagnostic_of(
             "file.meaning-changed",
-            f"if {brief_quoted_list(failing)} fails, conditions no longer use the value of an "
-            "earlier measurement",
+            Message(
+                "if {failing} fails, conditions no longer use the value of an earlier measurement",
+                failing=brief_quoted_list(failing),
+            ),
             "add a transition with a READING_FAILED condition, or a `failure_target`, for this "
             "case",
             "tasks",
@@ -170,8 +173,11 @@ def _changes(mission: Mission) -> Iterator[Diagnostic]:
         if safety and any(priority >= (reaction.priority or 0) for priority in others):
             yield diagnostic_of(
                 "file.meaning-changed",
-                f"the reaction to {reaction.event} now comes before all others, regardless of "
-                "their priorities",
+                Message(
+                    "the reaction to {event} now comes before all others, regardless of their "
+                    "priorities",
+                    event=reaction.event,
+                ),
                 "if that is intended, change nothing",
                 f"reactions['{reaction.event}']",
             )
@@ -185,7 +191,10 @@ def _changes(mission: Mission) -> Iterator[Diagnostic]:
     if with_pose := [task.name for task in mission.tasks if _has_own_pose(task)]:
         yield diagnostic_of(
             "file.meaning-changed",
-            f"the pose of {brief_quoted_list(with_pose)} was never used, and has been removed",
+            Message(
+                "the pose of {with_pose} was never used, and has been removed",
+                with_pose=brief_quoted_list(with_pose),
+            ),
             "set it again if the robot must measure from that pose",
             "tasks",
         )
@@ -198,9 +207,16 @@ def _has_own_pose(task: Task) -> bool:
 def _velocity_warning(differ: tuple[str, ...]) -> Diagnostic:
     return diagnostic_of(
         "file.meaning-changed",
-        f"the velocity of the path to {brief_quoted_list(differ)} depended on the previous task; "
-        "it is now the lowest of these velocities",
-        "a velocity now applies to the path to its task, from wherever the robot comes: save the "
-        f"mission as version {VERSION}, and set `velocity` of the task",
+        Message(
+            "the velocity of the path to {differ} depended on the previous task; it is "
+            "now the lowest of these velocities",
+            differ=brief_quoted_list(differ),
+        ),
+        Message(
+            "a velocity now applies to the path to its task, from wherever the robot "
+            "comes: save the mission as version {version}, and set `velocity` of the "
+            "task",
+            version=VERSION,
+        ),
         "tasks",
     )

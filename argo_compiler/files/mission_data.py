@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from pydantic import TypeAdapter, ValidationError
 
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, diagnostic_of
 from argo_compiler.files.fields import unknown_field_hint
@@ -48,7 +49,9 @@ def unplaced(
 def too_deep() -> UnplacedDiagnostic:
     """Return the error for data that are nested too deeply for the program's stack."""
     return unplaced(
-        "file.too-deep", "the file is nested too deeply", "no mission needs that: check the file"
+        "file.too-deep",
+        Message("the file is nested too deeply"),
+        Message("no mission needs that: check the file"),
     )
 
 
@@ -70,7 +73,9 @@ def validate_mission(data: dict[str, Any]) -> Mission | list[UnplacedDiagnostic]
 def _validate_header(header: dict[str, Any]) -> tuple[Mission, list[UnplacedDiagnostic]]:
     text = json.dumps(header)
     if len(text) > MAX_ITEM:
-        return Mission(), [_too_large("the mission without its tasks, groups and reactions", None)]
+        return Mission(), [
+            _too_large(Message("the mission without its tasks, groups and reactions"), None)
+        ]
     try:
         # From JSON: only then pydantic is strict about numbers and accepts values of enumerations.
         return Mission.model_validate_json(text, strict=True), []
@@ -122,8 +127,8 @@ def _portions(values: list[Any]) -> Iterator[tuple[int, str]]:
 def _too_large(part: str, path: JsonPath | None) -> UnplacedDiagnostic:
     return unplaced(
         "file.too-large",
-        f"{part} is longer than {MAX_ITEM} characters",
-        "no mission needs that much: check the file",
+        Message("{part} is longer than {max_item} characters", part=part, max_item=MAX_ITEM),
+        Message("no mission needs that much: check the file"),
         path,
     )
 
@@ -142,11 +147,15 @@ def _faults(
                 yield too_deep()
             else:  # a character that JSON allows and Unicode does not
                 message = re.sub("^Invalid JSON: (.*) at line .*", r"\1", fault["msg"])
-                where = format_path((*list_path, first)) if list_path else "the file"
+                where = format_path((*list_path, first)) if list_path else Message("the file")
                 yield unplaced(
                     "file.not-json",
-                    f"{where} or a part after it is not usable JSON: {message}",
-                    "correct the character",
+                    Message(
+                        "{where} or a part after it is not usable JSON: {message}",
+                        where=where,
+                        message=message,
+                    ),
+                    Message("correct the character"),
                 )
             continue
         path = fault["loc"]
@@ -155,8 +164,8 @@ def _faults(
         message, hint = fault["msg"][:1].lower() + fault["msg"][1:], None
         if fault["type"] == "extra_forbidden":
             message, hint = (
-                "the mission format has no such field",
+                Message("the mission format has no such field"),
                 unknown_field_hint(Mission, path),
             )
-        where = format_path(path) or "the file"
+        where = format_path(path) or Message("the file")
         yield unplaced("file.wrong-field", f"{where}: {message}", hint, path)

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
 
+from argo_compiler.base.errors import reason_text
+from argo_compiler.base.message import Message
 from argo_compiler.diagnostics import (
     MAX_EXCERPT,
     Diagnostic,
@@ -90,7 +92,7 @@ def read_mission(path: Path) -> Mission:
 def read_mission_bytes(path: Path) -> bytes:
     """Return the content of a mission file. Raises DiagnosticError if it can't be read."""
     try:
-        return read_bytes(path, "mission file", MAX_BYTES)
+        return read_bytes(path, Message("mission file"), MAX_BYTES)
     except FileError as error:
         _refuse_file(str(path), error)
 
@@ -101,8 +103,8 @@ def decode_mission(content: bytes, source_name: str) -> MissionFile:
     Messages call the file `source_name`. Raises DiagnosticError as `read_mission` does.
     """
     try:
-        require_size(content, source_name, "mission file", MAX_BYTES)
-        text = decode_text(content, source_name, "mission file")
+        require_size(content, source_name, Message("mission file"), MAX_BYTES)
+        text = decode_text(content, source_name, Message("mission file"))
     except FileError as error:
         _refuse_file(source_name, error)
     data, has_repeated_keys = _parse(source_name, text)
@@ -141,8 +143,10 @@ def write_mission(mission: Mission, path: Path) -> None:
     try:
         write_atomically(path, mission_text(mission))
     except OSError as error:
-        message = f"the file can't be written: {error.strerror}"
-        _refuse(str(path), "", [unplaced("file.unwritable", message, "choose another path")])
+        message = Message("the file can't be written: {reason}", reason=reason_text(error))
+        _refuse(
+            str(path), "", [unplaced("file.unwritable", message, Message("choose another path"))]
+        )
 
 
 def mission_text(mission: Mission) -> str:
@@ -156,7 +160,9 @@ def _refuse(source_name: str, text: str, faults: Iterable[UnplacedDiagnostic]) -
 
 
 def _refuse_file(source_name: str, error: FileError) -> NoReturn:
-    def refuse(code: str, message: str = f"the file {error.message}") -> NoReturn:
+    def refuse(
+        code: str, message: str = Message("the file {message}", message=error.message)
+    ) -> NoReturn:
         _refuse(source_name, "", [unplaced(code, message, error.hint)])
 
     match error.problem:
@@ -165,7 +171,10 @@ def _refuse_file(source_name: str, error: FileError) -> NoReturn:
         case FileProblem.DIRECTORY:
             refuse("file.directory")
         case FileProblem.TOO_LARGE:
-            refuse("file.too-large", f"the file is larger than {MAX_BYTES // 1_000_000} MB")
+            refuse(
+                "file.too-large",
+                Message("the file is larger than {max_bytes} MB", max_bytes=MAX_BYTES // 1000000),
+            )
         case FileProblem.NOT_TEXT:
             refuse("file.not-text")
         case FileProblem.UNREADABLE:
@@ -203,29 +212,42 @@ def _parse(source_name: str, text: str) -> tuple[Any, bool]:
         _refuse(
             source_name,
             "",
-            [unplaced("file.not-json", "the file is empty", "choose a file with a mission")],
+            [
+                unplaced(
+                    "file.not-json",
+                    Message("the file is empty"),
+                    Message("choose a file with a mission"),
+                )
+            ],
         )
     try:
         return json.loads(text, object_pairs_hook=to_dict), has_repeated_keys
     except json.JSONDecodeError as error:
         lines = JsonText(text)
         diagnostic, _ = unplaced(
-            "file.not-json", f"the file is not JSON: {error.msg}", "correct it at the marked place"
+            "file.not-json",
+            Message("the file is not JSON: {msg}", msg=error.msg),
+            Message("correct it at the marked place"),
         )
         span = lines.span(error.pos, error.pos + 1)
         raise DiagnosticError(source_name, [_with_span(lines, diagnostic, span)]) from None
     except RecursionError:
         _refuse(source_name, text, [too_deep()])
     except ValueError:
-        message = f"the file can't be read: {LONG_NUMBER}"
-        _refuse(source_name, text, [unplaced("file.not-json", message, "correct the number")])
+        message = Message("the file can't be read: {long_number}", long_number=LONG_NUMBER)
+        _refuse(
+            source_name, text, [unplaced("file.not-json", message, Message("correct the number"))]
+        )
 
 
 def _not_a_mission() -> UnplacedDiagnostic:
     return unplaced(
         "file.not-a-mission",
-        "the file is not a mission: its JSON is not an object; a mission begins with "
-        f'{{"version": {VERSION}, "tasks": [',
+        Message(
+            "the file is not a mission: its JSON is not an object; a mission begins "
+            'with {{"version": {version}, "tasks": [',
+            version=VERSION,
+        ),
         None,
     )
 
@@ -236,34 +258,36 @@ def _why_other_json(data: dict[str, Any]) -> str | None:
     known = [name for name in data if name in Mission.model_fields and name != "version"]
     many = 2 if not known else _MIN_UNKNOWN
     if len(unknown) >= many and "tasks" not in data:
-        return f"it has {unknown[0][:40]!r}, but no 'tasks'"
+        return Message("it has {unknown}, but no 'tasks'", unknown=repr(unknown[0][:40]))
     tasks = data.get("tasks")
     if not isinstance(tasks, list) or not tasks or not all(isinstance(t, dict) for t in tasks):
         return None
     names = {name for task in tasks for name in task}
     other = sorted(names - Task.model_fields.keys())
     if other and not names & {"action", "transitions"}:
-        return f"its tasks have {other[0][:40]!r}, but no 'action'"
+        return Message("its tasks have {other}, but no 'action'", other=repr(other[0][:40]))
     return None
 
 
 def _other_json(reason: str) -> UnplacedDiagnostic:
     return unplaced(
         "file.not-a-mission",
-        f"the file is not a mission: {reason}; choose the mission's file",
+        Message("the file is not a mission: {reason}; choose the mission's file", reason=reason),
         None,
     )
 
 
 def _foreign(foreign: ForeignFile) -> UnplacedDiagnostic:
-    return unplaced("file.not-a-mission", f"the file {foreign.message}", None)
+    return unplaced(
+        "file.not-a-mission", Message("the file {message}", message=foreign.message), None
+    )
 
 
 def _run_record() -> UnplacedDiagnostic:
     return unplaced(
         "file.not-a-mission",
-        "the file is the report of a run, not a mission",
-        "choose the mission's file",
+        Message("the file is the report of a run, not a mission"),
+        Message("choose the mission's file"),
     )
 
 
@@ -272,9 +296,16 @@ def _unsupported_version(version: object) -> UnplacedDiagnostic:
     is_newer = isinstance(version, int) and version > VERSION and not isinstance(version, bool)
     return unplaced(
         "file.unsupported-version",
-        f"the file has version {text if len(text) < 40 else '...'} of the mission format",
-        f"this Argo reads versions up to {VERSION}: "
-        + ("use a newer Argo, or save the mission again" if is_newer else "write one of them"),
+        Message(
+            "the file has version {part} of the mission format",
+            part=text if len(text) < 40 else "...",
+        ),
+        Message("this Argo reads versions up to {version}: ", version=VERSION)
+        + (
+            Message("use a newer Argo, or save the mission again")
+            if is_newer
+            else Message("write one of them")
+        ),
         ("version",),
     )
 
@@ -282,8 +313,16 @@ def _unsupported_version(version: object) -> UnplacedDiagnostic:
 def _newer_field(version: int, path: JsonPath, name: str) -> UnplacedDiagnostic:
     return unplaced(
         "file.wrong-field",
-        f"{format_path(path)}: version {version} of the mission format has no {name}",
-        f'write "version": {VERSION}; there, a velocity applies to the path to its task',
+        Message(
+            "{format_path}: version {version} of the mission format has no {name}",
+            format_path=format_path(path),
+            version=version,
+            name=name,
+        ),
+        Message(
+            'write "version": {version}; there, a velocity applies to the path to its task',
+            version=VERSION,
+        ),
         path,
     )
 
@@ -292,8 +331,13 @@ def _duplicate_keys(text: str) -> Iterator[UnplacedDiagnostic]:
     for path, first in find_duplicate_keys(JsonText(text), MAX_FAULTS).items():
         yield unplaced(
             "file.duplicate-key",
-            f"{format_path(path)} is given here again; it was first given at line {first.line}, "
-            f"column {first.column}",
-            "remove one of the two",
+            Message(
+                "{format_path} is given here again; it was first given at line {line}, "
+                "column {column}",
+                format_path=format_path(path),
+                line=first.line,
+                column=first.column,
+            ),
+            Message("remove one of the two"),
             path,
         )

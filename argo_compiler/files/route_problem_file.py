@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, ValidationError, create_model
 
-from argo_compiler.base.errors import Invalid, Unavailable
+from argo_compiler.base.errors import Invalid, Unavailable, reason_text
+from argo_compiler.base.message import Message
 from argo_compiler.base.nearest_name import nearest_name
 from argo_compiler.files.atomic_write import write_atomically
 from argo_compiler.files.json_places import (
@@ -80,7 +81,9 @@ def write_route_problem(problem: RouteProblem, path: Path) -> None:
     try:
         write_atomically(path, route_problem_text(problem))
     except OSError as error:
-        raise Unavailable(f"{path} can't be written: {error.strerror}") from error
+        raise Unavailable(
+            Message("{path} can't be written: {reason}", path=path, reason=reason_text(error))
+        ) from error
 
 
 def route_problem_text(problem: RouteProblem) -> str:
@@ -106,8 +109,10 @@ def read_route_problem(path: Path) -> RouteProblem:
 
     Raises FileError, or Invalid with the place in the file.
     """
-    content = read_bytes(path, "file of a route problem", MAX_BYTES)
-    return parse_route_problem(decode_text(content, path, "file of a route problem"), str(path))
+    content = read_bytes(path, Message("file of a route problem"), MAX_BYTES)
+    return parse_route_problem(
+        decode_text(content, path, Message("file of a route problem")), str(path)
+    )
 
 
 def parse_route_problem(text: str, name: str) -> RouteProblem:
@@ -116,24 +121,42 @@ def parse_route_problem(text: str, name: str) -> RouteProblem:
         data = json.loads(text)
     except (json.JSONDecodeError, RecursionError) as error:
         where = f"{error.lineno}:{error.colno}:" if isinstance(error, json.JSONDecodeError) else ""
-        what = getattr(error, "msg", "it is nested too deeply")
-        raise Invalid(f"{name}:{where} the text is not JSON: {what}; correct it there") from error
+        what = getattr(error, "msg", Message("it is nested too deeply"))
+        raise Invalid(
+            Message(
+                "{name}:{where} the text is not JSON: {what}; correct it there",
+                name=name,
+                where=where,
+                what=what,
+            )
+        ) from error
     except ValueError as error:
-        raise Invalid(f"{name} can't be read: {LONG_NUMBER}; correct it") from error
+        raise Invalid(
+            Message(
+                "{name} can't be read: {long_number}; correct it",
+                name=name,
+                long_number=LONG_NUMBER,
+            )
+        ) from error
     version = data.get("version") if isinstance(data, dict) else None
     if version != VERSION or isinstance(version, bool):
         raise Invalid(
-            f"{name} is not a route problem of version {VERSION}, which begins with "
-            f'{{"version": {VERSION}, "visits": [; write it again with this version of Argo'
+            Message(
+                "{name} is not a route problem of version {version}, which begins with "
+                '{{"version": {version}, "visits": [; write it again with this version of '
+                "Argo",
+                name=name,
+                version=VERSION,
+            )
         )
     try:
         model = _PROBLEM.model_validate_json(text)
     except ValidationError as error:
-        raise Invalid(f"{name}{_fault_text(error, text)}") from None
+        raise Invalid(Message("{name}{fault}", name=name, fault=_fault_text(error, text))) from None
     try:
         return _to_problem(model)
     except Invalid as error:
-        raise Invalid(f"{name}: {error}") from None
+        raise Invalid(Message("{name}: {error}", name=name, error=error)) from None
 
 
 def _fault_text(error: ValidationError, text: str) -> str:
@@ -147,12 +170,14 @@ def _fault_text(error: ValidationError, text: str) -> str:
     if first["type"] == "extra_forbidden":
         nearest = nearest_name(str(path[-1]), tuple(_PROBLEM.model_fields))
         what = (
-            f"there is no such field; is `{nearest}` meant?"
+            Message("there is no such field; is `{nearest}` meant?", nearest=nearest)
             if nearest
-            else "there is no such field"
+            else Message("there is no such field")
         )
     more = len(error.errors()) - 1
-    return f"{place}: {format_path(path)}: {what}" + (f" (and {more} more)" if more else "")
+    return f"{place}: {format_path(path)}: {what}" + (
+        Message(" (and {more} more)", more=more) if more else ""
+    )
 
 
 def _to_problem(model: Any) -> RouteProblem:
@@ -180,13 +205,15 @@ def _to_problem(model: Any) -> RouteProblem:
 
 def _matrix(rows: _Rows, name: str) -> NDArray[np.int64]:
     if len({len(row) for row in rows}) > 1:
-        raise Invalid(f"{name}: its rows do not have the same length")
+        raise Invalid(Message("{name}: its rows do not have the same length", name=name))
     try:
         return np.array(
             [[NEVER if time is None else time for time in row] for row in rows], np.int64
         ).reshape(len(rows), -1 if rows else 0)
     except OverflowError:
-        raise Invalid(f"{name}: a number in it is too large: use a larger unit") from None
+        raise Invalid(
+            Message("{name}: a number in it is too large: use a larger unit", name=name)
+        ) from None
 
 
 def route_suggestion_text(suggestion: RouteSuggestion) -> str:

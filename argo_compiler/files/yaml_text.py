@@ -12,6 +12,7 @@ import yaml
 from yaml.constructor import ConstructorError
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.message import Message
 
 Node = yaml.Node
 MappingNode = yaml.MappingNode
@@ -61,7 +62,11 @@ class RepeatedKey(NamedTuple):
 
     @property
     def message(self) -> str:
-        return f"`{self.key}` is given twice; it was first given at line {self.first_line}"
+        return Message(
+            "`{key}` is given twice; it was first given at line {first_line}",
+            key=self.key,
+            first_line=self.first_line,
+        )
 
 
 class YamlText(NamedTuple):
@@ -90,7 +95,10 @@ class _Loader(yaml.SafeLoader):
                         self.flatten_mapping(other)
                         self._merged += len(other.value)
                     if self._merged > _MOST_MERGED:
-                        message = f"its merges (`<<`) repeat more than {_MOST_MERGED} fields"
+                        message = Message(
+                            "its merges (`<<`) repeat more than {most_merged} fields",
+                            most_merged=_MOST_MERGED,
+                        )
                         raise ConstructorError(None, None, message, key.start_mark)
         super().flatten_mapping(node)
 
@@ -140,14 +148,16 @@ def compose_yaml(text: str) -> YamlText:
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark
         place = (mark.line + 1, mark.column + 1) if mark else (None, None)
-        raise NotYamlError(f"the file is not YAML: {error.problem}", *place) from None
+        raise NotYamlError(
+            Message("the file is not YAML: {problem}", problem=error.problem), *place
+        ) from None
     except yaml.YAMLError as error:
-        raise NotYamlError(f"the file is not YAML: {error}") from None
+        raise NotYamlError(Message("the file is not YAML: {error}", error=error)) from None
     except RecursionError:
         raise NotYamlError("the file is not YAML: it is nested too deeply") from None
     except ValueError:
         why = "it has a value that can't be read, such as a number with thousands of digits"
-        raise NotYamlError(f"the file is not YAML: {why}") from None
+        raise NotYamlError(Message("the file is not YAML: {why}", why=why)) from None
 
 
 def load_yaml(text: str, source_name: str) -> Any:
@@ -159,10 +169,18 @@ def load_yaml(text: str, source_name: str) -> Any:
         content = compose_yaml(text)
     except NotYamlError as error:
         place = source_name if error.line is None else f"{source_name}:{error.line}:{error.column}"
-        raise Invalid(f"{place}: {error}") from None
+        raise Invalid(Message("{place}: {error}", place=place, error=error)) from None
     for repeated in content.repeated_keys:
         mark = repeated.node.start_mark
-        raise Invalid(f"{source_name}:{mark.line + 1}:{mark.column + 1}: {repeated.message}")
+        raise Invalid(
+            Message(
+                "{source_name}:{line}:{column}: {message}",
+                source_name=source_name,
+                line=mark.line + 1,
+                column=mark.column + 1,
+                message=repeated.message,
+            )
+        )
     return content.data
 
 

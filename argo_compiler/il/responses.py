@@ -12,6 +12,7 @@ from typing import Any
 
 from argo_compiler.base.errors import ArgoError
 from argo_compiler.base.extensions import ExtensionPoint, function_problem
+from argo_compiler.base.message import Message
 from argo_compiler.il.events import EventKind
 
 
@@ -69,4 +70,6 @@ def expand_response(fields: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def _title(name: str) -> str:
-    return f"the response `{name}` of {RESPONSES.package_of(name)}"
+    return Message(
+        "the response `{name}` of {package_of}", name=name, package_of=RESPONSES.package_of(name)
+    )

@@ -7,6 +7,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from argo_compiler.base.catalog import Catalog
+from argo_compiler.base.message import Listing, Message
 from argo_compiler.base.model import Pose
 from argo_compiler.base.quaternions import to_yaw
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, diagnostic_of, has_errors
@@ -59,7 +60,11 @@ def from_isar(data: Any, source_name: str, catalog: Catalog | None = None) -> Im
         diagnostics = [
             diagnostic_of(
                 "isar.wrong-field",
-                f"{format_path(e['loc']) or 'the mission'}: {e['msg']}",
+                Message(
+                    "{place}: {message}",
+                    place=format_path(e["loc"]) or Message("the mission"),
+                    message=e["msg"],
+                ),
                 "correct the isar mission",
             )
             for e in error.errors(include_url=False)[:100]
@@ -90,7 +95,7 @@ class _Importer:
         for index, task in enumerate(definition.tasks):
             path = f"tasks[{index}]"
             self._warn_of_extras(path, task)
-            name = task.id or _unused(f"task {index + 1}", used)
+            name = task.id or _unused(Message("task {index}", index=index + 1), used)
             pose = self._pose(f"{path}.pose", task.pose)
             if task.type == RETURN_TO_HOME:
                 dock = pose
@@ -98,7 +103,7 @@ class _Importer:
                     path,
                     pose is not None,
                     "home",
-                    "has no usable pose of the home in the site's frame",
+                    Message("has no usable pose of the home in the site's frame"),
                 )
                 tasks.append(Task(name=name, action=Action.WAYPOINT, pose=pose))
             else:
@@ -118,19 +123,24 @@ class _Importer:
 
     def _check_inspection(self, path: str, task: TaskDefinition) -> None:
         inspection = task.inspection
-        self._require(path, inspection is not None, "inspection", "has no inspection")
+        self._require(path, inspection is not None, "inspection", Message("has no inspection"))
         self._require(
-            path, bool(task.tag), "tag", "has no tag, which names the checkpoint to inspect"
+            path,
+            bool(task.tag),
+            "tag",
+            Message("has no tag, which names the checkpoint to inspect"),
         )
         if task.zoom is not None:
-            self._warn(f"{path}.zoom", "is ignored: Argo does not zoom")
+            self._warn(f"{path}.zoom", Message("is ignored: Argo does not zoom"))
         if inspection:
             self._warn_of_extras(f"{path}.inspection", inspection)
             self._require(
                 path,
                 inspection.type == IMAGE,
                 "inspection-type",
-                f"is an inspection of type {inspection.type}; Argo only reads images",
+                Message(
+                    "is an inspection of type {type}; Argo only reads images", type=inspection.type
+                ),
             )
 
     def _pose(self, path: str, pose: RobotPose) -> Pose | None:
@@ -141,28 +151,41 @@ class _Importer:
         """
         frames = {pose.frame_name, pose.position.frame_name, pose.orientation.frame_name}
         if frames != {FRAME}:
-            other = ", ".join(sorted(frames - {FRAME}))
-            self._warn(path, f"is ignored: it is in the frame {other}, not in {FRAME}")
+            other = Listing(sorted(frames - {FRAME}))
+            self._warn(
+                path,
+                Message(
+                    "is ignored: it is in the frame {other}, not in {frame}",
+                    other=other,
+                    frame=FRAME,
+                ),
+            )
             return None
         q, p = pose.orientation, pose.position
         try:
             return Pose(x=p.x, y=p.y, z=p.z, yaw=to_yaw(q.x, q.y, q.z, q.w))
         except ValueError as error:
-            self._warn(path, f"is ignored: the orientation {error}")
+            self._warn(path, Message("is ignored: the orientation {error}", error=error))
             return None
 
     def _require(self, path: str, is_given: bool, code: str, message: str) -> None:
         if not is_given:
-            hint = "remove the task, or complete it"
-            self.diagnostics.append(diagnostic_of(f"isar.{code}", f"{path} {message}", hint))
+            hint = Message("remove the task, or complete it")
+            self.diagnostics.append(
+                diagnostic_of(
+                    f"isar.{code}", Message("{path} {message}", path=path, message=message), hint
+                )
+            )
 
     def _warn_of_extras(self, path: str, part: Part) -> None:
         for name, value in (part.model_extra or {}).items():
             if value is not None:
-                self._warn(f"{path}.{name}".removeprefix("."), "is ignored")
+                self._warn(f"{path}.{name}".removeprefix("."), Message("is ignored"))
 
     def _warn(self, path: str, message: str) -> None:
-        self.diagnostics.append(diagnostic_of("isar.dropped", f"{path} {message}"))
+        self.diagnostics.append(
+            diagnostic_of("isar.dropped", Message("{path} {message}", path=path, message=message))
+        )
 
 
 def _unused(name: str, used: set[str]) -> str:

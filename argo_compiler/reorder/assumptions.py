@@ -8,6 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from argo_compiler.base.message import Message
 from argo_compiler.base.quantity_text import limit_text
 from argo_compiler.il import Action
 from argo_compiler.reorder.travel_matrix import TravelMatrix
@@ -21,31 +22,43 @@ def assumption_notes(visits: Visits, matrix: TravelMatrix) -> Iterator[str]:
     actions that may not end within their time limits.
     """
     for leaf in _waits_of_unknown_length(visits):
-        yield f"'{visits.leaf_task(leaf).name}' is assumed to take its whole limit"
+        yield Message(
+            "'{leaf_task}' is assumed to take its whole limit",
+            leaf_task=visits.leaf_task(leaf).name,
+        )
     for leaf in _leaves_beyond_limit(visits, matrix):
         limit = limit_text(visits.leaf_task(leaf).time_limit or 0.0)
         yield (
-            f"'{visits.leaf_task(leaf).name}' may take longer than its time limit, {limit}, "
-            "depending on where the robot comes from: computed as if it had none"
+            Message(
+                "'{leaf_task}' may take longer than its time limit, {limit}, depending on "
+                "where the robot comes from: computed as if it had none",
+                leaf_task=visits.leaf_task(leaf).name,
+                limit=limit,
+            )
         )
     for group_unit, _ in visits.group_units:
         group = visits.chain.flow.groups[group_unit.group]
         if group.hard:
-            yield f"'{group.name}' is left where its time is up: computed from its farthest task"
+            yield Message(
+                "'{group}' is left where its time is up: computed from its farthest task",
+                group=group.name,
+            )
         if group.until:
-            yield f"'{group.name}' is assumed to have as many rounds as it may have"
+            yield Message(
+                "'{group}' is assumed to have as many rounds as it may have", group=group.name
+            )
 
 
 def assumption_phrases(visits: Visits, matrix: TravelMatrix) -> Iterator[str]:
     """Yield, in words, the conditions under which a run takes the computed time of its order."""
     if _waits_of_unknown_length(visits):
-        yield "each WAIT takes its whole limit"
+        yield Message("each WAIT takes its whole limit")
     if _leaves_beyond_limit(visits, matrix):
-        yield "no time limit ends an action"
+        yield Message("no time limit ends an action")
     if any(
         visits.chain.flow.groups[group_unit.group].until for group_unit, _ in visits.group_units
     ):
-        yield "each group has as many rounds as it may have"
+        yield Message("each group has as many rounds as it may have")
 
 
 def _waits_of_unknown_length(visits: Visits) -> list[int]:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Invalid, NotFound
+from argo_compiler.base.message import Message
 from argo_compiler.base.quantity_text import exceeding_duration_text, limit_text
 from argo_compiler.il import Mission, Order
 from argo_compiler.reorder.assumptions import assumption_notes, assumption_phrases
@@ -55,7 +56,7 @@ class MissionProblem:
     @property
     def assumptions_clause(self) -> str:
         """Clause ` if …` for messages that rule out an order; empty if there are no assumptions."""
-        return f" if {', and '.join(self.assumed)}" if self.assumed else ""
+        return Message(" if {assumed:and}", assumed=self.assumed) if self.assumed else ""
 
 
 def route_problem(
@@ -97,8 +98,12 @@ def route_problem(
         size = len(visits.task_units) + 1
         times = times[:size, :size]
     else:
-        words["battery"] = f"battery of {matrix.battery:g} Wh"
-        reasons.append(f"the battery gives {matrix.battery:g} Wh, which may not be enough")
+        words["battery"] = Message("battery of {battery:g} Wh", battery=matrix.battery)
+        reasons.append(
+            Message(
+                "the battery gives {battery:g} Wh, which may not be enough", battery=matrix.battery
+            )
+        )
     problem = RouteProblem(
         visits=tuple(_visits(visits, services, windows, requirements)),
         travel=_travel_times(visits, times, services, matrix),
@@ -135,8 +140,12 @@ def late_visit_texts(planned: MissionProblem, route: Tour) -> Iterator[str]:
         if end > window.latest + _ROUNDING:
             done = exceeding_duration_text(end, window.latest)
             yield (
-                f"{visits.names[k]} is done at {done}, after its soft time window: "
-                f"{limit_text(window.latest)}"
+                Message(
+                    "{name} is done at {done}, after its soft time window: {limit}",
+                    name=visits.names[k],
+                    done=done,
+                    limit=limit_text(window.latest),
+                )
             )
 
 
@@ -147,10 +156,12 @@ def _duration_limit(mission: Mission, requirements: Requirements) -> tuple[float
     """
     limits = []
     if mission.max_duration is not None:
-        words = f"maximum duration {limit_text(mission.max_duration)}"
+        words = Message("maximum duration {limit}", limit=limit_text(mission.max_duration))
         limits.append((mission.max_duration, words))
     if requirements.budget is not None:
-        limits.append((requirements.budget, f"budget {limit_text(requirements.budget)}"))
+        limits.append(
+            (requirements.budget, Message("budget {limit}", limit=limit_text(requirements.budget)))
+        )
     return min(limits, default=None)
 
 
@@ -177,8 +188,12 @@ def _probabilities(visits: Visits, requirements: Requirements) -> dict[tuple[int
         leaf, target = number.get(requirement.task), number.get(requirement.target)
         if leaf is None or target not in {t for _, t in flow.leaves[leaf].conditional}:
             raise NotFound(
-                f"no condition of a task '{requirement.task}' leads to '{requirement.target}': "
-                "name a task and the target of one of its conditions"
+                Message(
+                    "no condition of a task '{task}' leads to '{target}': name a task and the "
+                    "target of one of its conditions",
+                    task=requirement.task,
+                    target=requirement.target,
+                )
             )
         assert target is not None
         probabilities[leaf, target] = requirement.probability
@@ -186,8 +201,12 @@ def _probabilities(visits: Visits, requirements: Requirements) -> dict[tuple[int
         total = sum(p for (from_, _), p in probabilities.items() if from_ == leaf)
         if total > 1.0 + _ROUNDING:
             raise Invalid(
-                f"the probabilities of the transitions from '{flow.leaves[leaf].name}' add up to "
-                f"{total:g}: at most 1 is possible"
+                Message(
+                    "the probabilities of the transitions from '{leave}' add up to {total:g}: "
+                    "at most 1 is possible",
+                    leave=flow.leaves[leaf].name,
+                    total=total,
+                )
             )
     return probabilities
 
@@ -215,8 +234,11 @@ def _costs(
         if np.isneginf(row).any():
             name = visits.chain.name(unit.entry)
             raise Invalid(
-                f"how long it takes from '{name}' to the next task can't be computed: only the "
-                "time of a group around it ends it"
+                Message(
+                    "how long it takes from '{name}' to the next task can't be computed: only "
+                    "the time of a group around it ends it",
+                    name=name,
+                )
             )
     chargers = range(tasks, tasks + len(matrix.chargers))
     columns = [unit.entry for unit in visits.task_units]
@@ -282,7 +304,7 @@ def _rounds(visits: Visits, matrix: TravelMatrix) -> Iterator[Round]:
     for group_unit, members in visits.group_units:
         group = visits.chain.flow.groups[group_unit.group]
         yield Round(
-            f"group '{group.name}'",
+            Message("group '{group}'", group=group.name),
             members,
             repeat=group.count,
             duration=matrix.units_rounded_up(group.duration),

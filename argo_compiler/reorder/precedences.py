@@ -4,13 +4,14 @@ from collections.abc import Iterator
 from itertools import combinations, pairwise, product
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.message import Listing, Message
 from argo_compiler.il import Action
 from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.reorder.units import TaskUnit, Unit
 from argo_compiler.reorder.visits import Visits, display_name
 from argo_compiler.route.problem import Precedence
 
-AS_WRITTEN = "the order as written"
+AS_WRITTEN = Message("the order as written")
 """message: the written order is kept"""
 
 
@@ -28,8 +29,8 @@ def precedences(
     result: list[Precedence] = []
     is_fixed = mission_is_precise or requirements.keep_order
     if is_fixed and len(everything) > 1:
-        names = ", ".join(visits.checkpoint_number_or_name(k) for k in everything)
-        words = f"precise order {names}" if mission_is_precise else AS_WRITTEN
+        names = Listing(visits.checkpoint_number_or_name(k) for k in everything)
+        words = Message("precise order {names}", names=names) if mission_is_precise else AS_WRITTEN
         result.append(Precedence(everything, words))
     result += required_precedences(visits, requirements)
     result += _mission_precedences(visits)
@@ -64,15 +65,24 @@ def required_precedences(visits: Visits, requirements: Requirements) -> Iterator
         for (i, one), (j, other) in combinations(enumerate(members), 2):
             if set(one) & set(other):
                 raise Invalid(
-                    f"{words}: {display_name(sequence[i])} and {display_name(sequence[j])} have a "
-                    "task in common, which can't come before itself"
+                    Message(
+                        "{words}: {display_name} and {display_name_2} have a task in common, which "
+                        "can't come before itself",
+                        words=words,
+                        display_name=display_name(sequence[i]),
+                        display_name_2=display_name(sequence[j]),
+                    )
                 )
         if all(len(one) == 1 for one in members):
             yield Precedence(tuple(one[0] for one in members), words)
             continue
         # All pairs, not only neighbours: the visits between two of them may be left out.
         for (i, one), (j, other) in combinations(enumerate(members), 2):
-            words = f"{display_name(sequence[i])} before {display_name(sequence[j])}"
+            words = Message(
+                "{display_name} before {display_name_2}",
+                display_name=display_name(sequence[i]),
+                display_name_2=display_name(sequence[j]),
+            )
             yield from (Precedence(pair, words) for pair in product(one, other))
 
 
@@ -82,7 +92,12 @@ def _mission_precedences(visits: Visits) -> Iterator[Precedence]:
     for pair in visits.chain.before:
         one, other = (visits.visit_of_leaf.get(leaves.get(name, -1)) for name in pair)
         if one is not None and other is not None and one != other:
-            yield Precedence((one, other), f"{visits.names[one]} before {visits.names[other]}")
+            yield Precedence(
+                (one, other),
+                Message(
+                    "{name} before {name_2}", name=visits.names[one], name_2=visits.names[other]
+                ),
+            )
 
 
 def precedence_name_pairs(
@@ -103,7 +118,7 @@ def _initial_wait(visits: Visits) -> Iterator[Precedence]:
     """Yield precedences that keep an initial WAIT first: it takes place at the start pose."""
     first = visits.leaf_task(visits.task_units[0].entry) if visits.task_units else None
     if first is not None and first.action is Action.WAIT:
-        words = f"'{first.name}' is done before the robot sets off"
+        words = Message("'{first}' is done before the robot sets off", first=first.name)
         yield from (Precedence((0, k), words) for k in range(1, len(visits.task_units)))
 
 
@@ -114,7 +129,11 @@ def _repeated_measurements(visits: Visits) -> Iterator[Precedence]:
         measurements = visits.visits_measuring(object_id)
         if len(measurements) > 1:
             yield Precedence(
-                tuple(measurements), f"the measurements of checkpoint {object_id} keep their order"
+                tuple(measurements),
+                Message(
+                    "the measurements of checkpoint {object_id} keep their order",
+                    object_id=object_id,
+                ),
             )
 
 
@@ -134,12 +153,24 @@ def _decisions(visits: Visits) -> Iterator[Precedence]:
             measurements = visits.visits_measuring(object_id)
             earlier = [k for k in measurements if k < number]
             for k in earlier:
-                words = f"checkpoint {object_id} is measured before {visits.names[number]} decides"
-                yield Precedence((k, number), f"{words} on it", needed=k == earlier[-1])
+                words = Message(
+                    "checkpoint {object_id} is measured before {name} decides",
+                    object_id=object_id,
+                    name=visits.names[number],
+                )
+                yield Precedence(
+                    (k, number), Message("{words} on it", words=words), needed=k == earlier[-1]
+                )
             for k in measurements:
                 if k > number:
-                    words = f"{visits.names[number]} decides on checkpoint {object_id} before"
-                    yield Precedence((number, k), f"{words} it is measured again")
+                    words = Message(
+                        "{name} decides on checkpoint {object_id} before",
+                        name=visits.names[number],
+                        object_id=object_id,
+                    )
+                    yield Precedence(
+                        (number, k), Message("{words} it is measured again", words=words)
+                    )
 
 
 def _early_ends(visits: Visits) -> Iterator[Precedence]:
@@ -153,8 +184,12 @@ def _early_ends(visits: Visits) -> Iterator[Precedence]:
         exits, [-1, *exits], [*exits[1:], len(visits.task_units)], strict=False
     ):
         name = visits.names[exit_]
-        before = f"{name} may end the mission: what is written before it stays before it"
-        after = f"{name} may end the mission: what is written after it stays after it"
+        before = Message(
+            "{name} may end the mission: what is written before it stays before it", name=name
+        )
+        after = Message(
+            "{name} may end the mission: what is written after it stays after it", name=name
+        )
         yield from (Precedence((k, exit_), before) for k in range(low + 1, exit_))
         until = high + 1 if high < len(visits.task_units) else high
         yield from (Precedence((exit_, k), after) for k in range(exit_ + 1, until))
@@ -167,10 +202,12 @@ def _last_units(visits: Visits) -> Iterator[Precedence]:
     and so can a mission that does not dock.
     """
     if visits.chain.end is None:
-        yield from _before_last(visits, visits.chain.units, "the mission")
+        yield from _before_last(visits, visits.chain.units, Message("the mission"))
     for group_unit, _ in visits.group_units:
         name = visits.chain.flow.groups[group_unit.group].name
-        yield from _before_last(visits, group_unit.inside, f"a round of '{name}'")
+        yield from _before_last(
+            visits, group_unit.inside, Message("a round of '{name}'", name=name)
+        )
 
 
 def _before_last(visits: Visits, units: tuple[Unit, ...], whole: str) -> Iterator[Precedence]:
@@ -181,8 +218,10 @@ def _before_last(visits: Visits, units: tuple[Unit, ...], whole: str) -> Iterato
     for unit in units[:-1]:
         if isinstance(unit, TaskUnit) and _has_several_exits(unit):
             here, last = visits.visit_of_leaf[unit.entry], visits.visits_in((units[-1],))[-1]
-            words = (
-                f"{whole} can't end with {visits.names[here]}, which can lead to different tasks"
+            words = Message(
+                "{whole} can't end with {name}, which can lead to different tasks",
+                whole=whole,
+                name=visits.names[here],
             )
             yield Precedence((here, last), words)
 

@@ -6,6 +6,7 @@ from typing import Annotated
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from argo_compiler.base.errors import ArgoError, Invalid
+from argo_compiler.base.message import Listing, Message
 from argo_compiler.base.model import Model
 
 _PART = re.compile(r"\s*(\d+(?:\.\d+)?)\s*(h|hours?|min|minutes?|'|s|seconds?)?(?![^\W\d])")
@@ -22,13 +23,20 @@ def parse_seconds(text: str) -> float:
     scale = 2 * _SECONDS["h"]
     text = text.strip()
     if text.startswith("-"):
-        raise Invalid(f"`{text}` must be above 0: write `20 min`, `1 h 30 min` or `90 s`")
+        raise Invalid(
+            Message("`{text}` must be above 0: write `20 min`, `1 h 30 min` or `90 s`", text=text)
+        )
     if clock := _CLOCK.fullmatch(text):
         hours, first, last = (int(part or 0) for part in clock.groups())
         if clock.group(1) is None:
             raise Invalid(
-                f"`{text}` can be read as {first} min {last} s or as {first} h {last} min: write "
-                "one of these"
+                Message(
+                    "`{text}` can be read as {first} min {last} s or as {first} h {last} min: "
+                    "write one of these",
+                    text=text,
+                    first=first,
+                    last=last,
+                )
             )
         if first < 60:
             return 3600.0 * hours + 60.0 * first + last
@@ -36,7 +44,11 @@ def parse_seconds(text: str) -> float:
         part = _PART.match(text, at)
         factor = _SECONDS[(part.group(2) or "s")[0]] if part else scale
         if part is None or factor >= scale:  # larger units come first, each once
-            raise Invalid(f"`{text}` is not a duration: write `20 min`, `1 h 30 min` or `90 s`")
+            raise Invalid(
+                Message(
+                    "`{text}` is not a duration: write `20 min`, `1 h 30 min` or `90 s`", text=text
+                )
+            )
         total, at, scale = total + float(part.group(1)) * factor, part.end(), factor
     if not text:
         raise Invalid("a duration is missing: write `20 min`, `1 h 30 min` or `90 s`")
@@ -60,7 +72,7 @@ MissionPart = Annotated[int, Field(strict=True, ge=1)] | Annotated[str, Field(mi
 
 def _distinct(sequence: tuple[MissionPart, ...]) -> tuple[MissionPart, ...]:
     if len(set(map(str, sequence))) < len(sequence):
-        listed = ", ".join(map(str, sequence))
+        listed = Listing(map(str, sequence))
         raise ValueError(f"`{listed}` names something twice: nothing comes before itself")
     return sequence
 

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.message import Message
 from argo_compiler.il import Action, Group, Mission, Task, Transition
 from argo_compiler.reorder.mission_problem import MissionProblem
 from argo_compiler.reorder.units import GroupUnit, TaskUnit, Unit
@@ -32,17 +33,26 @@ def _require_possible(planned: MissionProblem, route: Tour) -> None:
         first = min(route.charges)
         charger = problem.chargers[route.charges[first]]
         after = (
-            "sets off" if not first else f"has done {planned.visits.names[route.order[first - 1]]}"
+            Message("sets off")
+            if not first
+            else Message("has done {name}", name=planned.visits.names[route.order[first - 1]])
         )
         raise Invalid(
-            f"this order charges at {charger} when the robot {after}, and no task of a mission "
-            "charges: make two missions of it, or let the mission react to low_battery"
+            Message(
+                "this order charges at {charger} when the robot {after}, and no task of a "
+                "mission charges: make two missions of it, or let the mission react to "
+                "low_battery",
+                charger=charger,
+                after=after,
+            )
         )
     if not route.order and planned.visits.chain.end is None:
         raise Invalid("this order leaves out every task: allow more time")
     for violation in evaluate(problem, route).violations:
         if not violation.startswith("it takes "):
-            raise Invalid(f"no mission can be written in this order: {violation}")
+            raise Invalid(
+                Message("no mission can be written in this order: {violation}", violation=violation)
+            )
 
 
 class _Rewriting:

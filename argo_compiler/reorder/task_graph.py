@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from argo_compiler.analysis.flow import NOWHERE, Flow
 from argo_compiler.base.errors import Invalid, Remedy
 from argo_compiler.base.graphs import can_reach, reachable_from
+from argo_compiler.base.message import Message
 from argo_compiler.hfsm.lowering import lower
 from argo_compiler.il import Action, Condition, Mission
 
@@ -129,8 +130,11 @@ class TaskGraph:
         for i in self.own_leaves:
             if not reached[i]:
                 raise Invalid(
-                    f"no execution path leads to task '{flow.leaves[i].name}', so it can't be "
-                    "part of an order: remove it, or add a transition to it; a check gives details",
+                    Message(
+                        "no execution path leads to task '{leave}', so it can't be part of an "
+                        "order: remove it, or add a transition to it; a check gives details",
+                        leave=flow.leaves[i].name,
+                    ),
                     remedies=(Remedy.CHECK_MISSION,),
                 )
         if not reached[flow.end_node]:
@@ -169,7 +173,9 @@ class TaskGraph:
         leads_to_end = can_reach(level.successors(level.edges), [level.sink])
         if group != NOWHERE and not all(leads_to_end):
             stuck = children[leads_to_end.index(False)]
-            level.chain_error = f"'{self.name(stuck)}' does not lead to the end of a round"
+            level.chain_error = Message(
+                "'{task}' does not lead to the end of a round", task=self.name(stuck)
+            )
         return level
 
     def name(self, child: int) -> str:
@@ -213,7 +219,7 @@ class TaskGraph:
             if group == NOWHERE:
                 level.edges.append(Edge(number, level.sink, leaf, None, tail, not tail))
             elif tail:
-                level.chain_error = f"'{flow.leaves[leaf].name}' leaves it"
+                level.chain_error = Message("'{leave}' leaves it", leave=flow.leaves[leaf].name)
             else:
                 self.early_exits.add((leaf, target))
         elif target == flow.end_node:
@@ -231,7 +237,7 @@ class TaskGraph:
         elif target in self.detached:
             self.early_exits.add((leaf, target))
         else:
-            level.chain_error = f"'{flow.leaves[leaf].name}' leaves it"
+            level.chain_error = Message("'{leave}' leaves it", leave=flow.leaves[leaf].name)
 
     def _without_early_ends(self, level: Level) -> list[Edge]:
         """Return a level's edges without those that only end the mission early.
@@ -267,13 +273,13 @@ class TaskGraph:
             if edge.target in out and edge.source not in out and edge.entry is not None:
                 self.early_exits.add((edge.leaf, edge.entry))
         if level.child_of[self.flow.initial] in out:
-            level.chain_error = "it does not always reach its docking station"
+            level.chain_error = Message("it does not always reach its docking station")
         for leaf in self.detached:
             if any(
                 condition.max_age is not None for condition in self.conditions_checked_after(leaf)
             ):
                 name = self.flow.leaves[leaf].name
-                level.chain_error = (
-                    f"'{name}', with which it may end early, checks the age of a value"
+                level.chain_error = Message(
+                    "'{name}', with which it may end early, checks the age of a value", name=name
                 )
         level.edges = [e for e in level.edges if e.source not in out and e.target not in out]

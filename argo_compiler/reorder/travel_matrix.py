@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Conflict, Invalid
+from argo_compiler.base.message import Message
 from argo_compiler.il import Action, Mission
 
 _ROUNDING = 1e-6  # of a unit, left by sums of floats
@@ -44,7 +45,13 @@ class TravelMatrix:
         columns = len(self.tasks) + len(self.chargers)
         shape = (columns + 1, columns)
         if self.time.shape != shape or self.energy.shape != shape or len(self.work) != columns:
-            raise Invalid(f"times, energies and work of {columns} destinations must be {shape}")
+            raise Invalid(
+                Message(
+                    "times, energies and work of {columns} destinations must be {shape}",
+                    columns=columns,
+                    shape=shape,
+                )
+            )
         if self.chargers and (self.battery is None or self.charging <= 0.0):
             raise Invalid("with chargers, the battery and the charging power must be given")
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from argo_compiler.analysis.flow import NOWHERE, Flow
 from argo_compiler.base.errors import Invalid
 from argo_compiler.base.graphs import components, is_loop, reachable_from
+from argo_compiler.base.message import Message
 from argo_compiler.il import Condition, Mission
 from argo_compiler.reorder.task_graph import Level, TaskGraph
 
@@ -102,7 +103,12 @@ class _Finder:
             level = graph.level(NOWHERE)
             graph.detach_early_end_tasks(level)
             if level.chain_error:
-                raise Invalid(f"the order of this mission can't be changed: {level.chain_error}")
+                raise Invalid(
+                    Message(
+                        "the order of this mission can't be changed: {chain_error}",
+                        chain_error=level.chain_error,
+                    )
+                )
             units = self._units(NOWHERE, level, self.flow.initial)
         return UnitChain(
             self.flow,
@@ -150,9 +156,16 @@ class _Finder:
 
     def _explain_loop(self, level: Level, part: Sequence[int]) -> None:
         names = [f"'{self.graph.name(level.children[child])}'" for child in sorted(part)]
-        what = names[0] if len(names) == 1 else f"{names[0]} to {names[-1]}"
+        what = (
+            names[0]
+            if len(names) == 1
+            else Message("{name} to {name_2}", name=names[0], name_2=names[-1])
+        )
         self.reasons.append(
-            f"{what} may be done again by a condition: kept as written, and counted once"
+            Message(
+                "{what} may be done again by a condition: kept as written, and counted once",
+                what=what,
+            )
         )
 
     def _entries(self, level: Level, chain: Sequence[int]) -> set[int]:
@@ -204,8 +217,12 @@ class _Finder:
                     low, high = min(here, there), max(here, there)
                     joined_until[low] = max(joined_until[low], high)
                     self.reasons.append(
-                        f"'{self.flow.leaves[leaf].name}' checks the age of the value of "
-                        f"checkpoint {condition.object_id}: kept as written from its measurement on"
+                        Message(
+                            "'{leave}' checks the age of the value of checkpoint {object_id}: "
+                            "kept as written from its measurement on",
+                            leave=self.flow.leaves[leaf].name,
+                            object_id=condition.object_id,
+                        )
                     )
         result: list[list[int]] = []
         reach = -1
@@ -226,7 +243,13 @@ class _Finder:
             if isinstance(unit_or_reason, GroupUnit):
                 return unit_or_reason
             name = flow.groups[inner].name
-            self.reasons.append(f"group '{name}' is kept as written: {unit_or_reason}")
+            self.reasons.append(
+                Message(
+                    "group '{name}' is kept as written: {unit_or_reason}",
+                    name=name,
+                    unit_or_reason=unit_or_reason,
+                )
+            )
         inside = set(chain)
         exits = [e for e in level.edges if e.source in inside and e.target not in inside]
         final = exits[0].leaf if len(exits) == 1 and exits[0].tail else None
@@ -248,22 +271,27 @@ class _Finder:
         """Return the group as a group unit, or the reason why it is none."""
         flow = self.flow.groups[group]
         if not flow.has_round_or_time_limit:
-            return "only a condition or the time of a group around it ends it"
+            return Message("only a condition or the time of a group around it ends it")
         if self.graph.is_wait(flow.start):
-            return f"it starts with '{self.flow.leaves[flow.start].name}', which is done anywhere"
+            return Message(
+                "it starts with '{leave}', which is done anywhere",
+                leave=self.flow.leaves[flow.start].name,
+            )
         if entry != flow.start:
-            return f"it is entered at '{self.flow.leaves[entry].name}', not at its start"
+            return Message(
+                "it is entered at '{leave}', not at its start", leave=self.flow.leaves[entry].name
+            )
         if any(edge.source == edge.target == child for edge in around.edges):
-            return "it is entered again by its own end"
+            return Message("it is entered again by its own end")
         if any(condition.max_age is not None for condition in flow.until):
-            return "its `until` checks the age of a value"
+            return Message("its `until` checks the age of a value")
         leaving = [
             edge.leaf
             for edge in around.edges
             if edge.source == child and not (edge.tail and edge.leaf == flow.last)
         ]
         if leaving:
-            return f"'{self.flow.leaves[leaving[0]].name}' may leave it"
+            return Message("'{leave}' may leave it", leave=self.flow.leaves[leaving[0]].name)
         backup = set(self.graph.early_exits), list(self.reasons)
         level = self.graph.level(group)
         if level.chain_error is None:
@@ -271,4 +299,4 @@ class _Finder:
             if all(reached):
                 return GroupUnit(group, self._units(group, level, flow.start))
         self.graph.early_exits, self.reasons = backup
-        return level.chain_error or "not all of it can be reached from its start"
+        return level.chain_error or Message("not all of it can be reached from its start")

@@ -9,6 +9,7 @@ from functools import cached_property
 
 from argo_compiler.analysis.flow import NOWHERE
 from argo_compiler.base.errors import Invalid, NotFound
+from argo_compiler.base.message import Message
 from argo_compiler.base.nearest_name import nearest_name
 from argo_compiler.il import Action, Task
 from argo_compiler.reorder.requirements import MissionPart
@@ -73,7 +74,9 @@ class Visits:
         if task.action is not Action.MEASURE:
             return f"'{task.name}'"
         others = self._leaves_measuring[task.object_id or ""]
-        return f"checkpoint {task.object_id}" + (f" ('{task.name}')" if len(others) > 1 else "")
+        return Message("checkpoint {object_id}", object_id=task.object_id) + (
+            f" ('{task.name}')" if len(others) > 1 else ""
+        )
 
     def other_task_display_names(self, visit: int) -> tuple[str, ...]:
         """Return the names of a visit's tasks except the first, done always or in some cases."""
@@ -83,7 +86,7 @@ class Visits:
 
     def checkpoint_number_or_name(self, visit: int) -> str:
         """Return the visit's name without the word `checkpoint`."""
-        return self.names[visit].removeprefix("checkpoint ")
+        return self.names[visit].removeprefix(Message("checkpoint "))
 
     @cached_property
     def _leaves_measuring(self) -> dict[str, list[int]]:
@@ -108,8 +111,11 @@ class Visits:
                 if leaf.name == what:
                     if i == self.chain.end or i not in self.visit_of_leaf:
                         raise Invalid(
-                            f"'{what}' ends the mission, so its place in the order is fixed: "
-                            "remove the requirement that names it"
+                            Message(
+                                "'{what}' ends the mission, so its place in the order is fixed: "
+                                "remove the requirement that names it",
+                                what=what,
+                            )
                         )
                     return [self.visit_of_leaf[i]]
             for group in self.chain.flow.groups:
@@ -122,8 +128,18 @@ class Visits:
             known = [leaf.name for leaf in self.chain.flow.leaves]
             known += [group.name for group in self.chain.flow.groups]
             near = nearest_name(str(what), known) if isinstance(what, str) else None
-            hint = f"is '{near}' meant?" if near else "name a checkpoint, a task or a group of it"
-            raise NotFound(f"the mission has no {display_name(what)}: {hint}")
+            hint = (
+                Message("is '{near}' meant?", near=near)
+                if near
+                else Message("name a checkpoint, a task or a group of it")
+            )
+            raise NotFound(
+                Message(
+                    "the mission has no {display_name}: {hint}",
+                    display_name=display_name(what),
+                    hint=hint,
+                )
+            )
         return result
 
     def with_whole_groups(self, visits: list[int]) -> list[int]:
@@ -139,4 +155,4 @@ class Visits:
 def display_name(what: MissionPart) -> str:
     """Return `checkpoint 8`, or a name in quotes."""
     is_number = isinstance(what, int) or what.isdecimal()
-    return f"checkpoint {what}" if is_number else f"'{what}'"
+    return Message("checkpoint {what}", what=what) if is_number else f"'{what}'"

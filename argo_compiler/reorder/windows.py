@@ -1,6 +1,7 @@
 """Time windows of tasks, in the form that the route problem needs."""
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.message import Message
 from argo_compiler.base.quantity_text import limit_text
 from argo_compiler.il import Action, TimeWindow
 from argo_compiler.reorder.travel_matrix import TravelMatrix
@@ -13,13 +14,20 @@ def require_computable_times(visits: Visits) -> None:
     for group in flow.groups:
         if group.every:
             raise Invalid(
-                f"group '{group.name}' starts its rounds at set times: Argo can't compute orders "
-                "of missions with planned rounds yet"
+                Message(
+                    "group '{group}' starts its rounds at set times: Argo can't compute orders "
+                    "of missions with planned rounds yet",
+                    group=group.name,
+                )
             )
     for leaf in visits.chain.conditions_checked_after:
         task = flow.leaves[leaf].leaf.task
         if task.wait is not None and task.wait.duration is None and task.wait.limit is None:
-            raise Invalid(f"how long '{task.name}' waits can't be computed: give it a limit")
+            raise Invalid(
+                Message(
+                    "how long '{task}' waits can't be computed: give it a limit", task=task.name
+                )
+            )
     inside = {leaf for _, members in visits.group_units for k in members
               for leaf in visits.task_units[k].leaves}  # fmt: skip
     entries = {unit.entry for unit in visits.task_units} - inside
@@ -30,16 +38,20 @@ def require_computable_times(visits: Visits) -> None:
             continue
         name = flow.leaves[leaf].name
         if is_wait:
-            why = "it is a wait"
+            why = Message("it is a wait")
         elif leaf in inside:
-            why = "it is in a group, and a window does not state in which round"
+            why = Message("it is in a group, and a window does not state in which round")
         elif leaf != visits.chain.end:
-            why = "it is not done in all cases, or right after another task"
+            why = Message("it is not done in all cases, or right after another task")
         elif window.earliest:
-            why = "it ends the mission, and would have to wait at its pose"
+            why = Message("it ends the mission, and would have to wait at its pose")
         else:
             continue
-        raise Invalid(f"the time window of '{name}' can't be kept by an order: {why}")
+        raise Invalid(
+            Message(
+                "the time window of '{name}' can't be kept by an order: {why}", name=name, why=why
+            )
+        )
 
 
 class Windows:
@@ -72,8 +84,17 @@ class Windows:
         )
         if window is None or not window.hard or window.latest is None:
             return None
-        start = f"begun from {limit_text(window.earliest)} on and " if window.earliest else ""
-        return f"{self._visits.names[visit]} {start}done by {limit_text(window.latest)}"
+        start = (
+            Message("begun from {limit} on and ", limit=limit_text(window.earliest))
+            if window.earliest
+            else ""
+        )
+        return Message(
+            "{name} {start}done by {limit}",
+            name=self._visits.names[visit],
+            start=start,
+            limit=limit_text(window.latest),
+        )
 
     def end_limit_seconds(self) -> tuple[float, str] | None:
         """Return the latest end of the mission's last task in s, and its description.
@@ -84,7 +105,7 @@ class Windows:
         window = None if end is None else _binding_window(self._visits.leaf_task(end).window)
         if end is None or window is None or window.latest is None:
             return None
-        return window.latest, f"time window of '{self._visits.chain.name(end)}'"
+        return window.latest, Message("time window of '{task}'", task=self._visits.chain.name(end))
 
 
 def _binding_window(window: TimeWindow | None) -> TimeWindow | None:

@@ -13,6 +13,7 @@ from typing import Any
 
 from argo_compiler.base.errors import Invalid
 from argo_compiler.base.limited_process import LimitExceeded, call_limited, limits_for_size
+from argo_compiler.base.message import Listing, Message
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.files.loading import (
     FileError,
@@ -48,7 +49,7 @@ STAMP = 1_000_000_000
 The time is fixed so that equal missions give equal bags; it is not 0, which means unset in ROS 1.
 """
 
-_UNPACK = "unpack it first: rosbag decompress, or ros2 bag convert"
+_UNPACK = Message("unpack it first: rosbag decompress, or ros2 bag convert")
 _OF_PYTHON = (
     ArithmeticError, AssertionError, AttributeError, LookupError, RecursionError, TypeError,
     UnicodeError, struct.error,
@@ -157,8 +158,8 @@ def read_bag(path: Path, source_name: str | None = None) -> Received:
         raise_error(
             name,
             "file.beyond-limits",
-            f"the file {error}",
-            f"is it the right file, and whole? If it is, record {TOPIC} alone",
+            Message("the file {error}", error=error),
+            Message("is it the right file, and whole? If it is, record {topic} alone", topic=TOPIC),
         )
 
 
@@ -175,13 +176,18 @@ def read_bag_here(path: Path, name: str) -> Received:
     except (DiagnosticError, MemoryError):
         raise
     except TooLargeError as error:
-        raise_error(name, "ros.compressed", f"the bag is not unpacked: {error}", _UNPACK)
+        raise_error(
+            name,
+            "ros.compressed",
+            Message("the bag is not unpacked: {error}", error=error),
+            _UNPACK,
+        )
     except Exception as error:
         raise_error(
             name,
             "ros.broken-bag",
-            f"the file can't be read as a bag: {_reason(error)}",
-            "record or copy it again",
+            Message("the file can't be read as a bag: {reason}", reason=_reason(error)),
+            Message("record or copy it again"),
         )
     return from_message(message, types, name)
 
@@ -191,7 +197,7 @@ def _reason(error: Exception) -> str:
     text = " ".join(str(error).split())[:200].replace("; please report issue", "")
     is_from_python = isinstance(error, _OF_PYTHON) or isinstance(error.__cause__, _OF_PYTHON)
     if not text or is_from_python or re.search(r"\w+Error\(", text):
-        return "a part of it is damaged, or is not that of a bag"
+        return Message("a part of it is damaged, or is not that of a bag")
     return text
 
 
@@ -202,15 +208,25 @@ def _first_bytes(path: Path, name: str) -> bytes:
     """
     is_folder = os.path.isdir(path)
     if is_folder and not os.path.isfile(path / "metadata.yaml"):
-        hint = "choose the script, mission or bag in it; a rosbag2 folder has a metadata.yaml"
-        raise_error(name, "file.directory", "the path is a directory", hint)
+        hint = Message(
+            "choose the script, mission or bag in it; a rosbag2 folder has a metadata.yaml"
+        )
+        raise_error(name, "file.directory", Message("the path is a directory"), hint)
     try:
         first = b"" if is_folder else read_first_bytes(path)
     except FileError as error:
-        raise_error(name, f"file.{error.problem}", f"the file {error.message}", error.hint)
+        raise_error(
+            name,
+            f"file.{error.problem}",
+            Message("the file {message}", message=error.message),
+            error.hint,
+        )
     if not is_folder and not first.startswith(MAGIC):
         raise_error(
-            name, "ros.not-a-bag", "the file is not a bag", "choose a ROS 1 bag or a rosbag2 folder"
+            name,
+            "ros.not-a-bag",
+            Message("the file is not a bag"),
+            Message("choose a ROS 1 bag or a rosbag2 folder"),
         )
     return first
 
@@ -228,7 +244,11 @@ def decode_bag(content: bytes | Mapping[str, bytes], source_name: str) -> Receiv
         for name, part in content.items():
             if Path(name).name != name or name in {"", ".", ".."} or "\0" in name:
                 raise Invalid(
-                    f"{source_name}: `{name}` is not a valid file name in a rosbag2 folder"
+                    Message(
+                        "{source_name}: `{name}` is not a valid file name in a rosbag2 folder",
+                        source_name=source_name,
+                        name=name,
+                    )
                 )
             (Path(folder) / name).write_bytes(part)
         return read_bag(Path(folder), source_name)
@@ -303,27 +323,42 @@ def _read_message(name: str, reader: Any, types: RosTypes) -> bytes:
         topics = sorted({c.topic for c in reader.connections})
         more = ", ..." if len(topics) > _MAX_LISTED_TOPICS else ""
         listed = (
-            f"only {', '.join(topics[:_MAX_LISTED_TOPICS])}{more}" if topics else "no topic at all"
+            Message("only {names}{more}", names=Listing(topics[:_MAX_LISTED_TOPICS]), more=more)
+            if topics
+            else Message("no topic at all")
         )
         raise_error(
-            name, "ros.no-mission", f"the bag has no topic {TOPIC}, {listed}", f"record {TOPIC}"
+            name,
+            "ros.no-mission",
+            Message("the bag has no topic {topic}, {listed}", topic=TOPIC, listed=listed),
+            Message("record {topic}", topic=TOPIC),
         )
     for connection in connections:
         if connection.msgtype != SPECIFICATION:
             raise_error(
                 name,
                 "ros.wrong-type",
-                f"the bag has messages of the type {connection.msgtype} on {TOPIC}",
-                f"the type of a mission is {SPECIFICATION}",
+                Message(
+                    "the bag has messages of the type {msgtype} on {topic}",
+                    msgtype=connection.msgtype,
+                    topic=TOPIC,
+                ),
+                Message("the type of a mission is {specification}", specification=SPECIFICATION),
             )
         # Bags from before ROS 2 Iron, and single MCAP files, have no type hash.
         if connection.digest and connection.digest != types.digest():
             raise_error(
                 name,
                 "ros.other-definitions",
-                f"the bag was written with other definitions of {SPECIFICATION}: "
-                f"{connection.digest}",
-                f"this Argo uses {types.digest()}: build its ros-package and record again",
+                Message(
+                    "the bag was written with other definitions of {specification}: {digest}",
+                    specification=SPECIFICATION,
+                    digest=connection.digest,
+                ),
+                Message(
+                    "this Argo uses {digest}: build its ros-package and record again",
+                    digest=types.digest(),
+                ),
             )
     contents: set[bytes] = set()
     for _, _, raw in reader.messages(connections=connections):
@@ -331,19 +366,25 @@ def _read_message(name: str, reader: Any, types: RosTypes) -> bytes:
             raise_error(
                 name,
                 "file.too-large",
-                f"the bag has a message larger than {MAX_BYTES // 1_000_000} MB",
-                "a mission is far smaller: is this the right bag?",
+                Message(
+                    "the bag has a message larger than {max_bytes} MB",
+                    max_bytes=MAX_BYTES // 1000000,
+                ),
+                Message("a mission is far smaller: is this the right bag?"),
             )
         contents.add(bytes(raw))
         if len(contents) > 1:
             raise_error(
                 name,
                 "ros.several-missions",
-                f"the bag contains more than one mission on {TOPIC}",
-                "keep one of them: rosbag filter, or ros2 bag convert",
+                Message("the bag contains more than one mission on {topic}", topic=TOPIC),
+                Message("keep one of them: rosbag filter, or ros2 bag convert"),
             )
     if not contents:
         raise_error(
-            name, "ros.no-mission", f"the bag has no message on {TOPIC}", f"record {TOPIC} again"
+            name,
+            "ros.no-mission",
+            Message("the bag has no message on {topic}", topic=TOPIC),
+            Message("record {topic} again", topic=TOPIC),
         )
     return contents.pop()

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from argo_compiler.base.message import Message
 from argo_compiler.files.yaml_text import load_yaml
 
 MAX_CHUNK_BYTES = 100_000_000
@@ -61,7 +62,12 @@ def require_readable_metadata(folder: Path) -> None:
     """
     path = folder / "metadata.yaml"
     if path.stat().st_size > MAX_METADATA_BYTES:
-        raise TooLargeError(f"its metadata.yaml is larger than {MAX_METADATA_BYTES // 1000} kB")
+        raise TooLargeError(
+            Message(
+                "its metadata.yaml is larger than {max_metadata_bytes} kB",
+                max_metadata_bytes=MAX_METADATA_BYTES // 1000,
+            )
+        )
     data = load_yaml(path.read_text(encoding="utf-8"), str(path))
     bag = data.get("rosbag2_bagfile_information") if isinstance(data, dict) else None
     if not isinstance(bag, dict):
@@ -74,13 +80,18 @@ def require_readable_metadata(folder: Path) -> None:
         )
     mode = str(bag.get("compression_mode") or "none").lower()
     if mode != "none":
-        raise TooLargeError(f"it is compressed by {mode}")
+        raise TooLargeError(Message("it is compressed by {mode}", mode=mode))
 
 
 def _check(compression: str, content: bytes) -> None:
     decompress = _bounded_decompressor(compression)
     if decompress and len(decompress(content, MAX_CHUNK_BYTES + 1)) > MAX_CHUNK_BYTES:
-        raise TooLargeError(f"a chunk has more than {MAX_CHUNK_BYTES // 1_000_000} MB")
+        raise TooLargeError(
+            Message(
+                "a chunk has more than {max_chunk_bytes} MB",
+                max_chunk_bytes=MAX_CHUNK_BYTES // 1000000,
+            )
+        )
 
 
 def _bounded_decompressor(compression: str) -> Callable[[bytes, int], bytes] | None:

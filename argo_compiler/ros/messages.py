@@ -13,6 +13,7 @@ from typing import Any, NoReturn, get_args
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model, Pose
 from argo_compiler.base.quaternions import to_quaternion, to_yaw
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Span, diagnostic_of
@@ -127,9 +128,13 @@ def _with_onward_velocities(mission: Mission) -> Mission:
             raise_error(
                 "mission",
                 "export.velocity",
-                f"{subject_of('tasks', task.name)}.velocity: a message has one velocity for all "
-                f"paths that start at a task: it can't have {velocity} on all paths to this task "
-                "and another velocity on other paths from the same tasks",
+                Message(
+                    "{subject_of}.velocity: a message has one velocity for all paths that "
+                    "start at a task: it can't have {velocity} on all paths to this task and "
+                    "another velocity on other paths from the same tasks",
+                    subject_of=subject_of("tasks", task.name),
+                    velocity=velocity,
+                ),
                 "set the same velocity for all tasks that may follow the same task",
             )
     return onward
@@ -201,14 +206,19 @@ def _text(path: str, text: str) -> str:
     try:
         text.encode("utf-8")
     except UnicodeEncodeError:
-        message = f"{path} is not text that UTF-8 can represent"
+        message = Message("{path} is not text that UTF-8 can represent", path=path)
         raise_error("mission", "export.not-text", message, "remove the invalid characters")
     return text
 
 
 def _integer(path: str, value: int, kind: str) -> int:
     if value not in _RANGES[kind]:
-        message = f"{path}: {value} does not fit into the {kind} of the message"
+        message = Message(
+            "{path}: {value} does not fit into the {kind} of the message",
+            path=path,
+            value=value,
+            kind=kind,
+        )
         raise_error("mission", "export.number-too-large", message, "use a smaller number")
     return value
 
@@ -227,8 +237,11 @@ def from_message(message: Any, types: RosTypes, source_name: str) -> Received:
         raise_error(
             source_name,
             "ros.unsupported-version",
-            f"the message has version {message.version} of the messages",
-            f"this Argo reads version {version}: set the field, or use the Argo that wrote it",
+            Message("the message has version {version} of the messages", version=message.version),
+            Message(
+                "this Argo reads version {version}: set the field, or use the Argo that wrote it",
+                version=version,
+            ),
         )
     data = _MessageReader(types, source_name).part(message, "")
     try:
@@ -236,7 +249,9 @@ def from_message(message: Any, types: RosTypes, source_name: str) -> Received:
     except ValidationError as error:
         diagnostics = [
             diagnostic_of(
-                "ros.wrong-field", f"{format_path(e['loc'])}: {e['msg']}", "publish a valid value"
+                "ros.wrong-field",
+                Message("{place}: {message}", place=format_path(e["loc"]), message=e["msg"]),
+                "publish a valid value",
             )
             for e in error.errors(include_url=False)
         ]
@@ -247,8 +262,11 @@ def from_message(message: Any, types: RosTypes, source_name: str) -> Received:
 def _velocity_warning(task: str) -> Diagnostic:
     return diagnostic_of(
         "ros.velocity",
-        f"the velocity of the path to '{task}' depends on the previous task: the lowest of these "
-        "velocities is used",
+        Message(
+            "the velocity of the path to '{task}' depends on the previous task: the "
+            "lowest of these velocities is used",
+            task=task,
+        ),
         "a velocity applies to the path to its task: set it there",
         subject_of("tasks", task),
     )
@@ -298,7 +316,7 @@ class _MessageReader:
         try:
             yaw = to_yaw(q.x, q.y, q.z, q.w, heading)
         except ValueError as error:
-            message = f"{path}: the orientation {error}"
+            message = Message("{path}: the orientation {error}", path=path, error=error)
             raise_error(self.source_name, "ros.orientation", message, "set a rotation about z only")
         return {"x": pose.position.x, "y": pose.position.y, "z": pose.position.z, "yaw": yaw}
 
@@ -309,7 +327,10 @@ class _MessageReader:
                 return member
         valid = ", ".join(f"{value} {member.name}" for member, value in constants.items())
         raise_error(
-            self.source_name, "ros.wrong-field", f"{path} is {number}", f"valid values: {valid}"
+            self.source_name,
+            "ros.wrong-field",
+            Message("{path} is {number}", path=path, number=number),
+            Message("valid values: {valid}", valid=valid),
         )
 
 

@@ -7,6 +7,7 @@ from typing import Any, TypeVar
 
 from argo_compiler.base.errors import Unavailable
 from argo_compiler.base.extras import install_line
+from argo_compiler.base.message import Message
 from argo_compiler.ros.package import PACKAGE, SPECIFICATION, message_definitions
 
 E = TypeVar("E", bound=Enum)
@@ -20,7 +21,10 @@ class RosTypes:
             from rosbags.typesys import Stores, get_types_from_msg, get_typestore
         except ImportError:
             raise Unavailable(
-                f"ROS messages and bags need rosbags: {install_line('ros')}"
+                Message(
+                    "ROS messages and bags need rosbags: {install_line}",
+                    install_line=install_line("ros"),
+                )
             ) from None
         self.version = version
         self.store = get_typestore(Stores.ROS1_NOETIC if version == 1 else Stores.ROS2_JAZZY)

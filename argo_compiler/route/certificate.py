@@ -14,6 +14,7 @@ from functools import cache
 from math import inf
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.message import Message
 from argo_compiler.route.blocks import Blocks
 from argo_compiler.route.enumeration import Enumeration
 from argo_compiler.route.evaluation import evaluate
@@ -21,7 +22,7 @@ from argo_compiler.route.problem import RouteProblem, Tour
 from argo_compiler.route.relaxation import Relaxation
 from argo_compiler.route.suggested import RouteSuggestion
 
-_TRIVIAL = "no route wins more than the prizes of all visits, or costs less than 0"
+_TRIVIAL = Message("no route wins more than the prizes of all visits, or costs less than 0")
 _STEPS_WITHOUT_DOMINANCE = 20_000
 """highest number of steps of work for the enumeration without dominance"""
 
@@ -128,7 +129,7 @@ class _Check:
 
     def certificate(self) -> Certificate:
         for claim in list(self._open):
-            why, shown = self._why.get(claim, ("there was too little time", None))
+            why, shown = self._why.get(claim, (Message("there was too little time"), None))
             self._decide(claim, Judgement.OPEN, why, shown=shown)
         return Certificate(tuple(self._decided[claim] for claim in Claim if claim in self._decided))
 
@@ -136,7 +137,9 @@ class _Check:
         """Record whether the route is as claimed, and refute other claims that it contradicts."""
         suggestion = self._suggestion
         if suggestion.infeasible_subset:
-            self._decide(Claim.SUBSET, Judgement.OPEN, "requirements in words can't be checked")
+            self._decide(
+                Claim.SUBSET, Judgement.OPEN, Message("requirements in words can't be checked")
+            )
         if suggestion.route is None:
             return
         try:
@@ -148,12 +151,20 @@ class _Check:
         prize, cost = evaluation.prize, evaluation.cost(self._problem.objective)
         if (prize, cost) != (suggestion.prize, suggestion.cost):
             errors.append(
-                f"it wins {prize} and costs {cost}, not {suggestion.prize} and {suggestion.cost}"
+                Message(
+                    "it wins {prize} and costs {cost}, not {prize_2} and {cost_2}",
+                    prize=prize,
+                    cost=cost,
+                    prize_2=suggestion.prize,
+                    cost_2=suggestion.cost,
+                )
             )
         if set(suggestion.dropped or ()) != set(suggestion.route.left_out(self._problem.size)):
-            errors.append("it leaves out other visits than it states")
+            errors.append(Message("it leaves out other visits than it states"))
         judgement = Judgement.REFUTED if errors else Judgement.CONFIRMED
-        self._decide(Claim.ROUTE, judgement, "; ".join(errors) or "followed from visit to visit")
+        self._decide(
+            Claim.ROUTE, judgement, "; ".join(errors) or Message("followed from visit to visit")
+        )
         self._refute_by(suggestion.route)
 
     def search(self) -> None:
@@ -191,7 +202,10 @@ class _Check:
         if enumeration.best is not None:
             self._refute_by(enumeration.best)
         for claim in list(self._open) if is_complete else []:
-            why = f"all routes enumerated, by extending {enumeration.count} partial routes"
+            why = Message(
+                "all routes enumerated, by extending {count} partial routes",
+                count=enumeration.count,
+            )
             self._decide(claim, Judgement.CONFIRMED, why)
 
     def _relax(self, blocks: Blocks) -> None:
@@ -202,10 +216,12 @@ class _Check:
             min(claimed[0] if claimed else -1 for claimed in self._open.values())
         )
         if prize is not None:
-            self._confirm_by_bounds(prize, cache(relaxation.cost_bound), "a relaxation shows it")
+            self._confirm_by_bounds(
+                prize, cache(relaxation.cost_bound), Message("a relaxation shows it")
+            )
             return
         for claim in list(self._open):
-            self._decide(claim, Judgement.CONFIRMED, "even a relaxation has no route")
+            self._decide(claim, Judgement.CONFIRMED, Message("even a relaxation has no route"))
 
     def _confirm_by_bounds(
         self, prize_bound: int, cost_bound: Callable[[int, int], int | None], why: str
@@ -218,12 +234,12 @@ class _Check:
         """
         for claim, claimed in list(self._open.items()):
             if claimed is None:
-                self._why[claim] = "a relaxation has a route", None
+                self._why[claim] = Message("a relaxation has a route"), None
                 continue
             cost = 0 if claim is Claim.PRIZE_BOUND else cost_bound(*claimed)
             may_be_cheaper = cost is not None and cost < claimed[1]
             if may_be_cheaper or (claim is not Claim.BOUND and prize_bound > claimed[0]):
-                self._why[claim] = "a relaxation is too weak", (prize_bound, cost or 0)
+                self._why[claim] = Message("a relaxation is too weak"), (prize_bound, cost or 0)
             else:
                 self._decide(claim, Judgement.CONFIRMED, why)
 
@@ -236,7 +252,12 @@ class _Check:
                 # If the prize bound is wrong, the bound on the cost remains undecided.
                 wins_more = claim is Claim.BOUND and claimed is not None and prize > claimed[0]
                 judgement = Judgement.OPEN if wins_more else Judgement.REFUTED
-                self._decide(claim, judgement, f"a route wins {prize} and costs {cost}", route)
+                self._decide(
+                    claim,
+                    judgement,
+                    Message("a route wins {prize} and costs {cost}", prize=prize, cost=cost),
+                    route,
+                )
 
     def _decide(
         self,

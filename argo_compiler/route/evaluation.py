@@ -6,6 +6,7 @@ The code is written to be read, and on purpose uses no code of the solvers.
 from dataclasses import dataclass
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.message import Message
 from argo_compiler.route.problem import NEVER, Objective, Round, RouteProblem, Tour
 
 
@@ -46,13 +47,19 @@ def evaluate(problem: RouteProblem, route: Tour) -> RouteEvaluation:
     """
     if not set(route.order) <= set(range(problem.size)):
         raise Invalid(
-            "the route has a visit that does not exist: use the numbers of the problem's "
-            f"{problem.size} visits, which are counted from 0"
+            Message(
+                "the route has a visit that does not exist: use the numbers of the "
+                "problem's {size} visits, which are counted from 0",
+                size=problem.size,
+            )
         )
     if not set(route.charges.values()) <= set(range(len(problem.chargers))):
         raise Invalid(
-            "the route uses a charger that does not exist: use the numbers of the problem's "
-            f"{len(problem.chargers)} chargers, which are counted from 0"
+            Message(
+                "the route uses a charger that does not exist: use the numbers of the "
+                "problem's {count} chargers, which are counted from 0",
+                count=len(problem.chargers),
+            )
         )
     return _Simulation(problem, route).evaluation()
 
@@ -116,9 +123,15 @@ class _Simulation:
         state = self._drive(self._charge(state, len(order)), problem.end)
         duration = state.time
         if problem.max_duration is not None and duration > problem.max_duration:
-            self._violations.append(f"it takes {duration}, longer than {problem.max_duration}")
+            self._violations.append(
+                Message(
+                    "it takes {duration}, longer than {max_duration}",
+                    duration=duration,
+                    max_duration=problem.max_duration,
+                )
+            )
         if not set(self._route.charges) <= charge_positions:
-            self._violations.append("it charges within a round, or outside of the order")
+            self._violations.append(Message("it charges within a round, or outside of the order"))
         arrivals = tuple(self._arrivals.get(visit, NEVER) for visit in order)
         return RouteEvaluation(prize, duration, self._waiting, arrivals, tuple(self._violations))
 
@@ -129,17 +142,19 @@ class _Simulation:
         """
         order, valid = self._route.order, len(set(self._route.order)) == len(self._route.order)
         if len(set(order)) < len(order):
-            self._violations.append("a visit is made twice")
+            self._violations.append(Message("a visit is made twice"))
         for number, visit in enumerate(self._problem.visits):
             if visit.mandatory and number not in order:
-                self._violations.append(f"{visit.name} is left out")
+                self._violations.append(Message("{visit} is left out", visit=visit.name))
         for round_ in self._problem.rounds:
             positions = sorted(k for k, visit in enumerate(order) if visit in round_.members)
             if positions and (
                 len(positions) != len(round_.members)
                 or positions[-1] - positions[0] + 1 != len(round_.members)
             ):
-                self._violations.append(f"{round_.name} is incomplete or interrupted")
+                self._violations.append(
+                    Message("{round} is incomplete or interrupted", round=round_.name)
+                )
                 valid = False
         return valid
 
@@ -151,7 +166,9 @@ class _Simulation:
             if made != sorted(set(made)):
                 self._violations.append(precedence.words)
             elif precedence.needed and None in positions[: len(made)]:
-                self._violations.append(f"{precedence.words}: the first is left out")
+                self._violations.append(
+                    Message("{words}: the first is left out", words=precedence.words)
+                )
 
     def _outermost(self, visit: int) -> int | None:
         """Return the number of the outermost round around a visit, or None if there is none."""
@@ -182,7 +199,7 @@ class _Simulation:
         problem = self._problem
         time = max(int(problem.travel[origin, location]) for origin in state.locations)
         if time == NEVER:
-            self._violations.append("there is no path")
+            self._violations.append(Message("there is no path"))
         used = state.used
         if problem.battery is not None:
             energy = max(
@@ -190,7 +207,7 @@ class _Simulation:
             )
             used += energy
             if used > problem.battery.capacity:
-                self._violations.append("the battery is empty")
+                self._violations.append(Message("the battery is empty"))
         return _State(state.time + time, used, frozenset([location]))
 
     def _visit(self, state: _State, number: int) -> _State:
@@ -200,7 +217,14 @@ class _Simulation:
         self._waiting += begin - arrival.time
         self._arrivals.setdefault(number, begin)
         if visit.latest is not None and begin > visit.latest:
-            self._violations.append(f"{visit.name} begins at {begin}, after {visit.latest}")
+            self._violations.append(
+                Message(
+                    "{visit} begins at {begin}, after {latest}",
+                    visit=visit.name,
+                    begin=begin,
+                    latest=visit.latest,
+                )
+            )
         return _State(begin + visit.service, arrival.used, arrival.locations)
 
     def _rounds(self, state: _State, number: int, order: tuple[int, ...]) -> _State:

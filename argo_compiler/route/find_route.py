@@ -7,6 +7,7 @@ from math import inf
 import numpy as np
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.message import Message
 from argo_compiler.route.assignment import assignment_time_bound
 from argo_compiler.route.infeasible_subset import find_infeasible_subset
 from argo_compiler.route.modes import Step
@@ -86,10 +87,12 @@ def _run_search(
         )
     search = Search(net, prune(net), limits, seed, clock, observers, begun)
     if not net.exact:
-        search.add_reason("rounds have too many orders to check all of them: nothing is proven")
+        search.add_reason(
+            Message("rounds have too many orders to check all of them: nothing is proven")
+        )
     bound = assignment_time_bound(net, search.pruned)
     if bound is None:
-        search.add_reason("some visit can't be made at all, or not in the required order")
+        search.add_reason(Message("some visit can't be made at all, or not in the required order"))
         with search.turn_of("pruning") as turn:
             turn.report_infeasible()
         return search
@@ -129,14 +132,18 @@ def _explain(
         problem, is_feasible, lambda: remaining() <= min(longest_check, _CHECK_START)
     )
     if subset is None:
-        search.add_reason("there was no time to find requirements that can't be met together")
+        search.add_reason(
+            Message("there was no time to find requirements that can't be met together")
+        )
         return ()
     search.add_reason(
-        "fewer requirements than these can always be met"
+        Message("fewer requirements than these can always be met")
         if subset.smallest
-        else "without any one of these requirements, the others can be met"
+        else Message("without any one of these requirements, the others can be met")
         if subset.minimal
-        else "there was no time to check whether fewer of these requirements can't be met either"
+        else Message(
+            "there was no time to check whether fewer of these requirements can't be met either"
+        )
     )
     return subset.words
 

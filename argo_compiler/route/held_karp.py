@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
+from argo_compiler.base.message import Message
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.order_ideals import Masks, StepBits
 from argo_compiler.route.problem import RouteProblem
@@ -111,15 +112,25 @@ def layers_if_few(search: Search) -> list[Layer] | None:
     # Windows may leave much fewer sets than the precedences do.
     is_few = sets <= (most if is_ordered else _FEW_SETS) or network.has_windows
     if not is_few or horizon_without_limit(network) >= INF or not StepBits(network, pruned).fits:
-        search.add_reason(f"{int(pruned.steps.sum())} steps allow too many sets to check all")
+        search.add_reason(
+            Message("{sum} steps allow too many sets to check all", sum=int(pruned.steps.sum()))
+        )
         return None
     layers = compute_layers(network, pruned, most, lambda: share.remaining_time() <= 0.0)
     if layers is None:
-        search.add_reason("there are too many sets to check all, or the time was too short")
+        search.add_reason(
+            Message("there are too many sets to check all, or the time was too short")
+        )
         return None
     count = 1 + sum(len(layer.masks) for layer in layers)
     search.spend(count * network.node_count * _TIME_PER_STATE)
-    search.add_reason(f"order and time allow {count} sets of {int(pruned.steps.sum())} steps")
+    search.add_reason(
+        Message(
+            "order and time allow {count} sets of {sum} steps",
+            count=count,
+            sum=int(pruned.steps.sum()),
+        )
+    )
     return layers
 
 

@@ -14,6 +14,7 @@ from itertools import chain
 import numpy as np
 from ortools.sat.python import cp_model
 
+from argo_compiler.base.message import Message
 from argo_compiler.base.quantity_text import duration_text
 from argo_compiler.route.cp_solver import new_solver, run_solver
 from argo_compiler.route.problem import RouteProblem
@@ -50,24 +51,38 @@ def requirements(problem: RouteProblem) -> list[Requirement]:
     ]
     for number, visit in enumerate(problem.visits):
         if visit.mandatory:
-            collected.append(Requirement(f"{visit.name} is visited", "visit", number))
+            collected.append(
+                Requirement(Message("{visit} is visited", visit=visit.name), "visit", number)
+            )
         if visit.latest is not None:
-            words = f"{visit.name} by {duration_text(visit.latest * problem.unit)}"
+            words: str = Message(
+                "{visit} by {duration}",
+                visit=visit.name,
+                duration=duration_text(visit.latest * problem.unit),
+            )
             if visit.earliest:
                 begin, end = (
                     duration_text(time * problem.unit) for time in (visit.earliest, visit.latest)
                 )
-                words = f"{visit.name} between {begin} and {end}"
+                words = Message(
+                    "{visit} between {begin} and {end}", visit=visit.name, begin=begin, end=end
+                )
             words = problem.words.get(f"window {number}", words)
             collected.append(Requirement(words, "window", number))
     if problem.max_duration is not None:
-        words = f"within {duration_text(problem.max_duration * problem.unit)}"
-        collected.append(Requirement(problem.words.get("max_duration", words), "limit"))
+        limit = Message(
+            "within {duration}", duration=duration_text(problem.max_duration * problem.unit)
+        )
+        collected.append(Requirement(problem.words.get("max_duration", limit), "limit"))
     if problem.battery is not None:
-        words = problem.words.get("battery", "within the battery's capacity")
+        words = problem.words.get("battery", Message("within the battery's capacity"))
         collected.append(Requirement(words, "battery"))
     collected += [
-        Requirement(f"{round_.name} is complete and without interruption", "round", number)
+        Requirement(
+            Message("{round} is complete and without interruption", round=round_.name),
+            "round",
+            number,
+        )
         for number, round_ in enumerate(problem.rounds)
     ]
     return collected

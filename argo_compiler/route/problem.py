@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.message import Message
 
 NEVER = 1 << 40
 """travel time between two locations without a path"""
@@ -141,7 +142,7 @@ class RouteProblem:
     def __post_init__(self) -> None:
         """Raise Invalid if the parts do not fit together."""
         for flaw in _flaws(self):
-            raise Invalid(f"the route problem has a mistake: {flaw}; correct it")
+            raise Invalid(Message("the route problem has a mistake: {flaw}; correct it", flaw=flaw))
         self.travel.setflags(write=False)
         if self.battery is not None:
             self.battery.energy.setflags(write=False)
@@ -187,38 +188,57 @@ class Tour:
 def _flaws(problem: RouteProblem) -> Iterator[str]:
     n = problem.size
     side = n + 1 + len(problem.chargers)
-    yield from _matrix_flaws(problem.travel, "travel times", side)
+    yield from _matrix_flaws(problem.travel, Message("travel times"), side)
     for visit in problem.visits:
         if visit.service < 0 or visit.prize < 0 or visit.earliest < 0:
-            yield f"{visit.name} has a negative service time, prize or earliest time"
+            yield Message(
+                "{visit} has a negative service time, prize or earliest time", visit=visit.name
+            )
         if max(visit.service, visit.earliest, visit.latest or 0) > _LONGEST:
-            yield f"a time of {visit.name} is above {_LONGEST}: use a larger unit"
+            yield Message(
+                "a time of {visit} is above {longest}: use a larger unit",
+                visit=visit.name,
+                longest=_LONGEST,
+            )
     if sum(visit.prize for visit in problem.visits) > _MOST_PRIZE:
-        yield f"its prizes add up to more than {_MOST_PRIZE}"
+        yield Message("its prizes add up to more than {most_prize}", most_prize=_MOST_PRIZE)
     if problem.max_duration is not None and not 0 <= problem.max_duration < NEVER:
-        yield "the maximum duration is negative, or too long"
+        yield Message("the maximum duration is negative, or too long")
     if problem.unit <= 0.0:
-        yield "the unit of time is not positive"
+        yield Message("the unit of time is not positive")
     for precedence in problem.precedences:
         if not set(precedence.sequence) <= set(range(n)):
-            yield f"{precedence.words}: there are only the visits 0 to {n - 1}"
+            yield Message(
+                "{words}: there are only the visits 0 to {n}", words=precedence.words, n=n - 1
+            )
     if problem.battery is not None:
         yield from _matrix_flaws(problem.battery.energy, "energies", side)
         battery = problem.battery
         if min(battery.capacity, battery.used, battery.overhead) < 0:
-            yield "the battery's capacity, its used energy or its overhead is negative"
+            yield Message("the battery's capacity, its used energy or its overhead is negative")
     elif problem.chargers:
-        yield "it has chargers and no battery"
+        yield Message("it has chargers and no battery")
     yield from _round_flaws(problem)
 
 
 def _matrix_flaws(matrix: NDArray[np.int64], quantity: str, side: int) -> Iterator[str]:
     if matrix.shape != (side, side):
-        yield f"its {quantity} have the shape {matrix.shape}, not {(side, side)}"
+        yield Message(
+            "its {quantity} have the shape {shape}, not {value}",
+            quantity=quantity,
+            shape=matrix.shape,
+            value=(side, side),
+        )
     elif matrix.dtype != np.int64:
-        yield f"its {quantity} are {matrix.dtype}, not int64"
+        yield Message(
+            "its {quantity} are {dtype}, not int64", quantity=quantity, dtype=matrix.dtype
+        )
     elif matrix.min(initial=0) < 0 or (matrix[matrix != NEVER] > _LONGEST).any():
-        yield f"its {quantity} are not from 0 to {_LONGEST}, or NEVER (else use a larger unit)"
+        yield Message(
+            "its {quantity} are not from 0 to {longest}, or NEVER (else use a larger unit)",
+            quantity=quantity,
+            longest=_LONGEST,
+        )
 
 
 def _round_flaws(problem: RouteProblem) -> Iterator[str]:
@@ -229,23 +249,37 @@ def _round_flaws(problem: RouteProblem) -> Iterator[str]:
             or len(members) < len(round_.members)
             or not members <= set(range(problem.size))
         ):
-            yield f"the round {round_.name} has no members, one twice, or one that is not a visit"
+            yield Message(
+                "the round {round} has no members, one twice, or one that is not a visit",
+                round=round_.name,
+            )
             continue
         if round_.repeat < 0 or round_.duration < 0 or round_.repeat == round_.duration == 0:
-            yield f"the round {round_.name} needs a number of rounds or a duration"
+            yield Message(
+                "the round {round} needs a number of rounds or a duration", round=round_.name
+            )
         if round_.repeat > _MOST_ROUNDS or round_.duration > _LONGEST:
-            yield f"the round {round_.name} is repeated too often, or lasts too long"
+            yield Message(
+                "the round {round} is repeated too often, or lasts too long", round=round_.name
+            )
         for member in (problem.visits[m] for m in round_.members):
             if member.earliest > 0 or member.latest is not None:
                 yield (
-                    f"{member.name} has a time window and lies in the round {round_.name}: "
-                    "the window does not say in which repetition"
+                    Message(
+                        "{member} has a time window and lies in the round {round}: the window does "
+                        "not say in which repetition",
+                        member=member.name,
+                        round=round_.name,
+                    )
                 )
         for other in problem.rounds[:number]:
             if not (members <= set(other.members) or members >= set(other.members)) and (
                 members & set(other.members)
             ):
                 yield (
-                    f"the rounds {other.name} and {round_.name} overlap, "
-                    "and neither is in the other"
+                    Message(
+                        "the rounds {other} and {round} overlap, and neither is in the other",
+                        other=other.name,
+                        round=round_.name,
+                    )
                 )

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Conflict, Invalid
+from argo_compiler.base.message import Message
 from argo_compiler.route.problem import NEVER, RouteProblem, Tour
 from argo_compiler.route.robust_sampling import Completion, Draws, estimate_completion
 from argo_compiler.route.robust_spread import TravelSpread
@@ -69,7 +70,12 @@ def suggest_robust_route(
     even without any spread, or none is found.
     """
     if not 0.0 < confidence <= 1.0:
-        raise Invalid(f"a confidence of {confidence} is not possible; give one above 0 and up to 1")
+        raise Invalid(
+            Message(
+                "a confidence of {confidence} is not possible; give one above 0 and up to 1",
+                confidence=confidence,
+            )
+        )
     nominal = suggest_route(problem, time_limit / 4.0, seed)
     # The time counts from here: the first search imports OR-Tools, which may take longer than that.
     end = time.monotonic() + time_limit * 0.75
@@ -77,7 +83,7 @@ def suggest_robust_route(
         if not nominal.infeasible:
             raise Conflict("no route was found within the time limit: give more time")
         why = "; ".join(nominal.infeasible_subset) or "the constraints contradict each other"
-        raise Conflict(f"there is no route: {why}; relax its constraints")
+        raise Conflict(Message("there is no route: {why}; relax its constraints", why=why))
     search = _Search(problem, Draws(spread, SEARCH_SAMPLES, _rng(seed, 0)), confidence)
     search.consider(nominal.route)
     if search.is_perfect:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.message import Message
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.problem import NEVER, EnergyBudget, RouteProblem, Tour
 from argo_compiler.route.robust_spread import TravelSpread
@@ -51,7 +52,9 @@ class Draws:
     def __init__(self, spread: TravelSpread, samples: int, rng: np.random.Generator) -> None:
         """Draw the common factors; raise Invalid if `samples` is below 1."""
         if samples < 1:
-            raise Invalid(f"{samples} samples give no probability; ask for 1 or more")
+            raise Invalid(
+                Message("{samples} samples give no probability; ask for 1 or more", samples=samples)
+            )
         self.spread, self.samples = spread, samples
         self._root = int(rng.integers(2**63))
         self.common = _factors(spread.common, samples, self._generator(0))

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from math import inf
 
 from argo_compiler.base.errors import Conflict, Invalid
+from argo_compiler.base.message import Message
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.network import StepNetwork
 from argo_compiler.route.problem import RouteProblem, Tour
@@ -270,8 +271,11 @@ class Search:
         evaluation = evaluate(self.problem, tour)
         if not evaluation.feasible:
             raise Invalid(
-                f"solver {self._method!r} offers a route that violates a constraint: "
-                f"{evaluation.violations[0]}"
+                Message(
+                    "solver {method} offers a route that violates a constraint: {violation}",
+                    method=repr(self._method),
+                    violation=evaluation.violations[0],
+                )
             )
         cost = evaluation.cost(self.problem.objective)
         solution = Solution(tour, evaluation.prize, cost, path, charges, self._method)
@@ -334,8 +338,11 @@ class Search:
         )
         if (shared.impossible and best is not None) or wins_too_much or costs_too_little:
             raise Conflict(
-                f"solver {self._method!r}: its result contradicts another result for this route "
-                "problem (a route, a bound or a proof); please report it with the problem"
+                Message(
+                    "solver {method}: its result contradicts another result for this route "
+                    "problem (a route, a bound or a proof); please report it with the problem",
+                    method=repr(self._method),
+                )
             )
         shared.method = self._method or shared.method
         shared.history.append(replace(self.search_progress(), solver=self._method))

@@ -9,6 +9,7 @@ from itertools import chain
 from typing import Protocol
 
 from argo_compiler.base.extensions import ExtensionPoint
+from argo_compiler.base.message import Message
 from argo_compiler.route.cp_sat import CpSat
 from argo_compiler.route.exchange_search import ExchangeSearch
 from argo_compiler.route.first_rules import FirstRules
@@ -52,16 +53,16 @@ PROVING: tuple[RouteSolver, ...] = (LinearProof(), LabelBeams(), CpSat())
 
 def _find_problem(name: str, item: object) -> str | None:
     if isinstance(item, type):
-        return "is a class: offer an object of it"
+        return Message("is a class: offer an object of it")
     if getattr(item, "name", None) != name:
-        return f"has another `name` than `{name}`"
+        return Message("has another `name` than `{name}`", name=name)
     lacking = [method for method in ("supports", "solve") if not hasattr(item, method)]
-    return f"has no `{lacking[0]}`" if lacking else None
+    return Message("has no `{lacking}`", lacking=lacking[0]) if lacking else None
 
 
 SOLVERS: ExtensionPoint[RouteSolver] = ExtensionPoint(
     "argo.solvers",
-    "route solver",
+    Message("route solver"),
     {solver.name: solver for solver in chain(FIRST, SMALL, IMPROVING, PROVING)},
     _find_problem,
 )
@@ -99,9 +100,13 @@ class InstalledSolver:
             search.add_reason(self._log_failure(error))
 
     def _log_failure(self, error: Exception) -> str:
-        message = (
-            f"the solver `{self.name}` of {self.package} has failed "
-            f"({type(error).__name__}: {error}); the search went on without it"
+        message = Message(
+            "the solver `{solver}` of {package} has failed ({name}: {error}); the search "
+            "went on without it",
+            solver=self.name,
+            package=self.package,
+            name=type(error).__name__,
+            error=error,
         )
         _log.warning("%s", message)
         return message

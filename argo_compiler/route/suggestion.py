@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.message import Message
 from argo_compiler.route.problem import RouteProblem, Tour
 from argo_compiler.route.stop import SearchProgress, StopCriterion
 from argo_compiler.route.suggested import RouteSuggestion
@@ -59,8 +60,13 @@ def suggest_route(
     limits = [limit for limit in (time_limit, work_limit) if limit is not None]
     if not limits or not all(limit > 0.0 for limit in limits) or workers < 1:
         raise Invalid(
-            "the search for a route needs a limit of time or work above 0, and a worker, not "
-            f"{time_limit} s, work {work_limit} and {workers} workers"
+            Message(
+                "the search for a route needs a limit of time or work above 0, and a "
+                "worker, not {time_limit} s, work {work_limit} and {workers} workers",
+                time_limit=time_limit,
+                work_limit=work_limit,
+                workers=workers,
+            )
         )
     # OR-Tools takes a second to import, and most users of this package do not search.
     from argo_compiler.route.find_route import find_route
@@ -81,13 +87,13 @@ def suggest_route(
     _log.info(
         "%d visits: %s by %s",
         problem.size,
-        "proven that there is no route"
+        Message("proven that there is no route")
         if suggestion.infeasible
-        else "no route found"
+        else Message("no route found")
         if suggestion.route is None
-        else "proven"
+        else Message("proven")
         if suggestion.proven
-        else "not proven",
-        suggestion.method or "no search",
+        else Message("not proven"),
+        suggestion.method or Message("no search"),
     )
     return suggestion

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_compiler.base.message import Message
 from argo_env.drives.drive import Drive, DriveStatus, Incident
 from argo_env.drives.standstill import PATIENCE, first_motionless_step_from_1, has_moved_noticeably
 from argo_env.drives.timed_drive import TimedDrive, path_with_initial_shift
@@ -190,7 +191,9 @@ class Powertrain:
         elif self.path_and_velocity is not None:
             self._still_time += self.time_step
             if self._still_time >= PATIENCE:
-                self._failure = f"the robot has not moved for {PATIENCE:.0f} s"
+                self._failure = Message(
+                    "the robot has not moved for {patience:.0f} s", patience=PATIENCE
+                )
                 return DriveStatus.FAILED
         return DriveStatus.MOVING
 

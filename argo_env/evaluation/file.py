@@ -5,6 +5,7 @@ from pathlib import Path
 from pydantic import Field, field_validator, model_validator
 
 from argo_compiler.base.errors import Invalid, Remedy
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_compiler.files.loading import decode_text, require_size
 from argo_env.evaluation.case import AS_WRITTEN, NO_FAULTS
@@ -162,8 +163,12 @@ def _require_harmless(file: EvaluationFile, source_name: str, folder: Path | Non
     for policy in file.policies:
         if ":" in policy:
             raise Invalid(
-                f"{source_name}: the policy `{policy}` is code, which would be run: read it, and "
-                "trust the file only if you trust that code",
+                Message(
+                    "{source_name}: the policy `{policy}` is code, which would be run: read "
+                    "it, and trust the file only if you trust that code",
+                    source_name=source_name,
+                    policy=policy,
+                ),
                 remedies=(Remedy.TRUST,),
             )
     faults = (file.faults.file,) if isinstance(file.faults, DrawnFaults) else file.faults
@@ -171,8 +176,12 @@ def _require_harmless(file: EvaluationFile, source_name: str, folder: Path | Non
     for name in (*missions, *file.sites, *faults):
         if leaves_folder(name) or (folder is not None and links_leave_folder(folder, name)):
             raise Invalid(
-                f"{source_name}: `{name}` is outside of the folder of the file: copy it into that "
-                "folder, or trust the file",
+                Message(
+                    "{source_name}: `{name}` is outside of the folder of the file: copy it "
+                    "into that folder, or trust the file",
+                    source_name=source_name,
+                    name=name,
+                ),
                 remedies=(Remedy.TRUST,),
             )
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from argo_compiler.base.errors import Conflict, Invalid, NotFound, Remedy
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_compiler.files.atomic_write import write_atomically
 from argo_compiler.files.loading import read_bytes
@@ -27,7 +28,9 @@ _SPEC_NAME = re.compile(r"[0-9a-f]{24}\.json")
 _MAX_FAILING = 1_000
 """largest number of specs that are written; the rows of all runs are in the folder"""
 _MAX_BYTES = 1_000_000_000
-_REMEDY = "restore it from a copy, or delete it and evaluate again, which keeps the rows that fit"
+_REMEDY = Message(
+    "restore it from a copy, or delete it and evaluate again, which keeps the rows that fit"
+)
 
 
 class _StoredPlan(Model):
@@ -61,8 +64,11 @@ def open_rows(
         if not _continues(folder, plan):
             if not replace_and_keep_fitting:
                 raise Conflict(
-                    f"{folder} has another evaluation: choose another folder; or replace its "
-                    "plan, and keep those of its rows that fit",
+                    Message(
+                        "{folder} has another evaluation: choose another folder; or replace its "
+                        "plan, and keep those of its rows that fit",
+                        folder=folder,
+                    ),
                     remedies=(Remedy.CHOOSE_OUTPUT, Remedy.REPLACE),
                 )
             plans = (plan,) if cheap_plan is None else (plan, cheap_plan)
@@ -128,7 +134,11 @@ def find_stored_plan(folder: Path, digest: str | None = None) -> EvaluationPlan 
     except ValidationError:
         if digest is not None:
             return None  # of another version of Argo; the caller makes the plan again
-        raise Invalid(f"{folder / PLAN} is not the plan of an evaluation by this version") from None
+        raise Invalid(
+            Message(
+                "{folder} is not the plan of an evaluation by this version", folder=folder / PLAN
+            )
+        ) from None
     return stored.plan if digest in (None, stored.digest) else None
 
 
@@ -140,7 +150,7 @@ def read_results(folder: Path) -> EvaluationResults:
     """
     plan = find_stored_plan(folder)
     if plan is None:
-        raise NotFound(f"{folder} has no evaluation")
+        raise NotFound(Message("{folder} has no evaluation", folder=folder))
     rows = own_rows_in_plan_order(plan, read_rows(folder))
     if plan.strata or len(rows) == len(plan.seeds) * len(plan.cases) or should_stop(plan, rows):
         return EvaluationResults(plan, rows)

@@ -17,6 +17,7 @@ from pydantic import ValidationError
 
 from argo_compiler.base.errors import Unavailable, reason_text
 from argo_compiler.base.extras import install_line
+from argo_compiler.base.message import Message
 from argo_compiler.base.operating_system import write_draft_and_replace
 from argo_compiler.files.json_places import format_path
 from argo_env.evaluation.row import RunRow
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 PARTS = "parts"
 _PART_NAME = re.compile(r"part-(\d+)(?:-([0-9a-f]{8}))?\.parquet")
 """number and checksum; older versions of Argo wrote none"""
-_REMEDY = "restore it from a copy, or delete it and evaluate again, which repeats its runs"
+_REMEDY = Message("restore it from a copy, or delete it and evaluate again, which repeats its runs")
 
 
 def can_write_parts() -> bool:
@@ -62,7 +63,9 @@ def write_part(folder: Path, rows: Sequence[RunRow]) -> Path:
         make_private_folder(parts)
         write_draft_and_replace(draft, path, content)
     except OSError as error:
-        raise Unavailable(f"{path} can't be written: {reason_text(error)}") from error
+        raise Unavailable(
+            Message("{path} can't be written: {error}", path=path, error=reason_text(error))
+        ) from error
     return path
 
 
@@ -77,7 +80,11 @@ def read_parts(folder: Path) -> tuple[RunRow, ...]:
         return ()
     if not can_write_parts():
         raise Unavailable(
-            f"{folder / PARTS}: reading Parquet files needs pyarrow: {install_line('results')}"
+            Message(
+                "{folder}: reading Parquet files needs pyarrow: {install_line}",
+                folder=folder / PARTS,
+                install_line=install_line("results"),
+            )
         )
     rows: list[RunRow] = []
     for _, path in sorted(parts.items()):
@@ -91,7 +98,9 @@ def _read_part(path: Path) -> list[RunRow]:
     try:
         content = path.read_bytes()
     except OSError as error:
-        raise Unavailable(f"{path} can't be read: {error.strerror}") from error
+        raise Unavailable(
+            Message("{path} can't be read: {reason}", path=path, reason=reason_text(error))
+        ) from error
     match = _PART_NAME.fullmatch(path.name)
     stated = match and match[2]
     if stated and int(stated, 16) != zlib.crc32(content):
@@ -109,7 +118,11 @@ def _reason(error: Exception) -> str:
     """Return what is wrong with the content of a Parquet file, in one line."""
     if isinstance(error, ValidationError):
         fault = error.errors(include_url=False)[0]
-        return f"column {format_path(fault['loc'])}: {fault['msg']}"
+        return Message(
+            "column {format_path}: {fault}",
+            format_path=format_path(fault["loc"]),
+            fault=fault["msg"],
+        )
     return str(error).partition("\n")[0] or type(error).__name__
 
 
@@ -119,7 +132,13 @@ def remove_parts(folder: Path) -> None:
         for path in _numbered_parts(folder).values():
             os.unlink(path)
     except OSError as error:
-        raise Unavailable(f"{folder / PARTS} can't be changed: {error.strerror}") from error
+        raise Unavailable(
+            Message(
+                "{folder} can't be changed: {reason}",
+                folder=folder / PARTS,
+                reason=reason_text(error),
+            )
+        ) from error
 
 
 def _numbered_parts(folder: Path) -> dict[int, Path]:
@@ -132,13 +151,23 @@ def _numbered_parts(folder: Path) -> dict[int, Path]:
     except FileNotFoundError:
         return {}
     except OSError as error:
-        raise Unavailable(f"{folder / PARTS} can't be read: {error.strerror}") from error
+        raise Unavailable(
+            Message(
+                "{folder} can't be read: {reason}", folder=folder / PARTS, reason=reason_text(error)
+            )
+        ) from error
     parts: dict[int, Path] = {}
     for name in names:
         if match := _PART_NAME.fullmatch(name):
             path = folder / PARTS / name
             if parts.setdefault(int(match[1]), path) != path:
-                raise Unavailable(f"{path} and {parts[int(match[1])].name}: delete one of the two")
+                raise Unavailable(
+                    Message(
+                        "{path} and {part}: delete one of the two",
+                        path=path,
+                        part=parts[int(match[1])].name,
+                    )
+                )
     return parts
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import Field
 
 from argo_compiler.base.errors import Conflict, Invalid
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_compiler.base.version import __version__
 from argo_env.evaluation.case import EvaluationCase, PlanName
@@ -22,9 +23,9 @@ if TYPE_CHECKING:
     from argo_env.evaluation.row import RunRow
 
 
-NO_REQUIREMENT_ON_STRATA = (
-    "strata have no worlds in common, so that no requirement can be checked repeatedly: give "
-    "`stop: {width: ...}` instead"
+NO_REQUIREMENT_ON_STRATA = Message(
+    "strata have no worlds in common, so that no requirement can be checked "
+    "repeatedly: give `stop: {width: ...}` instead"
 )
 
 
@@ -150,7 +151,13 @@ class EvaluationPlan(Model):
         duplicates = [name for name in dict.fromkeys(names) if names.count(name) > 1]
         if duplicates:
             plan, faults = duplicates[0]
-            raise Conflict(f"{plan} with faults {faults} is there twice: rename one of them")
+            raise Conflict(
+                Message(
+                    "{plan} with faults {faults} is there twice: rename one of them",
+                    plan=plan,
+                    faults=faults,
+                )
+            )
         faultless = self.variation.faults is None and not any(c.spec.faults for c in self.cases)
         if faultless and any(r.quantity == "detected" for r in self.stopping.require):
             raise Invalid(
@@ -182,17 +189,29 @@ def parse_seeds(text: str) -> tuple[int, ...]:
     for part in text.replace(" ", "").split(","):
         first, dots, last = part.partition("..")
         if not first.isdecimal() or (dots and not last.isdecimal()):
-            raise Invalid(f"seeds `{text}`: write them as 0..999, or 3,7,20..29")
+            raise Invalid(Message("seeds `{text}`: write them as 0..999, or 3,7,20..29", text=text))
         low, high = int(first), int(last or first)
         if high < low:
-            raise Invalid(f"seeds `{part}`: the last one is before the first")
+            raise Invalid(Message("seeds `{part}`: the last one is before the first", part=part))
         if high - low >= MOST_SEEDS - len(seeds):
-            raise Invalid(f"seeds `{part}`: there can be {MOST_SEEDS:,} seeds at most")
+            raise Invalid(
+                Message(
+                    "seeds `{part}`: there can be {most_seeds:,} seeds at most",
+                    part=part,
+                    most_seeds=MOST_SEEDS,
+                )
+            )
         if high > LARGEST_SEED:
-            raise Invalid(f"seeds `{part}`: the largest there can be is {LARGEST_SEED}")
+            raise Invalid(
+                Message(
+                    "seeds `{part}`: the largest there can be is {largest_seed}",
+                    part=part,
+                    largest_seed=LARGEST_SEED,
+                )
+            )
         seeds += range(low, high + 1)
     if len(set(seeds)) < len(seeds):
-        raise Invalid(f"seeds `{text}`: one is there twice")
+        raise Invalid(Message("seeds `{text}`: one is there twice", text=text))
     return tuple(seeds)
 
 
@@ -201,7 +220,9 @@ def single_seed_note(seeds: str) -> str | None:
     if not seeds.strip().isdecimal() or int(seeds) < 2:
         return None
     number = int(seeds)
-    return f"seed {number} only; for {number} seeds: 0..{number - 1}"
+    return Message(
+        "seed {number} only; for {number} seeds: 0..{number_2}", number=number, number_2=number - 1
+    )
 
 
 MOST_SEEDS = 1_000_000

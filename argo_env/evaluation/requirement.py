@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from pydantic import Field, model_validator
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.message import Listing, Message
 from argo_compiler.base.model import Model
 from argo_env.evaluation.quantities import QUANTITIES
 
@@ -27,7 +28,7 @@ class RateRequirement(Model):
     @model_validator(mode="after")
     def _known(self) -> "RateRequirement":
         if self.quantity not in QUANTITIES:
-            known = ", ".join(QUANTITIES)
+            known = Listing(QUANTITIES)
             raise ValueError(f"no quantity `{self.quantity}`; there are: {known}")
         return self
 
@@ -52,20 +53,35 @@ def parse_requirement(text: str) -> RateRequirement:
     match = _FORM.fullmatch(text)
     if match is None:
         raise Invalid(
-            f"requirement `{text}`: write it as `success >= 0.98`, with one of: "
-            f"{', '.join(QUANTITIES)}"
+            Message(
+                "requirement `{text}`: write it as `success >= 0.98`, with one of: {quantities}",
+                text=text,
+                quantities=Listing(QUANTITIES),
+            )
         )
     name, sign, number, percent = match.groups()
     if name not in QUANTITIES:
-        known = ", ".join(QUANTITIES)
-        raise Invalid(f"requirement `{text}`: no quantity `{name}`; there are: {known}")
+        known = Listing(QUANTITIES)
+        raise Invalid(
+            Message(
+                "requirement `{text}`: no quantity `{name}`; there are: {known}",
+                text=text,
+                name=name,
+                known=known,
+            )
+        )
     try:
         share = float(number) / (100.0 if percent else 1.0)
     except ValueError:
-        raise Invalid(f"requirement `{text}`: `{number}` is not a number") from None
+        raise Invalid(
+            Message("requirement `{text}`: `{number}` is not a number", text=text, number=number)
+        ) from None
     if not 0 < share < 1:
         raise Invalid(
-            f"requirement `{text}`: give a share above 0 and below 1; no number of runs can show "
-            "that something is always or never the case"
+            Message(
+                "requirement `{text}`: give a share above 0 and below 1; no number of runs "
+                "can show that something is always or never the case",
+                text=text,
+            )
         )
     return RateRequirement(quantity=name, at_least=sign == ">=", share=share)

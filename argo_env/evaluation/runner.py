@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.message import Message
 from argo_env.evaluation.case import EvaluationCase, PlanName
 from argo_env.evaluation.estimates.rates import Stratum, allocate_runs
 from argo_env.evaluation.plan import EvaluationPlan, PlannedRun
@@ -70,7 +71,11 @@ def _row(order: WorkOrder, site: OpenedSite | None) -> RunRow:
         return make_empty_row(order.key, order.case, order.spec, RunOutcome.ERROR, str(error))
     except Exception as error:  # the row reports it, with its location in the code
         frame = traceback.extract_tb(error.__traceback__)[-1]
-        place = f"{os.path.basename(frame.filename)}, line {frame.lineno}"
+        place = Message(
+            "{basename}, line {lineno}",
+            basename=os.path.basename(frame.filename),
+            lineno=frame.lineno,
+        )
         reason = f"{type(error).__name__}: {error} ({place})"
         return make_empty_row(order.key, order.case, order.spec, RunOutcome.ERROR, reason)
     finally:
@@ -230,7 +235,7 @@ class EvaluationRunner:
             return finished.value
         outcome, reason = RunOutcome.DIED, finished.died
         if reason is not None and reason.endswith(f"code {TOOK_TOO_LONG}"):
-            reason = "the run took longer than its time limit"
+            reason = Message("the run took longer than its time limit")
         if reason is None:
             # It couldn't be sent to a worker or back; each run gets a row, whatever went wrong.
             outcome, reason = RunOutcome.ERROR, f"{type(finished.error).__name__}: {finished.error}"

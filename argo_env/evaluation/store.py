@@ -17,7 +17,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from argo_compiler.base.errors import Conflict, NotFound, Unavailable
+from argo_compiler.base.errors import Conflict, NotFound, Unavailable, reason_text
+from argo_compiler.base.message import Message
 from argo_compiler.base.operating_system import (
     OPEN_FLAGS,
     sync_folder,
@@ -166,7 +167,9 @@ class RowStore(Closing):
         try:
             yield
         except OSError as error:
-            raise Unavailable(f"{self.folder / LOG}: {error.strerror}") from error
+            raise Unavailable(
+                Message("{path}: {reason}", path=self.folder / LOG, reason=reason_text(error))
+            ) from error
 
     def _replace_log(self, rows: Sequence[RunRow]) -> None:
         """Replace the log by one with these rows; raises OSError if that fails."""
@@ -190,13 +193,16 @@ def read_rows(folder: Path) -> tuple[RunRow, ...]:
     there are Parquet files and pyarrow is missing.
     """
     if not (os.path.exists(folder / LOG) or has_parts(folder)):
-        raise NotFound(f"{folder} has no rows of an evaluation")
+        raise NotFound(Message("{folder} has no rows of an evaluation", folder=folder))
     # The log comes first: rows that are moved meanwhile are then read twice, and not missed.
     logged = read_log(folder)
     if logged.was_synced:
         raise Unavailable(
-            f"{logged.loss}: evaluate again into this folder, which repeats the runs of the "
-            "damaged lines, or restore the file from a copy"
+            Message(
+                "{loss}: evaluate again into this folder, which repeats the runs of the "
+                "damaged lines, or restore the file from a copy",
+                loss=logged.loss,
+            )
         )
     by_key = {row.key: row for row in read_parts(folder)}
     for row in logged.rows:
@@ -237,9 +243,15 @@ def _loss(path: Path, stored: StoredLines, wrong: int) -> str:
     """Return which lines of a log are damaged; `wrong` intact lines have no valid row."""
     if not stored.damaged:
         lines = counted_text(wrong, "line")
-        return f"{path}: {lines} without a row of this version" if wrong else ""
-    why = "" if stored.was_synced else ", as by a loss of power"
-    return f"{path}: damaged in line {len(stored.lines) + 1}{why}"
+        return (
+            Message("{path}: {lines} without a row of this version", path=path, lines=lines)
+            if wrong
+            else ""
+        )
+    why = "" if stored.was_synced else Message(", as by a loss of power")
+    return Message(
+        "{path}: damaged in line {count}{why}", path=path, count=len(stored.lines) + 1, why=why
+    )
 
 
 def _fields(row: RunRow) -> dict[str, Any]:
@@ -247,7 +259,13 @@ def _fields(row: RunRow) -> dict[str, Any]:
 
 
 def _not_writable(folder: Path, error: OSError) -> Unavailable:
-    return Unavailable(f"{error.filename or folder} can't be written: {error.strerror}")
+    return Unavailable(
+        Message(
+            "{value} can't be written: {reason}",
+            value=error.filename or folder,
+            reason=reason_text(error),
+        )
+    )
 
 
 def _acquire_lock(folder: Path) -> int:
@@ -263,7 +281,10 @@ def _acquire_lock(folder: Path) -> int:
     if not locked:
         os.close(file)
         raise Conflict(
-            f"{folder}: another process evaluates into it: wait until it ends, or choose another "
-            "folder"
+            Message(
+                "{folder}: another process evaluates into it: wait until it ends, or "
+                "choose another folder",
+                folder=folder,
+            )
         )
     return file

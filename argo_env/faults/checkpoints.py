@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 
 from argo_compiler.base.catalog import CheckpointKind
 from argo_compiler.base.errors import Invalid, NotFound
+from argo_compiler.base.message import Message
 from argo_compiler.il import EventKind
 from argo_env.faults.fault import Sign, TimedFault, in_unit
 from argo_env.seeding import draw
@@ -37,7 +38,7 @@ class CheckpointFault(TimedFault):
     def _at_checkpoint(self, site: Site, rng: np.random.Generator) -> SiteCheckpoint:
         known = [c.id for c in site.checkpoints]
         if not known:
-            raise NotFound(f"site {site.name} has no checkpoint")
+            raise NotFound(Message("site {site} has no checkpoint", site=site.name))
         drawn = known[int(rng.integers(len(known)))]
         return site.checkpoint(self.checkpoint or drawn)
 
@@ -57,13 +58,29 @@ class AbnormalValue(CheckpointFault):
         shown, nominal = checkpoint.range, checkpoint.nominal
         if not shown.contains(value):
             raise Invalid(
-                f"checkpoint {checkpoint.id} ({checkpoint.name}) shows {shown.low:g} to "
-                f"{shown.high:g} {checkpoint.unit}, not {value:g}"
+                Message(
+                    "checkpoint {id} ({checkpoint}) shows {low:g} to {high:g} {unit}, not "
+                    "{value:g}",
+                    id=checkpoint.id,
+                    checkpoint=checkpoint.name,
+                    low=shown.low,
+                    high=shown.high,
+                    unit=checkpoint.unit,
+                    value=value,
+                )
             )
         if nominal.contains(value):
             raise Invalid(
-                f"{value:g} {checkpoint.unit} is not abnormal at checkpoint {checkpoint.id} "
-                f"({checkpoint.name}): its nominal range is {nominal.low:g} to {nominal.high:g}"
+                Message(
+                    "{value:g} {unit} is not abnormal at checkpoint {id} ({checkpoint}): its "
+                    "nominal range is {low:g} to {high:g}",
+                    value=value,
+                    unit=checkpoint.unit,
+                    id=checkpoint.id,
+                    checkpoint=checkpoint.name,
+                    low=nominal.low,
+                    high=nominal.high,
+                )
             )
         return super().resolve_for(site, rng)._copy_with(checkpoint=checkpoint.id, value=value)
 
@@ -110,7 +127,11 @@ class DisplacedCheckpoint(CheckpointFault):
         checkpoint = self._at_checkpoint(site, rng)
         upright = checkpoint.kind is CheckpointKind.LIQUID_LEVEL_GAUGE
         if upright and self.roll:
-            raise Invalid(f"checkpoint {checkpoint.id} is a level gauge, which can't have a `roll`")
+            raise Invalid(
+                Message(
+                    "checkpoint {id} is a level gauge, which can't have a `roll`", id=checkpoint.id
+                )
+            )
         drawn = draw_checkpoint_placement(rng, upright)
         # Round towards zero, since an offset that is rounded up might exceed the limit.
         x, y, z = (math.trunc(v * 1e4) / 1e4 for v in drawn.offset)
@@ -146,8 +167,12 @@ def _abnormal(checkpoint: SiteCheckpoint, rng: np.random.Generator) -> float:
     free = beyond(_CLEARLY * (scale.high - scale.low)) or beyond(0.0)
     if not free:
         raise Invalid(
-            f"checkpoint {checkpoint.id} ({checkpoint.name}) can't show an abnormal value: its "
-            "whole scale is nominal"
+            Message(
+                "checkpoint {id} ({checkpoint}) can't show an abnormal value: its whole "
+                "scale is nominal",
+                id=checkpoint.id,
+                checkpoint=checkpoint.name,
+            )
         )
     lengths = np.array([high - low for low, high in free]) + 1e-9
     low, high = free[int(rng.choice(len(free), p=lengths / lengths.sum()))]

@@ -11,6 +11,7 @@ from pydantic import Field, SerializeAsAny, ValidatorFunctionWrapHandler, WrapVa
 
 from argo_compiler.base.errors import ArgoError
 from argo_compiler.base.extensions import ExtensionPoint
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_env.faults.checkpoints import AbnormalValue, DisplacedCheckpoint
 from argo_env.faults.fault import Fault
@@ -55,10 +56,10 @@ KINDS: dict[str, type[Fault]] = {
 
 def _find_problem(name: str, item: object) -> str | None:
     if not (isinstance(item, type) and issubclass(item, Fault)):
-        return "is no subclass of `argo_env.faults.fault.Fault`"
+        return Message("is no subclass of `argo_env.faults.fault.Fault`")
     if item.model_fields["kind"].default != name:
-        return f'has no field `kind: Literal["{name}"] = "{name}"`'
-    return None if hasattr(item, "sign") else "does not define `sign`"
+        return Message('has no field `kind: Literal["{name}"] = "{name}"`', name=name)
+    return None if hasattr(item, "sign") else Message("does not define `sign`")
 
 
 FAULTS: ExtensionPoint[type[Fault]] = ExtensionPoint("argo.faults", "fault", KINDS, _find_problem)
@@ -125,7 +126,11 @@ def _resolve_in_list(fault: AnyFault, number: int, site: Site, seed: int) -> Any
     try:
         return resolve_fault(fault, number, site, seed)
     except ArgoError as error:
-        raise type(error)(f"faults[{number}] ({fault.kind}): {error}") from None
+        raise type(error)(
+            Message(
+                "faults[{number}] ({kind}): {error}", number=number, kind=fault.kind, error=error
+            )
+        ) from None
 
 
 def site_with_faults(site: Site, faults: Sequence[AnyFault]) -> Site:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from pydantic import Field, model_validator
 
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_compiler.files.json_places import JsonPath
 from argo_compiler.files.loading import decode_text, read_bytes, require_size
@@ -47,7 +48,7 @@ def read_faults(path: Path) -> tuple[AnyFault, ...]:
         ArgoError: the file can't be read.
         DiagnosticError: its content is not a list of faults.
     """
-    return decode_faults(read_bytes(path, "file of faults", MAX_BYTES), str(path)).faults
+    return decode_faults(read_bytes(path, Message("file of faults"), MAX_BYTES), str(path)).faults
 
 
 def decode_faults(content: bytes, source_name: str) -> FaultText:
@@ -61,8 +62,8 @@ def decode_faults(content: bytes, source_name: str) -> FaultText:
         ArgoError: the content is too large or no text.
         DiagnosticError: the content is not a list of faults.
     """
-    require_size(content, source_name, "file of faults", MAX_BYTES)
-    text = decode_text(content, source_name, "file of faults")
+    require_size(content, source_name, Message("file of faults"), MAX_BYTES)
+    text = decode_text(content, source_name, Message("file of faults"))
     file = parse_yaml(
         text,
         source_name,
@@ -72,8 +73,8 @@ def decode_faults(content: bytes, source_name: str) -> FaultText:
         duplicate_key="faults.duplicate-key",
         wrong_field="faults.wrong-field",
         no_field={
-            "at": "a fault of this kind is there from the start: remove it",
-            "until": "a fault of this kind is there from the start, and stays: remove it",
+            "at": Message("a fault of this kind is there from the start: remove it"),
+            "until": Message("a fault of this kind is there from the start, and stays: remove it"),
         },
     )
     return FaultText(file.faults, text, source_name)
@@ -135,12 +136,12 @@ def decode_distribution(content: bytes, source_name: str) -> FaultDistribution:
         ArgoError: the content is too large or no text.
         DiagnosticError: the content is not a distribution.
     """
-    require_size(content, source_name, "distribution of faults", MAX_BYTES)
+    require_size(content, source_name, Message("distribution of faults"), MAX_BYTES)
     return parse_yaml(
-        decode_text(content, source_name, "distribution of faults"),
+        decode_text(content, source_name, Message("distribution of faults")),
         source_name,
         FaultDistribution,
-        "distributions of faults",
+        Message("distributions of faults"),
         not_yaml="faults.not-yaml",
         duplicate_key="faults.duplicate-key",
         wrong_field="faults.wrong-field",

@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import Field, field_validator
 
 from argo_compiler.base.errors import Invalid, NotFound
+from argo_compiler.base.message import Listing, Message
 from argo_compiler.il import EventKind
 from argo_env.faults.fault import Sign, TimedFault, in_unit
 from argo_env.seeding import draw
@@ -124,11 +125,16 @@ class AbnormalPump(ProcessFault):
     def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:
         known = _pump_names(site)
         if not known:
-            raise NotFound(f"site {site.name} has no pump")
+            raise NotFound(Message("site {site} has no pump", site=site.name))
         pump, defect = known[int(rng.integers(len(known)))], list(PumpFault)[int(rng.integers(2))]
         if self.pump is not None and self.pump not in known:
             raise NotFound(
-                f"site {site.name} has no pump `{self.pump}`; there are: {', '.join(known)}"
+                Message(
+                    "site {site} has no pump `{pump}`; there are: {known}",
+                    site=site.name,
+                    pump=self.pump,
+                    known=Listing(known),
+                )
             )
         return super().resolve_for(site, rng).fill_unset(pump=pump, defect=defect)
 
@@ -184,16 +190,28 @@ def _check_place(site: Site, place: Vector | None) -> None:
     low, high = _place_limits(site)
     if not all(a <= v <= b for a, v, b in zip(low, place, high, strict=True)):
         raise Invalid(
-            f"there is no equipment at ({x:g}, {y:g}, {z:g}): a place on site {site.name} lies "
-            f"between ({low[0]:g}, {low[1]:g}, {low[2]:g}) and "
-            f"({high[0]:g}, {high[1]:g}, {high[2]:g})"
+            Message(
+                "there is no equipment at ({x:g}, {y:g}, {z:g}): a place on site {site} "
+                "lies between ({low:g}, {low_2:g}, {low_3:g}) and ({high:g}, {high_2:g}, "
+                "{high_3:g})",
+                x=x,
+                y=y,
+                z=z,
+                site=site.name,
+                low=low[0],
+                low_2=low[1],
+                low_3=low[2],
+                high=high[0],
+                high_2=high[1],
+                high_3=high[2],
+            )
         )
 
 
 def _near_equipment(site: Site, rng: np.random.Generator, up: float) -> Vector:
     """Return a random position on the equipment behind a checkpoint, `up` m above the latter."""
     if not site.checkpoints:
-        raise NotFound(f"site {site.name} has no checkpoint: give the `place`")
+        raise NotFound(Message("site {site} has no checkpoint: give the `place`", site=site.name))
     checkpoint = site.checkpoints[int(rng.integers(len(site.checkpoints)))]
     x, y, z = checkpoint.position
     return (

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field
 
+from argo_compiler.base.message import Message
 from argo_compiler.il import EventKind
 from argo_env.faults.fault import Fault, Sign, TimedFault, in_unit
 from argo_env.seeding import draw
@@ -79,7 +80,7 @@ class ConnectionLoss(TimedFault):
 class EmergencyStop(TimedFault):
     """Someone presses the emergency stop, and releases it at the fault's end."""
 
-    sign: ClassVar[Sign] = Sign(EventKind.EMERGENCY_STOP, "emergency stop")
+    sign: ClassVar[Sign] = Sign(EventKind.EMERGENCY_STOP, Message("emergency stop"))
     kind: Literal["emergency_stop"] = "emergency_stop"
 
     def apply(self, targets: "FaultTargets", now: float) -> None:  # noqa: ARG002

@@ -14,6 +14,7 @@ import numpy as np
 from pydantic import Field
 
 from argo_compiler.base.errors import Invalid, NotFound
+from argo_compiler.base.message import Listing, Message
 from argo_compiler.il import EventKind
 from argo_env.faults.fault import Fault, Sign, in_unit
 from argo_env.seeding import draw
@@ -60,17 +61,30 @@ class Brick(Fault):
         for _ in range(1 if self.place else _DRAWS):
             floor, place = _choose_position(site, rng, self.floor, self.place, lowest=1)
             if not any(_contains(r, place) for r in floor.walkways.values()):
-                raise Invalid(f"there is no walkway at ({place[0]:g}, {place[1]:g}) of floor "
-                                f"{floor.number}")  # fmt: skip
+                x, y = place
+                raise Invalid(
+                    Message(
+                        "there is no walkway at ({x:g}, {y:g}) of floor {number}",
+                        x=x,
+                        y=y,
+                        number=floor.number,
+                    )
+                )
             yaw = draw(rng, -90.0, 90.0, 1)
             resolved = self._copy_with(floor=floor.number, place=place).fill_unset(yaw=yaw)
             area = resolved._covered_dock(site, floor)
             if area is None:
                 return resolved
         raise Invalid(
-            f"a brick at ({place[0]:g}, {place[1]:g}) of floor {floor.number} lies over the dock "
-            f"of starting area {area}, where the robot has to stand: give another `place`, or a "
-            "smaller `size`"
+            Message(
+                "a brick at ({place:g}, {place_2:g}) of floor {number} lies over the dock "
+                "of starting area {area}, where the robot has to stand: give another "
+                "`place`, or a smaller `size`",
+                place=place[0],
+                place_2=place[1],
+                number=floor.number,
+                area=area,
+            )
         )
 
     def _covered_dock(self, site: Site, floor: FloorSpec) -> int | None:
@@ -130,14 +144,24 @@ class MissingPlate(Fault):
         floor, (x, y) = _choose_position(site, rng, self.floor, centre, lowest=2)
         if not floor.railed:
             raise Invalid(
-                f"floor {floor.number} is a slab on the ground and has no plates; "
-                "choose a higher floor"
+                Message(
+                    "floor {number} is a slab on the ground and has no plates; choose a higher "
+                    "floor",
+                    number=floor.number,
+                )
             )
         half = PLATE / 2
         drawn = tuple(round(v, 3) for v in (x - half, y - half, x + half, y + half))
         resolved = self._copy_with(floor=floor.number, rect=self.rect or drawn)
         if resolved.site_elements_with_fault(site) == site.elements:
-            raise Invalid(f"there is no deck at ({x:g}, {y:g}) of floor {floor.number}")
+            raise Invalid(
+                Message(
+                    "there is no deck at ({x:g}, {y:g}) of floor {number}",
+                    x=x,
+                    y=y,
+                    number=floor.number,
+                )
+            )
         return resolved
 
     def site_elements_with_fault(self, site: Site) -> tuple[Element, ...]:
@@ -178,23 +202,33 @@ class BlockedStairs(Fault):
     def resolve_for(self, site: Site, rng: np.random.Generator) -> Self:
         towers, floors = [t.name for t in site.spec.towers], site.spec.floors[:-1]
         if not towers or not floors:
-            raise NotFound(f"site {site.name} has no stairs")
+            raise NotFound(Message("site {site} has no stairs", site=site.name))
         tower = towers[int(rng.integers(len(towers)))]
         floor = floors[int(rng.integers(len(floors)))].number
         if self.tower is not None and self.tower not in towers:
             raise NotFound(
-                f"site {site.name} has no stair tower `{self.tower}`; there are: "
-                f"{', '.join(towers)}"
+                Message(
+                    "site {site} has no stair tower `{tower}`; there are: {towers}",
+                    site=site.name,
+                    tower=self.tower,
+                    towers=Listing(towers),
+                )
             )
         if self.floor is not None and self.floor not in [f.number for f in floors]:
-            raise NotFound(f"site {site.name} has no stairs up from floor {self.floor}")
+            raise NotFound(
+                Message(
+                    "site {site} has no stairs up from floor {floor}",
+                    site=site.name,
+                    floor=self.floor,
+                )
+            )
         return self.fill_unset(tower=tower, floor=floor)
 
     def site_elements_with_fault(self, site: Site) -> tuple[Element, ...]:
         assert self.floor is not None
         tower = next(t for t in site.spec.towers if t.name == self.tower)
         barriers = _barriers(tower, site.floor(self.floor).z)
-        name = _new_name(site, f"barrier of the {self.tower}")
+        name = _new_name(site, Message("barrier of the {tower}", tower=self.tower))
         return (*site.elements, Element(name, Role.STRUCTURE, barriers, "brick"))
 
     def can_explain(self, place: Vector | None, noticed_from: Vector | None, site: Site) -> bool:  # noqa: ARG002
@@ -275,7 +309,7 @@ def _choose_position(
     """
     floors = [f for f in site.spec.floors if f.number >= lowest]
     if not floors:
-        raise NotFound(f"site {site.name} has no upper floor")
+        raise NotFound(Message("site {site} has no upper floor", site=site.name))
     drawn = floors[int(rng.integers(len(floors)))]
     if number is None and place is not None:
         raise Invalid("a position needs a floor: give the `floor` as well")

@@ -11,6 +11,7 @@ from typing import TypeVar
 from pydantic import ValidationError
 
 from argo_compiler.base.errors import Unavailable
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_compiler.files.json_places import LONG_NUMBER
 
@@ -37,11 +38,13 @@ def unchecked_json(content: bytes, name: object, remedy: str) -> bytes:
     match = _IN_JSON.match(content)
     if match is None:
         if sum(a == b for a, b in zip(content, _START, strict=False)) > len(_START) - 4:
-            raise damaged(name, _place(content) or "its checksum is not whole", remedy)
+            raise damaged(name, _place(content) or Message("its checksum is not whole"), remedy)
         return content
     fields = content[match.end() :]
     if int(match[1], 16) != zlib.crc32(fields):
-        raise damaged(name, _place(content) or "its content does not fit its checksum", remedy)
+        raise damaged(
+            name, _place(content) or Message("its content does not fit its checksum"), remedy
+        )
     return b"{" + b" " * (match.end() - 1) + fields
 
 
@@ -74,7 +77,9 @@ def check_page(content: bytes, name: object, remedy: str) -> None:
 
 def damaged(name: object, why: str, remedy: str) -> Unavailable:
     """Return the error for a damaged file: which one, what is wrong, and what one can do."""
-    return Unavailable(f"{name} is damaged: {why}; {remedy}")
+    return Unavailable(
+        Message("{name} is damaged: {why}; {remedy}", name=name, why=why, remedy=remedy)
+    )
 
 
 def _place(content: bytes) -> str:
@@ -82,11 +87,16 @@ def _place(content: bytes) -> str:
     try:
         json.loads(content)
     except json.JSONDecodeError as error:
-        return f"line {error.lineno}, column {error.colno}: {error.msg}"
+        return Message(
+            "line {lineno}, column {colno}: {msg}",
+            lineno=error.lineno,
+            colno=error.colno,
+            msg=error.msg,
+        )
     except UnicodeDecodeError as error:
-        return f"byte {error.start}: {error.reason}"
+        return Message("byte {start}: {reason}", start=error.start, reason=error.reason)
     except ValueError:
         return LONG_NUMBER
     except RecursionError:
-        return "it is nested too deeply"
+        return Message("it is nested too deeply")
     return ""

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from argo_compiler.base.errors import Conflict, Unavailable
+from argo_compiler.base.errors import Conflict, Unavailable, reason_text
+from argo_compiler.base.message import Message, as_message
 
 
 def require_folder_or_creatable(path: Path) -> None:
@@ -23,10 +24,26 @@ def require_folder_or_creatable(path: Path) -> None:
     while not os.path.lexists(above):
         above = above.parent
     if not os.path.isdir(above):
-        problem = "is" if above == path.absolute() else f"can't be made a folder: {above} is"
-        raise Conflict(f"{path} {problem} a file, but a folder is needed; choose another path")
+        problem = (
+            Message("is")
+            if above == path.absolute()
+            else Message("can't be made a folder: {above} is", above=above)
+        )
+        raise Conflict(
+            Message(
+                "{path} {problem} a file, but a folder is needed; choose another path",
+                path=path,
+                problem=problem,
+            )
+        )
     if not (os.path.isdir(path) or os.access(above, os.W_OK | os.X_OK)):
-        raise Unavailable(f"{path} can't be made a folder: {os.strerror(errno.EACCES)}")
+        raise Unavailable(
+            Message(
+                "{path} can't be made a folder: {reason}",
+                path=path,
+                reason=as_message(os.strerror(errno.EACCES)),
+            )
+        )
 
 
 def leaves_folder(name: str) -> bool:
@@ -64,7 +81,9 @@ def make_folder(path: Path) -> None:
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise Unavailable(f"{path} can't be made a folder: {error.strerror}") from error
+        raise Unavailable(
+            Message("{path} can't be made a folder: {reason}", path=path, reason=reason_text(error))
+        ) from error
 
 
 def make_private_folder(path: Path) -> None:
@@ -87,8 +106,16 @@ def reporting_write_errors(path: Path, content: str = "", remedy: str = "") -> I
         yield
     except OSError as error:
         subject = f": {content}" if content else ""
-        raise Unavailable(f"{path}{subject} can't be written: {error.strerror}{remedy}") from error
+        raise Unavailable(
+            Message(
+                "{path}{subject} can't be written: {reason}{remedy}",
+                path=path,
+                subject=subject,
+                reason=reason_text(error),
+                remedy=remedy,
+            )
+        ) from error
 
 
-CHOOSE_ANOTHER_PLACE = "; choose another place"
+CHOOSE_ANOTHER_PLACE = Message("; choose another place")
 """a remedy for `reporting_write_errors`"""

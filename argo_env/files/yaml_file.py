@@ -5,6 +5,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from pydantic import ValidationError
 
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, Severity, Span, with_excerpts
 from argo_compiler.files.fields import unknown_field_hint
@@ -66,7 +67,8 @@ def parse_yaml(
         raise _error(source_name, text, [_diagnostic(not_yaml, _syntax_flaw(error))]) from None
     diagnostics = [
         _diagnostic(
-            duplicate_key, _Flaw(one.message, "remove one of the two", None, _span(one.node))
+            duplicate_key,
+            _Flaw(one.message, Message("remove one of the two"), None, _span(one.node)),
         )
         for one in repeated
     ]
@@ -74,7 +76,11 @@ def parse_yaml(
         parsed = model.model_validate(data)
     except ValidationError as error:
         if foreign := find_foreign_yaml(data):
-            message = f"the file has no {things}, but {foreign.kind}: choose another file"
+            message = Message(
+                "the file has no {things}, but {kind}: choose another file",
+                things=things,
+                kind=foreign.kind,
+            )
             flaw = _Flaw(message, None, None, None)
             raise _error(source_name, text, [_diagnostic(wrong_field, flaw)]) from None
         for flaw in _wrong_fields(error, model, things, no_field or {}, tree, data):
@@ -107,8 +113,10 @@ def error_at_paths(
 
 def _syntax_flaw(error: NotYamlError) -> _Flaw:
     if error.line is None or error.column is None:
-        return _Flaw(str(error), "check the file", None, None)
-    return _Flaw(str(error), "correct it there", None, Span(line=error.line, column=error.column))
+        return _Flaw(str(error), Message("check the file"), None, None)
+    return _Flaw(
+        str(error), Message("correct it there"), None, Span(line=error.line, column=error.column)
+    )
 
 
 def _error(source_name: str, text: str, diagnostics: list[Diagnostic]) -> DiagnosticError:
@@ -143,17 +151,32 @@ def _wrong_fields(
         message, hint = error_message(fault, path), _list_hint(model, fault["loc"])
         unknown = fault["type"] == "extra_forbidden"
         if unknown:
-            message, hint = f"{things} have no such field", unknown_field_hint(model, fault["loc"])
+            message, hint = (
+                Message("{things} have no such field", things=things),
+                unknown_field_hint(model, fault["loc"]),
+            )
             if len(path) > 1:
                 hint = no_field.get(str(path[-1]), hint)
         elif fault["type"] == "duplicate":
-            hint = "give each a name or number of its own"
+            hint = Message("give each a name or number of its own")
         elif fault["type"] in {"union_tag_invalid", "union_tag_not_found"}:
             context = fault.get("ctx", {})
-            message = f"no kind `{context['tag']}`" if "tag" in context else "it has no `kind`"
-            hint = f"there are: {context['expected_tags']}" if "tag" in context else "give its kind"
+            message = (
+                Message("no kind `{context}`", context=context["tag"])
+                if "tag" in context
+                else Message("it has no `kind`")
+            )
+            hint = (
+                Message("there are: {context}", context=context["expected_tags"])
+                if "tag" in context
+                else Message("give its kind")
+            )
         subject = format_path(path)
-        whole = "the file" if fault["type"] == "model_type" else f"the {things.removesuffix('s')}"
+        whole = (
+            Message("the file")
+            if fault["type"] == "model_type"
+            else Message("the {removesuffix}", removesuffix=things.removesuffix("s"))
+        )
         yield _Flaw(f"{subject or whole}: {message}", hint, subject or None,
                     _span_at(tree, path, key=unknown))  # fmt: skip
 
@@ -166,7 +189,7 @@ def _list_hint(model: type[Model], path: JsonPath) -> str | None:
     """
     names = list(model.model_fields)
     if len(names) == 1 and path in {(), (names[0],)}:
-        return f"begin with `{names[0]}:` and a list below it"
+        return Message("begin with `{name}:` and a list below it", name=names[0])
     return None
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Invalid, Unreachable
 from argo_compiler.base.memoization import thread_safe_cached_property
+from argo_compiler.base.message import Listing, Message
 from argo_compiler.base.model import Pose
 from argo_env.files.parts import NO_CACHE, Parts
 from argo_env.navigation.closed_areas import (
@@ -180,14 +181,21 @@ class Navigator:
         for number, state in docks.items():
             if state is None:
                 raise Invalid(
-                    f"site {self.site.name}: the robot can't stand in docking station {number}"
+                    Message(
+                        "site {site}: the robot can't stand in docking station {number}",
+                        site=self.site.name,
+                        number=number,
+                    )
                 )
         first, *others = [s for s in docks.values() if s is not None]
         lattice = connected_sublattice(all_states, first)
         for state in others:
             if lattice.state_of[all_states.cell[state], all_states.heading[state]] < 0:
                 raise Invalid(
-                    f"site {self.site.name}: there is no path from one docking station to another"
+                    Message(
+                        "site {site}: there is no path from one docking station to another",
+                        site=self.site.name,
+                    )
                 )
         return lattice
 
@@ -297,8 +305,14 @@ class Navigator:
         state = nearest_state(self.lattice, pose)
         if state is None:
             raise Unreachable(
-                f"there is no place that the robot can reach within {SNAP_DISTANCE} m of "
-                f"({pose.x:.2f}, {pose.y:.2f}, {pose.z:.2f})"
+                Message(
+                    "there is no place that the robot can reach within {snap_distance} m of "
+                    "({x:.2f}, {y:.2f}, {z:.2f})",
+                    snap_distance=SNAP_DISTANCE,
+                    x=pose.x,
+                    y=pose.y,
+                    z=pose.z,
+                )
             )
         return state
 
@@ -373,10 +387,20 @@ class Navigator:
         return np.array(states, dtype=np.int64)
 
     def _no_path_error(self, start: Pose, goal: str) -> Unreachable:
-        reasons = ", ".join(dict.fromkeys(b.reason for b in self.blockages))
+        reasons = Listing(dict.fromkeys(b.reason for b in self.blockages))
         return Unreachable(
-            f"there is no path from ({start.x:.2f}, {start.y:.2f}, {start.z:.2f}) to {goal}"
-            + (f" that avoids what is closed: {reasons}" if reasons else "")
+            Message(
+                "there is no path from ({x:.2f}, {y:.2f}, {z:.2f}) to {goal}",
+                x=start.x,
+                y=start.y,
+                z=start.z,
+                goal=goal,
+            )
+            + (
+                Message(" that avoids what is closed: {reasons}", reasons=reasons)
+                if reasons
+                else ""
+            )
         )
 
     def _states_to_view(
@@ -386,12 +410,18 @@ class Navigator:
         if not len(goals[0]):
             checkpoint = self.site.checkpoint(checkpoint_id)
             raise Unreachable(
-                f"checkpoint {checkpoint_id} ({checkpoint.name}) can't be seen from anywhere that"
-                " the robot can reach"
+                Message(
+                    "checkpoint {checkpoint_id} ({checkpoint}) can't be seen from anywhere "
+                    "that the robot can reach",
+                    checkpoint_id=checkpoint_id,
+                    checkpoint=checkpoint.name,
+                )
             )
         states = self._path_search.find_path(self.state_at(start), goals)
         if states is None:
-            raise self._no_path_error(start, f"a view of checkpoint {checkpoint_id}")
+            raise self._no_path_error(
+                start, Message("a view of checkpoint {checkpoint_id}", checkpoint_id=checkpoint_id)
+            )
         return states
 
     @thread_safe_cached_property

@@ -1,6 +1,7 @@
 """Generated sites that the robot can drive: a draw that it can't drive is replaced."""
 
 from argo_compiler.base.errors import ArgoError, Unreachable
+from argo_compiler.base.message import Message
 from argo_env.navigation.navigator import Navigator
 from argo_env.planning.checking import unpatrolled_floors, unseen_checkpoints
 from argo_env.robot.spec import RobotSpec, load_robot
@@ -45,6 +46,10 @@ def generate_navigator(family: Family, robot: RobotSpec | None = None) -> Naviga
                 return navigator
             refused |= {slots[id] for id in unseen}
     raise Unreachable(
-        f"site `{family}`: no draw of this seed can be driven by the {robot.name}; choose another"
-        " seed or less clutter"
+        Message(
+            "site `{family}`: no draw of this seed can be driven by the {robot}; "
+            "choose another seed or less clutter",
+            family=family,
+            robot=robot.name,
+        )
     )

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.errors import Conflict, Invalid
 from argo_compiler.base.memoization import thread_safe_cached_property
+from argo_compiler.base.message import Message
 from argo_compiler.base.stages import stage
 from argo_compiler.files.loading import read_text
 from argo_env.files import cache
@@ -136,8 +137,11 @@ class OpenedSite:
             return _open_again, (self._reference, self.robot, self.digest)
         if self.site.altered is not None:
             raise Conflict(
-                f"site {self.name} is not as its description says, and can't be sent to another "
-                "process; send the faults that have changed it, and apply them there"
+                Message(
+                    "site {site} is not as its description says, and can't be sent to another "
+                    "process; send the faults that have changed it, and apply them there",
+                    site=self.name,
+                )
             )
         return _open_spec, (self.site.spec, self.robot)
 
@@ -162,7 +166,12 @@ def open_site(reference: str = "umad", robot: RobotSpec | None = None) -> Opened
         ArgoError: The file is not valid; the message names the place in it.
     """
     if not isinstance(reference, str):
-        raise Invalid(f"{reference!r} is not text: a site is opened by its name or its file's path")
+        raise Invalid(
+            Message(
+                "{reference} is not text: a site is opened by its name or its file's path",
+                reference=repr(reference),
+            )
+        )
     robot = revalidated_robot(robot) if robot else load_robot()
     if is_generated_name(reference):
         family = parse_family(reference)
@@ -225,7 +234,8 @@ def _open(
             parts = cache.entry_for((code_digest(), text, robot.model_dump_json()))
             cached = parts.load_text("site")
             _log.info(
-                "the site is %s", "made" if cached is None else "taken from the cache on disk"
+                "the site is %s",
+                "made" if cached is None else "taken from the cache on disk",
             )
             if cached is None:
                 with stage(f"making the site {reference or ''}".rstrip()):
@@ -259,8 +269,11 @@ def _open_again(reference: str, robot: RobotSpec, digest: str) -> OpenedSite:
     opened = open_site(reference, robot)
     if opened.digest != digest:
         raise Conflict(
-            f"site {reference} has changed since it was opened where this comes from; open it "
-            "again there"
+            Message(
+                "site {reference} has changed since it was opened where this comes from; "
+                "open it again there",
+                reference=reference,
+            )
         )
     return opened
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from argo_compiler.base.errors import Unreachable
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Pose
 from argo_compiler.diagnostics import Diagnostic, diagnostic_of
 from argo_compiler.diagnostics.subject import subject_of
@@ -29,14 +30,18 @@ def not_seen_from_pose_warnings(mission: Mission, site: "OpenedSite") -> Iterato
     for task, reason, seeing in _hidden_checkpoints(mission, site):
         if reason is None:
             continue
-        nearest = "another pose"
+        nearest = Message("another pose")
         if seeing is not None:
-            nearest = f"the nearest pose that sees it ({_text(seeing)})"
+            nearest = Message("the nearest pose that sees it ({text})", text=_text(seeing))
         yield diagnostic_of(
             "site.not-seen-from-pose",
-            f"task '{task.name}' measures from a pose from which its checkpoint is "
-            f"not visible: {reason}",
-            hint=f"give {nearest}, or none, so that the robot chooses one",
+            Message(
+                "task '{task}' measures from a pose from which its checkpoint is not "
+                "visible: {reason}",
+                task=task.name,
+                reason=reason,
+            ),
+            hint=Message("give {nearest}, or none, so that the robot chooses one", nearest=nearest),
             subject=subject_of("tasks", task.name, ".pose"),
             span=task.source,
         )
@@ -52,15 +57,20 @@ def with_seeing_poses(
         checkpoint is not seen from anywhere keeps its pose.
     """
     moved = {
-        task: (why or "the robot can't stand there", pose)
+        task: (why or Message("the robot can't stand there"), pose)
         for task, why, pose in _hidden_checkpoints(mission, site)
         if pose
     }
     warnings = tuple(
         diagnostic_of(
             "isar.pose-moved",
-            f"task '{task.name}' measures from {_text(pose)}, the nearest pose that sees "
-            f"its checkpoint, and not from the given one: {why}",
+            Message(
+                "task '{task}' measures from {text}, the nearest pose that sees its "
+                "checkpoint, and not from the given one: {why}",
+                task=task.name,
+                text=_text(pose),
+                why=why,
+            ),
             hint="check that the robot may stand there",
             subject=subject_of("tasks", task.name, ".pose"),
         )
@@ -100,7 +110,9 @@ def _nearest_seeing_pose(task: Task, pose: Pose, navigator: "Navigator") -> Pose
 
 
 def _text(pose: Pose) -> str:
-    return f"x {pose.x:.2f}, y {pose.y:.2f}, z {pose.z:.2f}, yaw {pose.yaw:.2f}"
+    return Message(
+        "x {x:.2f}, y {y:.2f}, z {z:.2f}, yaw {yaw:.2f}", x=pose.x, y=pose.y, z=pose.z, yaw=pose.yaw
+    )
 
 
 def _find_obstruction(task: Task, pose: Pose, navigator: "Navigator") -> str | None:
@@ -136,9 +148,15 @@ def above_own_speed_warnings(mission: Mission, robot: "RobotSpec") -> Iterator[D
             continue
         yield diagnostic_of(
             "site.faster-than-robot",
-            f"the path to task '{task.name}' is to be driven at {task.velocity:g} m/s, but "
-            f"the robot {robot.name} is not known to drive faster than {robot.speed:g} m/s",
-            hint=f"give at most {robot.speed:g} m/s",
+            Message(
+                "the path to task '{task}' is to be driven at {velocity:g} m/s, but the "
+                "robot {robot} is not known to drive faster than {speed:g} m/s",
+                task=task.name,
+                velocity=task.velocity,
+                robot=robot.name,
+                speed=robot.speed,
+            ),
+            hint=Message("give at most {speed:g} m/s", speed=robot.speed),
             subject=subject_of("tasks", task.name, ".velocity"),
             span=task.source,
         )

@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from argo_compiler.analysis import Leg, NoPath, RobotPose
 from argo_compiler.base.errors import ArgoError, Unreachable
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Pose
+from argo_compiler.base.wording import Wording, worded, wording_of
 from argo_compiler.il import MAX_TIME_S, Action, Mission, Task
 from argo_env.drives.timetable import count_steps
 from argo_env.files.parts import Parts
@@ -60,7 +62,7 @@ def pose_data(pose: Pose) -> tuple[float, float, float, float]:
 
 def _to_data(path: PathOrReason) -> dict[str, Any]:
     if isinstance(path, NoPath):
-        return {"reason": path.reason}
+        return {"reason": path.reason} | _wording_data(path.reason)
     motions = [
         (*pose_data(m.start), *pose_data(m.end), m.turn, int(m.gear), bool(m.on_stairs))
         for m in path.motions
@@ -68,9 +70,15 @@ def _to_data(path: PathOrReason) -> dict[str, Any]:
     return {"start": pose_data(path.start), "motions": motions}
 
 
+def _wording_data(reason: str) -> dict[str, Any]:
+    wording = wording_of(reason)
+    return {} if wording is None else {"wording": wording.model_dump(mode="json")}
+
+
 def _from_data(data: dict[str, Any]) -> PathOrReason:
     if "reason" in data:
-        return NoPath(data["reason"])
+        wording = data.get("wording")
+        return NoPath(worded(data["reason"], wording and Wording.model_validate(wording)))
     motions = [Motion(_pose(row[:4]), _pose(row[4:8]), *row[8:]) for row in data["motions"]]
     return Path(_pose(data["start"]), tuple(motions))
 
@@ -163,7 +171,13 @@ class SiteTravel:
         """
         path = self._find_path(origin, task.pose or task.object_id)
         if isinstance(path, NoPath):
-            raise Unreachable(f"the robot can't carry out task '{task.name}': {path.reason}")
+            raise Unreachable(
+                Message(
+                    "the robot can't carry out task '{task}': {reason}",
+                    task=task.name,
+                    reason=path.reason,
+                )
+            )
         return path
 
     def leg_with_action(
@@ -213,7 +227,12 @@ class SiteTravel:
         robot, power = self._robot, self._robot.power
         seconds = path.duration(robot, velocity)
         if seconds > MAX_TIME_S:
-            return NoPath(f"at {velocity} m/s the path takes longer than any mission may")
+            return NoPath(
+                Message(
+                    "at {velocity} m/s the path takes longer than any mission may",
+                    velocity=velocity,
+                )
+            )
         drive = max(self.time_step, self._round_up(seconds))
         energy = (
             math.fsum(m.duration(robot, velocity) * self._power(m) for m in path.motions) / 3600

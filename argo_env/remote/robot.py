@@ -12,6 +12,8 @@ from typing import Any, Literal, NoReturn
 from pydantic import ValidationError
 
 from argo_compiler.base.errors import Unavailable
+from argo_compiler.base.message import Message, as_message
+from argo_compiler.base.wording import wording_of
 from argo_compiler.hfsm import (
     ActionFailed,
     ActionStopped,
@@ -203,7 +205,9 @@ class RemoteAction:
             return ActionSucceeded(name, report.value, abnormal, id)
         if report.outcome == "stopped" and self.cancelled is not None:
             return ActionStopped(name, id)
-        reason = report.reason or f"the robot reported that the action has {report.outcome}"
+        reason = report.reason or Message(
+            "the robot reported that the action has {outcome}", outcome=report.outcome
+        )
         return ActionFailed(name, reason, report.unreadable, id, report.unreachable)
 
     def to_task_run(
@@ -222,7 +226,13 @@ class RemoteAction:
         if not isinstance(end, ActionSucceeded):
             outcome = "interrupted" if self._interrupted else "cancelled"
             outcome = "failed" if self.cancelled is None else outcome
-            reason = "; ".join(filter(None, (self.cancelled, reason))) or None
+            if self.cancelled and reason:
+                reason = Message(
+                    "{cancelled}; {reason}",
+                    cancelled=as_message(self.cancelled),
+                    reason=as_message(reason),
+                )
+            reason = reason or self.cancelled or None
         return TaskRun(
             task=self.task.name,
             action=self.task.action,
@@ -230,6 +240,7 @@ class RemoteAction:
             start=self._started,
             end=now,
             outcome=outcome,
+            reason_wording=wording_of(reason),
             reason=reason,
             distance=round(total_distance - self._distances[0], DIGITS),
             climbed=round(total_climbed - self._distances[1], DIGITS),
@@ -368,7 +379,7 @@ class RemoteRobot:
         instead of starting it again.
         """
         # An action by hand has no id, but no two start at the same time.
-        id = f"{self._run}/{command.id}" if command.id else f"{self._run}/by hand at {now:g} s"
+        id = f"{self._run}/{command.id or f'by hand at {now:g} s'}"
         distances = (self.odometry.distance, self.odometry.climbed)
         not_before = command.not_before
         not_before = None if not_before is None else not_before + self._offset
@@ -412,7 +423,8 @@ class RemoteRobot:
         self.odometry.add_motion(last_pose, self._drive.pose, (), now)
         if self._has_awaited_charge(now):
             charged = FoundReport(
-                event=EventKind.BATTERY_CHARGED, detail=f"{self.supply.charge:.0%} charged"
+                event=EventKind.BATTERY_CHARGED,
+                detail=Message("{charge:.0%} charged", charge=self.supply.charge),
             )
             found.append(make_anomaly(charged, site, self._drive.pose, now))
             self._awaited_charges = ()
@@ -447,8 +459,11 @@ class RemoteRobot:
                     return
             self._sleep(self._drive.time_step)
         raise Unavailable(
-            f"the robot has not reported its pose within {patience:g} s: check that it is on and "
-            "connected"
+            Message(
+                "the robot has not reported its pose within {patience:g} s: check that it "
+                "is on and connected",
+                patience=patience,
+            )
         )
 
     def _read(
@@ -466,7 +481,7 @@ class RemoteRobot:
             _log.warning("the robot sent an invalid report: %s", why)
         if own is None or body.get("type") != "ended" or body.get("id") != own.id:
             return None
-        reason = f"the robot sent an invalid report of the action's end: {why}"
+        reason = Message("the robot sent an invalid report of the action's end: {why}", why=why)
         return EndReport(id=own.id, outcome="failed", reason=reason)
 
     def _update_state(self, state: RobotState) -> None:
@@ -498,5 +513,5 @@ class RemoteRobot:
             return None
         if any(order.get("id") == own.id for order in self._channel.pending):
             return None  # the start order is sent again
-        reason = "the robot has restarted and does not know the action any more"
+        reason = Message("the robot has restarted and does not know the action any more")
         return EndReport(id=own.id, outcome="failed", reason=reason)

@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 from argo_compiler.base.errors import Conflict
 from argo_compiler.files.atomic_write import write_files_atomically
@@ -35,9 +36,18 @@ def write_report(record: RunRecord, site: Site, folder: Path) -> Path:
 
 def to_json(record: RunRecord) -> str:
     """Return the record as JSON; each item of a list, such as a sample of the path, has a line."""
-    fields = record.model_dump(mode="json")
+    fields = record.model_dump(mode="json", exclude=_WORDINGS)
     parts = [f'  "{name}": {_value(value)}' for name, value in fields.items()]
     return "{\n" + ",\n".join(parts) + "\n}\n"
+
+
+_WORDINGS: Any = {
+    "diagnostics": {"__all__": {"message_wording", "hint_wording"}},
+    "tasks": {"__all__": {"reason_wording"}},
+    "mishaps": {"__all__": {"detail_wording"}},
+    "anomalies": {"__all__": {"detail_wording"}},
+}
+"""what a report leaves out: it is in English"""
 
 
 def _value(value: object) -> str:

@@ -4,7 +4,9 @@ import math
 from collections.abc import Callable
 
 from argo_compiler.base.errors import ArgoError, Unreachable
+from argo_compiler.base.message import Message, as_message
 from argo_compiler.base.model import Pose
+from argo_compiler.base.wording import wording_of
 from argo_compiler.hfsm import ActionFailed, ActionStopped, ActionSucceeded, StartAction
 from argo_compiler.il import Action, Task
 from argo_env.drives.drive import DriveStatus
@@ -211,7 +213,15 @@ class SimulatedAction:
             outcome = "failed"
         else:
             outcome = "interrupted" if self.interrupted else "cancelled"
-            reason = "; ".join(filter(None, (self.cancelled, reason)))
+            reason = (
+                self.cancelled
+                if reason is None
+                else Message(
+                    "{cancelled}; {reason}",
+                    cancelled=as_message(self.cancelled),
+                    reason=as_message(reason),
+                )
+            )
         under_way = () if self._measuring_since is None else ((self._measuring_since, now),)
         return TaskRun(
             task=self.task.name,
@@ -221,6 +231,7 @@ class SimulatedAction:
             end=now,
             outcome=outcome,
             reason=reason,
+            reason_wording=wording_of(reason),
             distance=round(total_distance - self._distance_before, DIGITS),
             climbed=round(total_climbed - self._climbed_before, DIGITS),
             measuring=(*self._measuring_times, *under_way),
@@ -284,7 +295,7 @@ class SimulatedAction:
             case DriveStatus.MOVING:
                 return None
             case DriveStatus.FAILED:
-                failure = self._setup.drive.failure or "the drive failed"
+                failure = self._setup.drive.failure or Message("the drive failed")
                 return self._failed(failure, unreachable=True)
             case DriveStatus.ARRIVED:
                 return following()
@@ -364,7 +375,9 @@ class SimulatedAction:
     def _fail_unread(self) -> ActionEnd:
         assert self.task.reading_limit is not None
         self._tried_to_read = True
-        return self._failed(f"not read within {self.task.reading_limit:g} s")
+        return self._failed(
+            Message("not read within {reading_limit:g} s", reading_limit=self.task.reading_limit)
+        )
 
     @property
     def _is_reading_time_over(self) -> bool:
@@ -407,7 +420,7 @@ class SimulatedAction:
             turned = TURNS[self._views - 1]
             return self._setup.navigator.plan_to_view(start, self._checkpoint_id(), turned)
         if self.task.pose is None:
-            raise Unreachable(f"task {self.task.name} has no pose")
+            raise Unreachable(Message("task {task} has no pose", task=self.task.name))
         return self._setup.navigator.plan(start, self.task.pose)
 
     def _checkpoint(self) -> SiteCheckpoint:

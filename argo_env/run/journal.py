@@ -16,7 +16,16 @@ from typing import Literal, NoReturn, Self, TypeVar
 
 from pydantic import ValidationError
 
-from argo_compiler.base.errors import ArgoError, Conflict, Invalid, NotFound, Remedy, Unavailable
+from argo_compiler.base.errors import (
+    ArgoError,
+    Conflict,
+    Invalid,
+    NotFound,
+    Remedy,
+    Unavailable,
+    reason_text,
+)
+from argo_compiler.base.message import Listing, Message
 from argo_compiler.base.model import Model
 from argo_compiler.base.operating_system import OPEN_FLAGS, sync_folder, try_lock
 from argo_compiler.base.quantity_text import counted_text
@@ -106,8 +115,12 @@ class Journal(Observer, Closing):
                 self._lines.append(data)
         except OSError as error:
             raise Unavailable(
-                f"{self.path}: the journal can't be written any further: {error.strerror}; what "
-                "was written stays, and the run can be resumed from there",
+                Message(
+                    "{path}: the journal can't be written any further: {reason}; what was "
+                    "written stays, and the run can be resumed from there",
+                    path=self.path,
+                    reason=reason_text(error),
+                ),
                 remedies=(Remedy.RESUME,),
                 about=str(self.path),
             ) from error
@@ -116,8 +129,12 @@ class Journal(Observer, Closing):
         """Raise ArgoError if the run had ended when the journal was opened: no event can follow."""
         if self.had_ended_when_opened:
             raise Conflict(
-                f"{self.path}: the run has ended, at {self.entries[-1].t:g} s: nothing more can "
-                "occur in it; begin a new run with all events",
+                Message(
+                    "{path}: the run has ended, at {t:g} s: nothing more can occur in it; "
+                    "begin a new run with all events",
+                    path=self.path,
+                    t=self.entries[-1].t,
+                ),
                 remedies=(Remedy.RUN_ANEW,),
             )
 
@@ -132,14 +149,23 @@ class Journal(Observer, Closing):
         if source is not None and not os.path.isfile(source):
             now["mission file"] = recorded.get("mission file", "")
         changed = [
-            f"{name} (was {recorded.get(name, 'absent')}, is {now.get(name, 'absent')})"
+            Message(
+                "{name} (was {get}, is {get_2})",
+                name=name,
+                get=recorded.get(name, "absent"),
+                get_2=now.get(name, "absent"),
+            )
             for name in sorted(recorded.keys() | now.keys())
             if recorded.get(name) != now.get(name)
         ]
         if changed:
             raise Conflict(
-                f"{self.path}: the run can't continue, because something has changed since it "
-                f"began: {', '.join(changed)}. Restore it, or begin a new run",
+                Message(
+                    "{path}: the run can't continue, because something has changed since it "
+                    "began: {changed}. Restore it, or begin a new run",
+                    path=self.path,
+                    changed=Listing(changed),
+                ),
                 remedies=(Remedy.RUN_ANEW,),
             )
 
@@ -161,7 +187,11 @@ def fingerprints(site: OpenedSite, spec: RunSpec) -> dict[str, str]:
         try:
             digests["mission file"] = _digest(source.read_bytes())
         except OSError as error:
-            raise Unavailable(f"{source} can't be read: {error.strerror}") from error
+            raise Unavailable(
+                Message(
+                    "{source} can't be read: {reason}", source=source, reason=reason_text(error)
+                )
+            ) from error
     return digests
 
 
@@ -178,16 +208,22 @@ def check_journal_path(path: Path, replace: bool = False) -> None:
             os.close(file)
     elif os.path.exists(path):
         raise Conflict(
-            f"{path} already exists: resume that run, or choose another path",
+            Message("{path} already exists: resume that run, or choose another path", path=path),
             remedies=(Remedy.RESUME,),
             about=str(path),
         )
     if not os.path.isdir(path.parent):
         _refuse(
-            path, "is in a folder that does not exist: make it, or choose another", kind=NotFound
+            path,
+            Message("is in a folder that does not exist: make it, or choose another"),
+            kind=NotFound,
         )
     if not os.access(path.parent, os.W_OK):
-        _refuse(path, "is in a folder that can't be written to: choose another", kind=Unavailable)
+        _refuse(
+            path,
+            Message("is in a folder that can't be written to: choose another"),
+            kind=Unavailable,
+        )
 
 
 def create_journal(path: Path, header: Header, replace: bool = False) -> Journal:
@@ -236,14 +272,20 @@ def open_journal(path: Path) -> Journal:
     Raises ArgoError if the file is no journal, is damaged, or another process has it open.
     """
     if os.path.exists(path) and not os.path.isfile(path):
-        _refuse(path, "is not a file: name a journal that a run has written", Remedy.KEEP_JOURNAL)
+        _refuse(
+            path,
+            Message("is not a file: name a journal that a run has written"),
+            Remedy.KEEP_JOURNAL,
+        )
     file = _open(path)
     try:
         _lock(file, path)
         return Journal(path, file, *_parse(path, _read(file, path)))
     except OSError as error:
         os.close(file)
-        _refuse(path, f"can't be read: {error.strerror}", kind=Unavailable)
+        _refuse(
+            path, Message("can't be read: {reason}", reason=reason_text(error)), kind=Unavailable
+        )
     except ArgoError:
         os.close(file)
         raise
@@ -261,23 +303,37 @@ def _parse(path: Path, content: bytes) -> tuple[Header, list[Entry], StoredLines
     if start.endswith(b"\r") and checked_object(start[:-1]) is not None:
         _refuse(
             path,
-            "has line ends of another system (CR LF): copy it again, with its line ends unchanged",
+            Message(
+                "has line ends of another system (CR LF): copy it again, with its line "
+                "ends unchanged"
+            ),
         )
     if first is None or first.get("format") != _MARK:
-        _refuse(path, "is not a journal, or its first line is damaged: no run can continue from it")
+        _refuse(
+            path,
+            Message("is not a journal, or its first line is damaged: no run can continue from it"),
+        )
     if first.get("version") != VERSION:
         _refuse(
             path,
-            f"has version {json.dumps(first.get('version'))} of the journal's format, and this "
-            f"Argo reads {VERSION}: resume it with the version of Argo that wrote it",
+            Message(
+                "has version {dumps} of the journal's format, and this Argo reads "
+                "{version}: resume it with the version of Argo that wrote it",
+                dumps=json.dumps(first.get("version")),
+                version=VERSION,
+            ),
         )
     header = _model(Header, first, path, 0)
     if stored.was_synced:
         _refuse(
             path,
-            f"is damaged from line {len(stored.lines) + 1} on, though {stored.synced} lines were "
-            "on disk: this is no loss of power, and no run can continue from it: restore it from "
-            "a copy",
+            Message(
+                "is damaged from line {count} on, though {synced} lines were on disk: this "
+                "is no loss of power, and no run can continue from it: restore it from a "
+                "copy",
+                count=len(stored.lines) + 1,
+                synced=stored.synced,
+            ),
         )
     return header, [_model(Entry, line.data, path, line.number) for line in lines[1:]], stored
 
@@ -285,13 +341,22 @@ def _parse(path: Path, content: bytes) -> tuple[Header, list[Entry], StoredLines
 def _loss(path: Path, entries: Sequence[Entry], stored: StoredLines) -> str:
     """Return what a loss of power has damaged in a journal, and where its run continues."""
     at = entries[-1].t if entries else 0.0
-    then = f"the run {'had ended' if entries and entries[-1].ended else 'continues'} at {at:g} s"
+    then = Message(
+        "the run {part} at {at:g} s",
+        part=Message("had ended") if entries and entries[-1].ended else Message("continues"),
+        at=at,
+    )
     times = [line.data["t"] for line in stored.later if isinstance(line.data.get("t"), float | int)]
-    until = f", with what the run did until {max(times):g} s" if times else ""
-    return (
-        f"{path}: damaged from line {len(stored.lines) + 1} on, as by a loss of power: the loss is "
-        f"at least {counted_text(stored.count_after, 'line')}, not known to be on disk{until}. All "
-        f"lines before are whole: {then}"
+    until = Message(", with what the run did until {max:g} s", max=max(times)) if times else ""
+    return Message(
+        "{path}: damaged from line {count} on, as by a loss of power: the loss is "
+        "at least {counted}, not known to be on disk{until}. All lines before are "
+        "whole: {then}",
+        path=path,
+        count=len(stored.lines) + 1,
+        counted=counted_text(stored.count_after, "line"),
+        until=until,
+        then=then,
     )
 
 
@@ -302,7 +367,15 @@ def _model(cls: type[ModelT], data: dict[str, object], path: Path, number: int) 
         fault = error.errors(include_url=False)[0]
         field = ".".join(str(part) for part in fault["loc"])
         message = error_message(fault, fault["loc"])
-        _refuse(path, f"has an error in line {number + 1}, {field}: {message}")
+        _refuse(
+            path,
+            Message(
+                "has an error in line {number}, {field}: {message}",
+                number=number + 1,
+                field=field,
+                message=message,
+            ),
+        )
 
 
 def _open(path: Path) -> int:
@@ -310,24 +383,33 @@ def _open(path: Path) -> int:
         return os.open(path, _FLAGS)
     except FileNotFoundError:
         raise NotFound(
-            f"{path}: there is no such journal: a run writes one", remedies=(Remedy.KEEP_JOURNAL,)
+            Message("{path}: there is no such journal: a run writes one", path=path),
+            remedies=(Remedy.KEEP_JOURNAL,),
         ) from None
     except OSError as error:
-        _refuse(path, f"can't be opened: {error.strerror}", kind=Unavailable)
+        _refuse(
+            path, Message("can't be opened: {reason}", reason=reason_text(error)), kind=Unavailable
+        )
 
 
 def _lock(file: int, path: Path) -> None:
     if not try_lock(file):
         _refuse(
             path,
-            "is in use: another process continues this run; wait until it has ended",
+            Message("is in use: another process continues this run; wait until it has ended"),
             kind=Conflict,
         )
 
 
 def _read(file: int, path: Path) -> bytes:
     if os.fstat(file).st_size > MAX_BYTES:
-        _refuse(path, f"is larger than {MAX_BYTES // 1_000_000} MB, the maximum for a journal")
+        _refuse(
+            path,
+            Message(
+                "is larger than {max_bytes} MB, the maximum for a journal",
+                max_bytes=MAX_BYTES // 1000000,
+            ),
+        )
     parts = []
     while part := os.read(file, 1 << 20):
         parts.append(part)
@@ -342,8 +424,12 @@ def _digest(content: str | bytes) -> str:
 def _refuse(
     path: Path, message: str, *remedies: Remedy, kind: type[ArgoError] = Invalid
 ) -> NoReturn:
-    raise kind(f"{path} {message}", remedies=remedies) from None
+    raise kind(Message("{path} {message}", path=path, message=message), remedies=remedies) from None
 
 
 def _refuse_writing(path: Path, error: OSError) -> NoReturn:
-    _refuse(path, f"can't be written: {error.strerror}; choose another place", kind=Unavailable)
+    _refuse(
+        path,
+        Message("can't be written: {reason}; choose another place", reason=reason_text(error)),
+        kind=Unavailable,
+    )

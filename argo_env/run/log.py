@@ -12,7 +12,9 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, TypeAdapter, ValidationError
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
+from argo_compiler.base.wording import Text, Wording, worded, wording_of
 from argo_compiler.hfsm import (
     ActionFailed,
     ActionStopped,
@@ -64,6 +66,10 @@ EXTERNAL_KINDS = frozenset(_EVENTS) - {"succeeded", "failed", "stopped", "tick"}
 """Kinds of events that may come from outside the run; the run makes the other kinds itself."""
 
 
+_NOT_GIVEN = ("kind", "reason_wording", "detail_wording")
+"""fields of an event as data that the event itself does not have"""
+
+
 class LoggedEvent(Model):
     """Event as data; the fields that its kind does not have are left out."""
 
@@ -78,9 +84,11 @@ class LoggedEvent(Model):
     abnormal: bool | None = None
     unreadable: bool | None = None
     unreachable: bool | None = None
-    reason: str | None = None
+    reason: Text | None = None
+    reason_wording: Wording | None = None
     event: EventKind | None = None
-    detail: str | None = None
+    detail: Text | None = None
+    detail_wording: Wording | None = None
     by_hand: tuple[ByHand, ...] | None = None
 
     @classmethod
@@ -88,16 +96,32 @@ class LoggedEvent(Model):
         """Return an event as data. Raises Invalid for what is no event, or has invalid values."""
         kind = _NAMES.get(type(event))
         if kind is None:
-            raise Invalid(f"{event!r} is not an event")
+            raise Invalid(Message("{event} is not an event", event=repr(event)))
         try:
-            return cls.model_validate({"kind": kind, **asdict(event)})
+            fields = asdict(event)
+            for name in ("reason", "detail"):
+                if (wording := wording_of(fields.get(name))) is not None:
+                    fields[f"{name}_wording"] = wording
+            return cls.model_validate({"kind": kind, **fields})
         except ValidationError as error:
             fault = error.errors(include_url=False)[0]
-            raise Invalid(f"{event!r}: {error_message(fault, fault['loc'])}") from None
+            raise Invalid(
+                Message(
+                    "{event}: {message}",
+                    event=repr(event),
+                    message=error_message(fault, fault["loc"]),
+                )
+            ) from None
 
     def to_event(self) -> Event:
         """Return the event for the machine. Raises ValueError if fields are missing or too many."""
-        fields = {name: value for name, value in self if name != "kind" and value is not None}
+        fields = {
+            name: value for name, value in self if name not in _NOT_GIVEN and value is not None
+        }
+        if self.reason is not None:
+            fields["reason"] = worded(self.reason, self.reason_wording)
+        if self.detail is not None:
+            fields["detail"] = worded(self.detail, self.detail_wording)
         try:
             return _EVENTS[self.kind](**fields)
         except TypeError as error:
@@ -111,7 +135,7 @@ def require_external(event: LoggedEvent) -> None:
     except ValueError as error:
         raise Invalid(str(error)) from None
     if event.kind not in EXTERNAL_KINDS:
-        raise Invalid(f"events of kind `{event.kind}` come from the run itself")
+        raise Invalid(Message("events of kind `{kind}` come from the run itself", kind=event.kind))
     if event.event == EventKind.TIME_UP:
         raise Invalid("`time_up` occurs by itself, at the mission's max_duration")
 
@@ -119,7 +143,7 @@ def require_external(event: LoggedEvent) -> None:
 def require_event_time(t: float) -> None:
     """Raise Invalid unless the time t (s) of an event is finite and at least 0."""
     if not 0 <= t < math.inf:
-        raise Invalid(f"no event can occur at {t:g} s: give a time from 0 s on")
+        raise Invalid(Message("no event can occur at {t:g} s: give a time from 0 s on", t=t))
 
 
 def _from_text(stopped: object) -> object:

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Protocol
 
 from argo_compiler.base.errors import Conflict
+from argo_compiler.base.message import Message
 from argo_compiler.hfsm import (
     ActionStopped,
     AwaitedCharge,
@@ -80,7 +81,7 @@ class OpenMachine:
         action runs, DiagnosticError if the mission has errors with the task.
         """
         if (running := self.running) is not None:
-            raise Conflict(f"task '{running.name}' is still running")
+            raise Conflict(Message("task '{running}' is still running", running=running.name))
         *earlier, last = self.mission.tasks
         linked = last.model_copy(update={"transitions": (Transition(target=task.name),)})
         mission = self.mission.model_copy(update={"tasks": (*earlier, linked, task)})

@@ -7,6 +7,7 @@ is open, and may still go on, until no touch has followed for CONTACT_GAP.
 import math
 from collections.abc import Iterable, Sequence
 
+from argo_compiler.base.wording import wording_of
 from argo_env.drives.drive import Incident
 from argo_env.robot.pose import BodyPose
 from argo_env.run.log import Entry
@@ -112,6 +113,7 @@ class Odometry:
                     t=now,
                     trouble=incident.trouble,
                     detail=incident.detail,
+                    detail_wording=wording_of(incident.detail),
                     place=(round(pose.x, DIGITS), round(pose.y, DIGITS), round(pose.z, DIGITS)),
                     floor=self._site.floor_at(pose.z),
                 )

@@ -6,6 +6,7 @@ Each anomaly is reported once, even if the run was resumed in between.
 import math
 from collections.abc import Iterator, Sequence
 
+from argo_compiler.base.wording import wording_of
 from argo_compiler.il import EventKind
 from argo_env.navigation import Blockage
 from argo_env.robot.pose import BodyPose
@@ -149,6 +150,7 @@ class Perception:
             t=now,
             kind=detection.kind,
             detail=detection.detail,
+            detail_wording=wording_of(detection.detail),
             source=watch.name,
             place=None if detection.place is None else _rounded(detection.place),
             noticed_from=None

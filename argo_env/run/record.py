@@ -11,7 +11,9 @@ from typing import Any
 from pydantic import computed_field, model_validator
 
 from argo_compiler.base.catalog import CheckpointKind, Interval
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
+from argo_compiler.base.wording import Text, Wording, wording_of
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.hfsm import Hfsm, Outcome
 from argo_compiler.hfsm.progress import TaskTally
@@ -85,8 +87,9 @@ class TaskRun(Model):
     """s"""
     outcome: str
     """`done`, `failed`, `cancelled`, or `interrupted` by a pause or a reaction"""
-    reason: str | None = None
+    reason: Text | None = None
     """why it failed, was cancelled or interrupted"""
+    reason_wording: Wording | None = None
     distance: float
     """m driven"""
     climbed: float
@@ -162,11 +165,12 @@ class Mishap(Model):
     t: float
     """s"""
     trouble: Trouble
-    detail: str
+    detail: Text
     """in a few words, such as `made 0.09 m of 0.45 m commanded`"""
     place: Vector
     """position in m"""
     floor: int
+    detail_wording: Wording | None = None
 
 
 class Anomaly(Model):
@@ -175,10 +179,11 @@ class Anomaly(Model):
     t: float
     """s"""
     kind: EventKind
-    detail: str
+    detail: Text
     """in a few words, such as `gas, 840 ppm, near pump P-301`"""
     source: str
     """name of the watch that noticed it, or `reading`, or `told` if it was reported from outside"""
+    detail_wording: Wording | None = None
     place: Vector | None = None
     """position in m; None if the signal does not contain one"""
     noticed_from: Vector | None = None
@@ -631,7 +636,12 @@ class RunRecord(Model):
 
 def _shown_value(reading: Reading) -> str:
     """Return what a checkpoint showed, in words; names of checkpoints are unique on their site."""
-    return f"{reading.name} shows {reading.value:g} {reading.unit}"
+    return Message(
+        "{checkpoint} shows {value:g} {unit}",
+        checkpoint=reading.name,
+        value=reading.value,
+        unit=reading.unit,
+    )
 
 
 def anomaly_from_reading(reading: Reading, place: Vector | None = None) -> Anomaly:
@@ -645,7 +655,8 @@ def anomaly_from_reading(reading: Reading, place: Vector | None = None) -> Anoma
     return Anomaly(
         t=reading.t,
         kind=EventKind.ABNORMAL_READING,
-        detail=_shown_value(reading),
+        detail=(shown := _shown_value(reading)),
+        detail_wording=wording_of(shown),
         source=FROM_READING,
         place=place,
         floor=reading.floor,

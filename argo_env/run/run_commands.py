@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid, NotFound
+from argo_compiler.base.message import Message, as_message
 from argo_compiler.hfsm import (
     ByHand,
     Cancel,
@@ -83,21 +84,32 @@ def check_task_by_hand(task: Task, mission: Mission, site: Site) -> None:
     Raises NotFound for a checkpoint that the site does not have.
     """
     if not isinstance(task, Task):
-        raise Invalid(f"{task!r} is not a task: give one that drives or measures")
+        raise Invalid(
+            Message("{task} is not a task: give one that drives or measures", task=repr(task))
+        )
     own = mission.task(task.name)
     if own is not None and own != task:
         raise Invalid(
-            f"the mission has another task '{task.name}': give that one, or another name to this"
+            Message(
+                "the mission has another task '{task}': give that one, or another name to this",
+                task=task.name,
+            )
         )
     if task.action not in _ROBOT_ACTIONS:
         raise Invalid(
-            f"task '{task.name}' is a {task.action}, for which the robot does nothing: give one "
-            "that drives or measures"
+            Message(
+                "task '{task}' is a {action}, for which the robot does nothing: give one "
+                "that drives or measures",
+                task=task.name,
+                action=task.action,
+            )
         )
     if task.action is Action.MEASURE:
         site.checkpoint_for(task.object_id)
     elif task.pose is None:
-        raise Invalid(f"task '{task.name}' does not state where to drive: give it a pose")
+        raise Invalid(
+            Message("task '{task}' does not state where to drive: give it a pose", task=task.name)
+        )
 
 
 def require_supervised(supervision: Supervision, running: Task | None) -> None:
@@ -107,8 +119,11 @@ def require_supervised(supervision: Supervision, running: Task | None) -> None:
     """
     if running is not None:
         raise Conflict(
-            f"the action of task '{running.name}' has not ended yet: stop it, or let time pass "
-            "until no action runs"
+            Message(
+                "the action of task '{running}' has not ended yet: stop it, or let time "
+                "pass until no action runs",
+                running=running.name,
+            )
         )
     if not supervision.taken_over:
         raise Conflict(
@@ -161,7 +176,11 @@ def check_event(event: RunCommand, mission: Mission, site: Site) -> Event:
     checkpoint that the site does not have.
     """
     if not isinstance(event, _MACHINE_EVENTS):
-        raise Invalid(f"{event!r} is not a command that a run can receive from outside")
+        raise Invalid(
+            Message(
+                "{event} is not a command that a run can receive from outside", event=repr(event)
+            )
+        )
     logged = LoggedEvent.from_event(event)
     _check(logged, mission, site)
     return logged.to_event()
@@ -174,22 +193,32 @@ def check_scheduled_events(
     for t, event in events:
         if not isinstance(event, LoggedEvent):
             raise Invalid(
-                f"{event!r} is not a `LoggedEvent`: convert events and their times with "
-                "`logged_events`"
+                Message(
+                    "{event} is not a `LoggedEvent`: convert events and their times with "
+                    "`logged_events`",
+                    event=repr(event),
+                )
             )
         try:
             require_event_time(t)
             _check(event, mission, site)
         except (Invalid, NotFound) as error:
-            raise Invalid(f"the event {event.kind} given at {t:g} s: {error}") from None
+            raise Invalid(
+                Message(
+                    "the event {kind} given at {t:g} s: {error}", kind=event.kind, t=t, error=error
+                )
+            ) from None
 
 
 def require_no_resume_while_acting(event: Event, acting: Task | None) -> None:
     """Raise Conflict if the event would resume the mission while an action by hand is running."""
     if acting is not None and isinstance(event, Resume | GiveBack):
         raise Conflict(
-            f"the robot still carries out '{acting.name}' by hand: stop that, or let time pass "
-            "until it has ended"
+            Message(
+                "the robot still carries out '{acting}' by hand: stop that, or let time "
+                "pass until it has ended",
+                acting=acting.name,
+            )
         )
 
 
@@ -197,8 +226,11 @@ def require_no_action(machine: Machine) -> None:
     """Raise Conflict if the machine's action still runs: the robot can't be given back then."""
     if running := machine.running:
         raise Conflict(
-            f"the action of task '{running.name}' has not ended yet: take over, and let time pass "
-            "until no action runs"
+            Message(
+                "the action of task '{running}' has not ended yet: take over, and let time "
+                "pass until no action runs",
+                running=running.name,
+            )
         )
 
 
@@ -210,8 +242,12 @@ def require_give_back_can_occur(machine: Machine, now: float) -> None:
     """
     if machine.running and not machine.paused and machine.reaction is None:
         raise Conflict(
-            f"the robot was to be given back by {now:g} s, and nobody has taken it over: the "
-            f"action of task '{machine.running.name}' runs. Give a take-over before that"
+            Message(
+                "the robot was to be given back by {now:g} s, and nobody has taken it "
+                "over: the action of task '{running}' runs. Give a take-over before that",
+                now=now,
+                running=machine.running.name,
+            )
         )
 
 
@@ -256,7 +292,13 @@ def _check_by_hand(results: Sequence[ByHand], mission: Mission) -> None:
     _, diagnostics = match_to_mission(Progress(active=None, by_hand=tuple(results)), mission)
     for diagnostic in diagnostics:
         if diagnostic.code.startswith("handover.by-hand"):
-            raise Invalid(f"{diagnostic.message}: {diagnostic.hint}")
+            raise Invalid(
+                Message(
+                    "{message}: {hint}",
+                    message=as_message(diagnostic.message),
+                    hint=as_message(diagnostic.hint or ""),
+                )
+            )
 
 
 def resolve_new_fault(fault: AnyFault, setup: RunSetup, seed: int, now: float) -> AnyFault:
@@ -266,21 +308,37 @@ def resolve_new_fault(fault: AnyFault, setup: RunSetup, seed: int, now: float) -
     during a run, ArgoError if the site does not have its target.
     """
     if not isinstance(fault, Fault):
-        raise Invalid(f"{fault!r} is not a fault")
-    kind = f"a fault of kind `{fault.kind}`"
+        raise Invalid(Message("{fault} is not a fault", fault=repr(fault)))
+    kind = Message("a fault of kind `{kind}`", kind=fault.kind)
     if setup.schedule is None:
-        raise Conflict(f"{kind} has no effect: no faults are simulated in this run")
+        raise Conflict(
+            Message("{kind} has no effect: no faults are simulated in this run", kind=kind)
+        )
     if not isinstance(fault, TimedFault):
         raise Conflict(
-            f"{kind} can only begin with the run: give it in the faults of the run's spec"
+            Message(
+                "{kind} can only begin with the run: give it in the faults of the run's spec",
+                kind=kind,
+            )
         )
     if fault.needs_world and not setup.has_simulated_world:
         raise Conflict(
-            f"the drive `{setup.drive.name}` has no world in which {kind} could be found; "
-            "choose another drive"
+            Message(
+                "the drive `{drive}` has no world in which {kind} could be found; choose "
+                "another drive",
+                drive=setup.drive.name,
+                kind=kind,
+            )
         )
     if fault.until is not None and fault.until <= now:
-        raise Invalid(f"{kind} would end at {fault.until:g} s, and it is {now:g} s already")
+        raise Invalid(
+            Message(
+                "{kind} would end at {until:g} s, and it is {now:g} s already",
+                kind=kind,
+                until=fault.until,
+                now=now,
+            )
+        )
     begins = now if fault.at is None else max(now, fault.at)
     try:
         return resolve_fault(
@@ -290,4 +348,4 @@ def resolve_new_fault(fault: AnyFault, setup: RunSetup, seed: int, now: float) -
             seed,
         )
     except ArgoError as error:
-        raise type(error)(f"{kind}: {error}") from None
+        raise type(error)(Message("{kind}: {error}", kind=kind, error=error)) from None

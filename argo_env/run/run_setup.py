@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.message import Listing, Message
 from argo_env.drives.battery import Battery
 from argo_env.drives.drive import Drive
 from argo_env.drives.powertrain import Powertrain
@@ -142,7 +143,9 @@ def make_run_setup(spec: RunSpec, navigator: Navigator, gui: bool, stack: ExitSt
     watches: tuple[Watch, ...] = ()
     if spec.drive == ROUTE:
         if gui:
-            raise Invalid(f"the drive `{spec.drive}` has no world to show in a window")
+            raise Invalid(
+                Message("the drive `{drive}` has no world to show in a window", drive=spec.drive)
+            )
         world = WorldWithoutPhysics(site, robot)
         inner: Drive = RouteDrive(robot)
         camera: Sensor = IdealSensor(world, robot, truth)
@@ -181,13 +184,30 @@ def check_spec(spec: RunSpec, site: Site, fault_text: FaultText | None = None) -
     if fault_text:
         fault_text.require_fit(site, spec.seed)
     if spec.drive not in drive_names():
-        raise Invalid(f"no drive `{spec.drive}`; there are: {', '.join(drive_names())}")
+        raise Invalid(
+            Message(
+                "no drive `{drive}`; there are: {names}",
+                drive=spec.drive,
+                names=Listing(drive_names()),
+            )
+        )
     if spec.sensor not in SENSORS:
-        raise Invalid(f"no sensor `{spec.sensor}`; there are: {', '.join(SENSORS)}")
+        raise Invalid(
+            Message(
+                "no sensor `{sensor}`; there are: {sensors}",
+                sensor=spec.sensor,
+                sensors=Listing(SENSORS),
+            )
+        )
     if spec.drive == ROUTE and spec.sensor != IDEAL:
         raise Invalid(
-            f"the drive `{spec.drive}` has no world that the sensor `{spec.sensor}` could "
-            f"look at; choose the sensor `{IDEAL}` or another drive"
+            Message(
+                "the drive `{drive}` has no world that the sensor `{sensor}` could look "
+                "at; choose the sensor `{ideal}` or another drive",
+                drive=spec.drive,
+                sensor=spec.sensor,
+                ideal=IDEAL,
+            )
         )
     if spec.drive != ROUTE:
         require_pybullet()
@@ -201,8 +221,12 @@ def check_spec(spec: RunSpec, site: Site, fault_text: FaultText | None = None) -
     unseen = [f.kind for f in spec.faults if f.needs_world]
     if spec.drive == ROUTE and unseen:
         raise Invalid(
-            f"the drive `{spec.drive}` has no world in which a fault like `{unseen[0]}` could "
-            "be found; choose another drive"
+            Message(
+                "the drive `{drive}` has no world in which a fault like `{unseen}` could "
+                "be found; choose another drive",
+                drive=spec.drive,
+                unseen=unseen[0],
+            )
         )
 
 
@@ -217,8 +241,16 @@ def true_values(site: Site, seed: int, given: Mapping[int, float]) -> dict[int, 
         checkpoint = site.checkpoint(id)
         if not checkpoint.range.contains(value):
             raise Invalid(
-                f"checkpoint {id} ({checkpoint.name}) shows {checkpoint.range.low:g} to "
-                f"{checkpoint.range.high:g} {checkpoint.unit}, not {value:g}"
+                Message(
+                    "checkpoint {id} ({checkpoint}) shows {low:g} to {high:g} {unit}, not "
+                    "{value:g}",
+                    id=id,
+                    checkpoint=checkpoint.name,
+                    low=checkpoint.range.low,
+                    high=checkpoint.range.high,
+                    unit=checkpoint.unit,
+                    value=value,
+                )
             )
         truth[id] = value
     return truth

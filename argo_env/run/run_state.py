@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterable, Sequence
 
 from argo_compiler.base.errors import Invalid, Remedy
+from argo_compiler.base.message import Message
 from argo_compiler.hfsm import (
     ActionStopped,
     CancelAction,
@@ -165,7 +166,7 @@ class SimulationState:
             self.supervision.acting = True
             self._start_action(StartAction(entry.by_hand))
         if entry.stop_by_hand and self.action:
-            self.action.cancel("a person stopped it", is_interruption=False)
+            self.action.cancel(Message("a person stopped it"), is_interruption=False)
         if closed and self.action:
             self.action.detour_if_blocked(self._vehicle.setup)
 
@@ -203,7 +204,11 @@ class SimulationState:
             self.apply_without_observers(entry)
         except ValueError as error:
             raise Invalid(
-                f"the journal does not fit its mission at {entry.t:g} s: {error}; begin a new run",
+                Message(
+                    "the journal does not fit its mission at {t:g} s: {error}; begin a new run",
+                    t=entry.t,
+                    error=error,
+                ),
                 remedies=(Remedy.RUN_ANEW,),
             ) from error
 
@@ -214,7 +219,9 @@ class SimulationState:
         that was running ends as interrupted, so its task does not count as done.
         """
         if self.supervision.acting and self.action:
-            self.action.cancel("the process that carried it out died", is_interruption=True)
+            self.action.cancel(
+                Message("the process that carried it out died"), is_interruption=True
+            )
             self.lost_task_run = self.task_run(ActionStopped(self.action.task.name))
             self.action, self.supervision.acting = None, False
         if arrival_path := find_last_path_part(self.log):
@@ -236,7 +243,7 @@ class SimulationState:
         """
         if self.action is None:
             return None
-        self.action.cancel("the run was stopped", is_interruption=False)
+        self.action.cancel(Message("the run was stopped"), is_interruption=False)
         return self.task_run(ActionStopped(self.action.task.name))
 
     def initial_state(self, progress: Progress) -> InitialState:

@@ -8,6 +8,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.message import Message
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.robot.spec import load_robot
 from argo_env.run.initial_state import make_machine
@@ -163,5 +164,7 @@ def _make_clock(pace: float | None) -> tuple[Observer, ...]:
     if pace is None:
         return ()
     if not 0 < pace < math.inf:
-        raise Invalid(f"pace {pace:g}: give the simulated seconds per second, more than 0")
+        raise Invalid(
+            Message("pace {pace:g}: give the simulated seconds per second, more than 0", pace=pace)
+        )
     return (RealTimeClock(pace),)

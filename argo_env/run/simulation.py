@@ -8,6 +8,7 @@ from contextlib import ExitStack, contextmanager
 import numpy as np
 
 from argo_compiler.base.errors import Conflict, Invalid, NotFound
+from argo_compiler.base.message import Listing, Message
 from argo_compiler.base.model import Pose
 from argo_compiler.hfsm import ByHand, Event, GiveBack, Occurred, Resume, Tick
 from argo_compiler.hfsm.events import ReadingGiven
@@ -272,7 +273,10 @@ class Simulation(Closing):
             case StopRun(reason):
                 if not isinstance(reason, str | None):
                     raise Invalid(
-                        f"{reason!r} is not a text: give the reason for the stop in words"
+                        Message(
+                            "{reason} is not a text: give the reason for the stop in words",
+                            reason=repr(reason),
+                        )
                     )
                 by_person = VerdictPart(code=VerdictCode.STOPPED_BY_PERSON)
                 self._end_run(
@@ -422,9 +426,14 @@ class Simulation(Closing):
         docks = navigator.site.docks
         for area in (mission.start_area, mission.end_area):
             if area is not None and area not in docks:
-                known = ", ".join(map(str, sorted(docks)))
+                known = Listing(map(str, sorted(docks)))
                 raise NotFound(
-                    f"site {navigator.site.name} has no starting area {area}; there are: {known}"
+                    Message(
+                        "site {site} has no starting area {area}; there are: {known}",
+                        site=navigator.site.name,
+                        area=area,
+                        known=known,
+                    )
                 )
         if beginning := self._spec.beginning:
             start = beginning.body_pose
@@ -569,7 +578,9 @@ class Simulation(Closing):
 
     def _require_not_ended(self) -> None:
         if self.ended:
-            raise Conflict(f"the run has ended, at {self.now:g} s: make another simulation")
+            raise Conflict(
+                Message("the run has ended, at {now:g} s: make another simulation", now=self.now)
+            )
         self._require_usable()
 
     def _require_usable(self) -> None:
@@ -577,8 +588,11 @@ class Simulation(Closing):
             raise Conflict("the simulation is closed: make another one")
         if self._broken:
             raise Conflict(
-                f"an error has ended the simulation, at {self.now:g} s: make another one, or "
-                "resume the run if it has a journal"
+                Message(
+                    "an error has ended the simulation, at {now:g} s: make another one, or "
+                    "resume the run if it has a journal",
+                    now=self.now,
+                )
             )
         if self._changing:
             raise Conflict("an observer can't command its run: give commands between two steps")

@@ -6,6 +6,7 @@ from typing import Any
 from pydantic import Field, ValidationError, field_validator
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.message import Message, as_message
 from argo_compiler.base.model import Model, Pose
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.files.json_places import format_path
@@ -139,13 +140,13 @@ class RunSpec(Model):
         return self.model_dump(mode="json", include=_SETTINGS)
 
 
-SPEC_REMEDY = (
-    "restore it from a copy, or evaluate again, which writes it; if you have changed it yourself, "
-    "remove its `checksum`"
+SPEC_REMEDY = Message(
+    "restore it from a copy, or evaluate again, which writes it; if you have "
+    "changed it yourself, remove its `checksum`"
 )
 
 
-def read_spec(content: str | bytes, name: str = "the run's spec") -> RunSpec:
+def read_spec(content: str | bytes, name: str = Message("the run's spec")) -> RunSpec:
     """Return the spec in a JSON text.
 
     Raises Invalid, with the text's `name` and the place in it, if it is not a spec; Unavailable if
@@ -165,7 +166,7 @@ def validate_spec(spec: RunSpec) -> RunSpec:
     of the field, if the spec is invalid.
     """
     if not isinstance(spec, RunSpec):
-        raise Invalid(f"{spec!r} is not a spec of a run: make it a RunSpec")
+        raise Invalid(Message("{spec} is not a spec of a run: make it a RunSpec", spec=repr(spec)))
     try:
         return RunSpec.model_validate(dict(spec))
     except ValidationError as error:
@@ -176,7 +177,14 @@ def _invalid(name: str, error: ValidationError) -> Invalid:
     fault = error.errors(include_url=False)[0]
     place = format_path(fault["loc"])
     message = error_message(fault, fault["loc"])
-    return Invalid(f"{name}: {place + ': ' if place else ''}{message}")
+    return Invalid(
+        Message(
+            "{name}: {place}{message}",
+            name=name,
+            place=f"{place}: " if place else "",
+            message=as_message(message),
+        )
+    )
 
 
 def logged_events(*events: tuple[float, Event]) -> tuple[tuple[float, LoggedEvent], ...]:

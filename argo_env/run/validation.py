@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from argo_compiler.base.errors import Conflict
+from argo_compiler.base.message import Message
 from argo_compiler.hfsm import Cause, lower
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.robot.spec import load_robot
@@ -79,9 +80,19 @@ def require_site(site: OpenedSite, spec: RunSpec) -> None:
     """
     planned = spec.mission.site
     if planned and planned != site.name:
-        raise Conflict(f"the mission was planned for site {planned}, and the site is {site.name}")
+        raise Conflict(
+            Message(
+                "the mission was planned for site {planned}, and the site is {site}",
+                planned=planned,
+                site=site.name,
+            )
+        )
     if spec.site != site.reference and open_site(spec.site).site.spec != site.site.spec:
         raise Conflict(
-            f"the spec names site {spec.site}, and the site given is {site.reference}: open the "
-            "one that the spec names"
+            Message(
+                "the spec names site {site}, and the site given is {reference}: open the "
+                "one that the spec names",
+                site=spec.site,
+                reference=site.reference,
+            )
         )

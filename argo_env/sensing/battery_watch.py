@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from argo_compiler.base.message import Message
 from argo_compiler.hfsm.charging import FULL, LOW, AwaitedCharge
 from argo_compiler.il import EventKind
 from argo_env.drives.battery import ESTIMATE_ERROR, Battery, estimated_charge
@@ -118,7 +119,14 @@ class BatteryWatch:
         return estimated_charge(self._battery.voltage, self._battery.current)
 
     def _detection(self, kind: EventKind, charge: float) -> Detection:
-        return Detection(kind, f"{self._battery.voltage:.1f} V, {charge:.0%} charged")
+        return Detection(
+            kind,
+            Message(
+                "{voltage:.1f} V, {charge:.0%} charged",
+                voltage=self._battery.voltage,
+                charge=charge,
+            ),
+        )
 
 
 def _least_charge(awaited: AwaitedCharge) -> float:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from argo_compiler.base.message import Message
 from argo_env.navigation.views import camera_positions, face_normal, sight_target
 from argo_env.robot.pose import BodyPose
 from argo_env.robot.spec import RobotSpec
@@ -37,19 +38,36 @@ class IdealSensor:
         distance = float(np.linalg.norm(sight))
         if not sensor.min_range <= distance <= sensor.max_range:
             raise MeasurementError(
-                f"{checkpoint.name} is {distance:.2f} m away; the camera reads from "
-                f"{sensor.min_range} m to {sensor.max_range} m"
+                Message(
+                    "{checkpoint} is {distance:.2f} m away; the camera reads from {min_range} "
+                    "m to {max_range} m",
+                    checkpoint=checkpoint.name,
+                    distance=distance,
+                    min_range=sensor.min_range,
+                    max_range=sensor.max_range,
+                )
             )
         cosine = float(-sight @ face_normal(checkpoint)) / distance
         obliqueness = float(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
         if obliqueness > sensor.max_obliqueness:
             raise PoorViewError(
-                f"{checkpoint.name} is seen at {obliqueness:.0f} degrees to its face; the camera "
-                f"reads up to {sensor.max_obliqueness:.0f}"
+                Message(
+                    "{checkpoint} is seen at {obliqueness:.0f} degrees to its face; the camera "
+                    "reads up to {max_obliqueness:.0f}",
+                    checkpoint=checkpoint.name,
+                    obliqueness=obliqueness,
+                    max_obliqueness=sensor.max_obliqueness,
+                )
             )
         obstacle = self._world.obstacle_between(tuple(camera.tolist()), tuple(target.tolist()))
         if obstacle is not None:
-            raise PoorViewError(f"{checkpoint.name} is hidden behind {obstacle}")
+            raise PoorViewError(
+                Message(
+                    "{checkpoint} is hidden behind {obstacle}",
+                    checkpoint=checkpoint.name,
+                    obstacle=obstacle,
+                )
+            )
         return Measurement(self._truth[checkpoint_id], distance)
 
 

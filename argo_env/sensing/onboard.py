@@ -15,6 +15,7 @@ from itertools import accumulate, repeat
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_compiler.base.message import Message
 from argo_compiler.hfsm.charging import LOW
 from argo_compiler.il import EventKind
 from argo_env.drives.battery import Battery
@@ -120,12 +121,12 @@ class ConnectionWatch:
             self._missed += 1
             if self._missed == self._limit:
                 silent = self._limit * self.period
-                detail = f"no answer for {silent:g} s"
+                detail = Message("no answer for {silent:g} s", silent=silent)
                 return (Detection(EventKind.CONNECTION_LOST, detail, noticed_from=here),)
             return ()
         lost, self._missed = self._missed >= self._limit, 0
         if lost:
-            detail = "the base station answers"
+            detail = Message("the base station answers")
             return (Detection(EventKind.CONNECTION_RESTORED, detail, noticed_from=here),)
         return ()
 
@@ -153,7 +154,11 @@ class EmergencyStopWatch:
     def update(self, now: float, pose: BodyPose) -> tuple[Detection, ...]:  # noqa: ARG002
         was_pressed, self._pressed = self._pressed, self._drive.stop_pressed
         if self._pressed and not was_pressed:
-            return (Detection(EventKind.EMERGENCY_STOP, "someone has pressed the emergency stop"),)
+            return (
+                Detection(
+                    EventKind.EMERGENCY_STOP, Message("someone has pressed the emergency stop")
+                ),
+            )
         return ()
 
 
@@ -206,7 +211,7 @@ class DriveWatch:
         if self._reported:
             return ()
         self._reported = True
-        detail = f"the drive makes {share:.0%} of the planned speed"
+        detail = Message("the drive makes {share:.0%} of the planned speed", share=share)
         here = (pose.x, pose.y, pose.z)
         return (Detection(EventKind.DYSFUNCTION, detail, noticed_from=here),)
 
@@ -251,9 +256,12 @@ class CameraWatch:
         if not self._reported or was_reported:
             return ()
         detail = (
-            "the camera gives no picture"
+            Message("the camera gives no picture")
             if pattern is None
-            else f"the camera's picture of the test pattern is off by {spread:.1%} of the scale"
+            else Message(
+                "the camera's picture of the test pattern is off by {spread:.1%} of the scale",
+                spread=spread,
+            )
         )
         return (Detection(EventKind.DYSFUNCTION, detail),)
 

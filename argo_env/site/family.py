@@ -7,6 +7,7 @@ from typing import Any
 from pydantic import Field, ValidationError, field_validator
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_env.files.yaml_messages import error_message
 
@@ -83,13 +84,15 @@ def parse_family(text: str) -> Family:
             continue
         key, equals, value = (piece.strip() for piece in part.partition("="))
         if not equals or key not in Family.model_fields:
-            raise _error(text, f"`{part.strip()}` is not one of its parameters")
+            raise _error(
+                text, Message("`{strip}` is not one of its parameters", strip=part.strip())
+            )
         if key in given:
-            raise _error(text, f"{key} is given twice")
+            raise _error(text, Message("{key} is given twice", key=key))
         try:
             given[key] = _READERS[key](value)
         except ValueError:
-            raise _error(text, f"{key} can't be `{value}`") from None
+            raise _error(text, Message("{key} can't be `{value}`", key=key, value=value)) from None
     try:
         return Family.model_validate(given)
     except ValidationError as error:
@@ -115,7 +118,15 @@ _READERS: dict[str, Callable[[str], Any]] = {
 def _error(text: str, message: str) -> Invalid:
     least, most = _SIZE
     return Invalid(
-        f"site `{text}`: {message}; write {PREFIX}floors=1..12,size=WxD ({least} to {most} m),"
-        f"stairs={'|'.join(Stairs)},clutter=0..1,checkpoints=0..500,seed=N, in any order,"
-        " each of them optional"
+        Message(
+            "site `{text}`: {message}; write {prefix}floors=1..12,size=WxD ({least} to "
+            "{most} m),stairs={stairs},clutter=0..1,checkpoints=0..500,seed=N, in any "
+            "order, each of them optional",
+            text=text,
+            message=message,
+            prefix=PREFIX,
+            least=least,
+            most=most,
+            stairs="|".join(Stairs),
+        )
     )

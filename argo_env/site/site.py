@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from argo_compiler.base.catalog import CheckpointKind, Interval
 from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.base.memoization import thread_safe_cached_property
+from argo_compiler.base.message import Listing, Message
 from argo_compiler.base.model import Pose
 from argo_env.files import resources
 from argo_env.site.family import PREFIX, is_generated_name
@@ -102,14 +103,25 @@ class Site:
             if checkpoint.id == id:
                 return checkpoint
         numbers = (checkpoint.id for checkpoint in self.checkpoints)
-        raise NotFound(f"site {self.name} has no checkpoint {id}; {_there_are(numbers)}")
+        raise NotFound(
+            Message(
+                "site {site} has no checkpoint {id}; {there_are}",
+                site=self.name,
+                id=id,
+                there_are=_there_are(numbers),
+            )
+        )
 
     def checkpoint_for(self, object_id: str | None) -> SiteCheckpoint:
         """Return the checkpoint that tasks call `object_id`; raises NotFound if none or None."""
         for checkpoint in self.checkpoints:
             if str(checkpoint.id) == object_id:
                 return checkpoint
-        raise NotFound(f"site {self.name} has no checkpoint {object_id}")
+        raise NotFound(
+            Message(
+                "site {site} has no checkpoint {object_id}", site=self.name, object_id=object_id
+            )
+        )
 
     def floor(self, number: int) -> FloorSpec:
         """Return the floor with this number; raises NotFound if there is none."""
@@ -117,7 +129,14 @@ class Site:
             if floor.number == number:
                 return floor
         numbers = (floor.number for floor in self.spec.floors)
-        raise NotFound(f"site {self.name} has no floor {number}; {_there_are(numbers)}")
+        raise NotFound(
+            Message(
+                "site {site} has no floor {number}; {there_are}",
+                site=self.name,
+                number=number,
+                there_are=_there_are(numbers),
+            )
+        )
 
     def floor_at(self, z: float) -> int:
         """Return the number of the highest floor that lies at most 0.1 m above the height `z` (m).
@@ -135,7 +154,10 @@ def _there_are(numbers: Iterable[int]) -> str:
             runs[-1][1:] = [number]
         else:
             runs.append([number])
-    return f"there are: {', '.join(' to '.join(map(str, run)) for run in runs) or 'none'}"
+    return Message(
+        "there are: {value}",
+        value=Listing(" to ".join(map(str, run)) for run in runs) or Message("none"),
+    )
 
 
 def site_names() -> tuple[str, ...]:
@@ -164,16 +186,24 @@ def site_file(name_or_path: str) -> Path:
     """
     if is_generated_name(name_or_path):
         raise Invalid(
-            f"site `{name_or_path}` is generated and has no file: open it with `open_site`"
+            Message(
+                "site `{name_or_path}` is generated and has no file: open it with `open_site`",
+                name_or_path=name_or_path,
+            )
         )
     path = Path(name_or_path)
     if path.suffix in {".yaml", ".yml"}:
         return path
     if name_or_path not in site_names():
-        known = ", ".join(site_names())
+        known = Listing(site_names())
         raise NotFound(
-            f"no site `{name_or_path}`; there are: {known}, or a path to a site's .yaml, or"
-            f" {PREFIX}floors=3,seed=7"
+            Message(
+                "no site `{name_or_path}`; there are: {known}, or a path to a site's "
+                ".yaml, or {prefix}floors=3,seed=7",
+                name_or_path=name_or_path,
+                known=known,
+                prefix=PREFIX,
+            )
         )
     return resources.scenarios_folder() / name_or_path / "site.yaml"
 

@@ -11,6 +11,7 @@ from contextlib import suppress
 from typing import IO
 
 from argo_compiler.base.errors import Invalid, Unavailable
+from argo_compiler.base.message import Message
 
 _CHUNK = 65536
 _LAST_WORDS = 300
@@ -31,7 +32,9 @@ def ask_command(command: str, request: str, max_bytes: int, timeout_s: float) ->
     try:
         words = shlex.split(command)
     except ValueError as error:
-        raise Invalid(f"`{command}` is no command: {error}") from None
+        raise Invalid(
+            Message("`{command}` is no command: {error}", command=command, error=error)
+        ) from None
     if not words:
         raise Invalid("the command is empty")
     try:
@@ -44,7 +47,7 @@ def ask_command(command: str, request: str, max_bytes: int, timeout_s: float) ->
         )
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
-        raise Unavailable(f"it can't be started: {reason}") from None
+        raise Unavailable(Message("it can't be started: {reason}", reason=reason)) from None
     try:
         return _converse(process, request.encode("utf-8"), max_bytes, timeout_s)
     finally:
@@ -62,19 +65,29 @@ def _converse(
     deadline = time.monotonic() + timeout_s
     while not output.done.wait(0.05):
         if time.monotonic() > deadline:
-            raise Unavailable(f"it has not answered within {timeout_s:g} s")
+            raise Unavailable(
+                Message("it has not answered within {timeout_s:g} s", timeout_s=timeout_s)
+            )
         if process.poll() is not None:
             output.done.wait(_CLOSING_S)
             break
     if output.overflow:
-        raise Invalid(f"the answer is larger than {max_bytes:,} bytes")
+        raise Invalid(Message("the answer is larger than {max_bytes:,} bytes", max_bytes=max_bytes))
     try:
         status = process.wait(max(0.0, deadline - time.monotonic()) + _CLOSING_S)
     except subprocess.TimeoutExpired:
-        raise Unavailable(f"it has not ended within {timeout_s:g} s") from None
+        raise Unavailable(
+            Message("it has not ended within {timeout_s:g} s", timeout_s=timeout_s)
+        ) from None
     if status != 0:
         errors.done.wait(_CLOSING_S)
-        raise Unavailable(f"it has failed with status {status}{_last_words(errors.content)}")
+        raise Unavailable(
+            Message(
+                "it has failed with status {status}{last}",
+                status=status,
+                last=_last_words(errors.content),
+            )
+        )
     return bytes(output.content)
 
 

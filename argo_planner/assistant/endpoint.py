@@ -9,6 +9,7 @@ from urllib.parse import urlsplit
 
 from argo_compiler.base.errors import Invalid, Unavailable
 from argo_compiler.base.extras import install_line
+from argo_compiler.base.message import Message
 from argo_compiler.script.assistant.request import AssistantRequest
 
 if TYPE_CHECKING:
@@ -32,7 +33,12 @@ def endpoint_url(address: str) -> str:
     except ValueError:
         valid = False
     if not valid or parts.query or parts.fragment or parts.username or parts.password:
-        raise Invalid(f"{address} is no address of an endpoint, such as http://localhost:8080/v1")
+        raise Invalid(
+            Message(
+                "{address} is no address of an endpoint, such as http://localhost:8080/v1",
+                address=address,
+            )
+        )
     return address if parts.path.endswith(_PATH) else f"{address.rstrip('/')}{_PATH}"
 
 
@@ -54,11 +60,17 @@ def ask_endpoint(
     try:
         import httpx
     except ImportError:
-        raise Unavailable(f"an endpoint needs httpx: {install_line('assistant')}") from None
+        raise Unavailable(
+            Message(
+                "an endpoint needs httpx: {install_line}", install_line=install_line("assistant")
+            )
+        ) from None
     host = urlsplit(url).hostname
     local = host in _LOCAL
     if key and not local and not url.startswith("https:"):
-        raise Invalid(f"{url} is not encrypted, so the key is not sent to it: use https")
+        raise Invalid(
+            Message("{url} is not encrypted, so the key is not sent to it: use https", url=url)
+        )
     headers = {"Accept-Encoding": "identity"} | ({"Authorization": f"Bearer {key}"} if key else {})
     body: dict[str, Any] = {
         "messages": [
@@ -79,9 +91,13 @@ def ask_endpoint(
     try:
         response = _within(timeout_s, post)
     except httpx.TimeoutException:
-        raise Unavailable(f"it has not answered within {timeout_s:g} s") from None
+        raise Unavailable(
+            Message("it has not answered within {timeout_s:g} s", timeout_s=timeout_s)
+        ) from None
     except (httpx.HTTPError, httpx.InvalidURL, ValueError) as error:
-        raise Unavailable(f"it can't be asked: {error or type(error).__name__}") from None
+        raise Unavailable(
+            Message("it can't be asked: {value}", value=error or type(error).__name__)
+        ) from None
     return _content_of(response)
 
 
@@ -102,7 +118,9 @@ def _within(seconds: float, call: Callable[[], bytes]) -> bytes:
     try:
         return result.result(seconds)
     except TimeoutError:
-        raise Unavailable(f"it has not answered within {seconds:g} s") from None
+        raise Unavailable(
+            Message("it has not answered within {seconds:g} s", seconds=seconds)
+        ) from None
 
 
 def _post(
@@ -113,11 +131,15 @@ def _post(
         if response.is_redirect:
             raise Unavailable("it sends to another address; give that one")
         if response.status_code != 200:
-            raise Unavailable(f"it refuses with status {response.status_code}")
+            raise Unavailable(
+                Message("it refuses with status {status_code}", status_code=response.status_code)
+            )
         for part in response.iter_bytes(65536):
             content += part
             if len(content) > max_bytes:
-                raise Invalid(f"the answer is larger than {max_bytes:,} bytes")
+                raise Invalid(
+                    Message("the answer is larger than {max_bytes:,} bytes", max_bytes=max_bytes)
+                )
     return bytes(content)
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.errors import ArgoError, with_message_prefix
+from argo_compiler.base.message import Message
 
 if TYPE_CHECKING:
     from argo_compiler.script import Draft
@@ -62,9 +63,17 @@ def suggest_lines(
     request = make_request(draft.text, (line.line for line in asked), catalog)
     size = len(request.text.encode("utf-8"))
     announce(
-        f"sending to the assistant `{place}`: the script ({request.script_lines} lines, "
-        f"{len(asked)} of them open), the {request.checkpoints} checkpoints of {catalog.site} and "
-        f"a description of the language, {size:,} bytes"
+        Message(
+            "sending to the assistant `{place}`: the script ({script_lines} lines, "
+            "{count} of them open), the {checkpoints} checkpoints of {site} and a "
+            "description of the language, {size:,} bytes",
+            place=place,
+            script_lines=request.script_lines,
+            count=len(asked),
+            checkpoints=request.checkpoints,
+            site=catalog.site,
+            size=size,
+        )
     )
     # Imported late: most commands ask no assistant.
     try:
@@ -85,5 +94,5 @@ def suggest_lines(
             content = ask_command(place, request.text, MAX_ANSWER_BYTES, assistant.timeout_s)
         entries = read_answer(content)
     except ArgoError as error:
-        raise with_message_prefix(error, f"the assistant `{place}`") from None
+        raise with_message_prefix(error, Message("the assistant `{place}`", place=place)) from None
     return suggestions_from(draft, entries)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.errors import INCOMPLETE, ArgoError
+from argo_compiler.base.message import Message
 from argo_compiler.base.stages import stage
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import (
@@ -98,9 +99,13 @@ def _too_many_poses(poses: int) -> Diagnostic:
     return Diagnostic(
         code="analysis.too-many-places",
         severity=Severity.WARNING,
-        message=f"the mission goes to {poses} different poses: its times, its energy and its paths "
-        f"are not checked, as that is done for at most {MAX_POSES} poses",
-        hint="divide it into several missions",
+        message=Message(
+            "the mission goes to {poses} different poses: its times, its energy and "
+            "its paths are not checked, as that is done for at most {max_poses} poses",
+            poses=poses,
+            max_poses=MAX_POSES,
+        ),
+        hint=Message("divide it into several missions"),
         subject="tasks",
     )
 
@@ -115,7 +120,7 @@ def error_diagnostics(error: ArgoError) -> tuple[Diagnostic, ...]:
         Diagnostic(
             code="script.unreadable",
             severity=Severity.ERROR,
-            message=f"the file {file.message}" if file else str(error),
+            message=Message("the file {message}", message=file.message) if file else str(error),
             hint=file.hint if file else None,
             remedies=error.remedies,
         ),

@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.message import Message
 from argo_env.planning.opening import OpenedSite
 from argo_planner.use_cases.importing import Upload, load_draft
 
@@ -42,8 +43,15 @@ def _require_understood(draft: "Draft", said: set[tuple[int, int]]) -> None:
         if line.is_left and _place(line) in said:
             hint = f"; {line.hint}" if line.hint else ""
             raise Invalid(
-                f"line {line.label} of {draft.source_name}: `{' '.join(line.sentences)}` is not "
-                f"understood: {line.reason}{hint}"
+                Message(
+                    "line {label} of {source_name}: `{sentences}` is not understood: "
+                    "{reason}{hint}",
+                    label=line.label,
+                    source_name=draft.source_name,
+                    sentences=" ".join(line.sentences),
+                    reason=line.reason,
+                    hint=hint,
+                )
             )
 
 

@@ -9,6 +9,7 @@ from typing import cast
 
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid, NotFound, with_message_prefix
 from argo_compiler.base.extensions import installed_names, installed_packages
+from argo_compiler.base.message import Message
 from argo_compiler.base.version import __version__
 from argo_compiler.files.loading import read_bytes
 from argo_compiler.il import Mission
@@ -156,8 +157,13 @@ def _cases(
         name = entry.name or Path(entry.file).stem
         if names.setdefault(name, entry.file) != entry.file:
             raise Conflict(
-                f"missions {names[name]} and {entry.file} are both called {name}: give one of them "
-                "another name"
+                Message(
+                    "missions {name} and {file} are both called {name_2}: give one of them "
+                    "another name",
+                    name=names[name],
+                    file=entry.file,
+                    name_2=name,
+                )
             )
         upload = read(folder / entry.file)
         for site in file.sites:
@@ -221,9 +227,22 @@ def reorder_by_policy(
         try:
             mission = function(imported.mission, site)
         except Exception as error:  # a user's function may raise anything
-            raise Invalid(f"policy `{policy}`: {type(error).__name__}: {error}") from error
+            raise Invalid(
+                Message(
+                    "policy `{policy}`: {name}: {error}",
+                    policy=policy,
+                    name=type(error).__name__,
+                    error=error,
+                )
+            ) from error
     if not isinstance(mission, Mission):
-        raise Invalid(f"policy `{policy}`: returned {type(mission).__name__} instead of a mission")
+        raise Invalid(
+            Message(
+                "policy `{policy}`: returned {name} instead of a mission",
+                policy=policy,
+                name=type(mission).__name__,
+            )
+        )
     return mission
 
 
@@ -237,14 +256,23 @@ def _find_order_function(policy: str) -> Callable[[Mission, OpenedSite], object]
     if policy not in POLICIES:
         others = "".join(f", {name}" for name in installed_names(POLICIES.group))
         raise NotFound(
-            f"no policy `{policy}`; there are: {AS_WRITTEN}, {OPTIMISED}{others}, and functions of "
-            "your own as module:function"
+            Message(
+                "no policy `{policy}`; there are: {as_written}, {optimised}{others}, and "
+                "functions of your own as module:function",
+                policy=policy,
+                as_written=AS_WRITTEN,
+                optimised=OPTIMISED,
+                others=others,
+            )
         )
     function = getattr(POLICIES[policy], "order_tasks", None)
     if function is None:
         raise NotFound(
-            f"the policy `{policy}` plays episodes of argo/Route-v0, but does not order the tasks "
-            "of missions: it has no `order_tasks`"
+            Message(
+                "the policy `{policy}` plays episodes of argo/Route-v0, but does not order "
+                "the tasks of missions: it has no `order_tasks`",
+                policy=policy,
+            )
         )
     return cast("Callable[..., object]", function)
 
@@ -267,9 +295,9 @@ def _fault_sets(file: EvaluationFile, folder: Path) -> Iterator[FaultSet]:
         path = folder / fault_file
         found = _files(path) if os.path.isdir(path) else [path]
         if not found:
-            raise NotFound(f"{path} contains no files of faults (.yaml)")
+            raise NotFound(Message("{path} contains no files of faults (.yaml)", path=path))
         for one in found:
-            text = decode_faults(read_bytes(one, "file of faults", MAX_BYTES), str(one))
+            text = decode_faults(read_bytes(one, Message("file of faults"), MAX_BYTES), str(one))
             yield FaultSet(one.stem, text.faults, text=text)
 
 
@@ -281,7 +309,9 @@ def _files(folder: Path) -> list[Path]:
 
 def _distribution(drawn: DrawnFaults, folder: Path) -> FaultDistribution:
     path = folder / drawn.file
-    return decode_distribution(read_bytes(path, "distribution of faults", MAX_BYTES), str(path))
+    return decode_distribution(
+        read_bytes(path, Message("distribution of faults"), MAX_BYTES), str(path)
+    )
 
 
 def _site(name: str, folder: Path) -> str:

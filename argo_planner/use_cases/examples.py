@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from argo_compiler.base.errors import NotFound
+from argo_compiler.base.message import Listing, Message
 from argo_compiler.base.model import Model
 from argo_compiler.base.nearest_name import nearest_name
 from argo_compiler.files.yaml_text import load_yaml
@@ -52,8 +53,12 @@ def example_files(name: str) -> dict[str, bytes]:
     if kind is None:
         known = [name for examples in kinds.values() for name in examples]
         near = nearest_name(name, known)
-        hint = f"did you mean {near}?" if near else f"choose one of: {', '.join(known)}"
-        raise NotFound(f"there is no example {name}: {hint}")
+        hint = (
+            Message("did you mean {near}?", near=near)
+            if near
+            else Message("choose one of: {known}", known=Listing(known))
+        )
+        raise NotFound(Message("there is no example {name}: {hint}", name=name, hint=hint))
     first, *others = kinds[kind][name].files
     if kind == SITES:
         text = (scenarios_folder() / first).read_text(encoding="utf-8")

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.errors import Invalid, Remedy
 from argo_compiler.base.garbage_collector import collector_held
+from argo_compiler.base.message import Message
 from argo_compiler.base.stages import stage
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import (
@@ -155,7 +156,7 @@ def load_unchecked_mission(
         require_no_areas(name, start_area, end_area)
     if kind is SourceKind.SCRIPT:
         return _load_script(upload, catalog, start_area, end_area)
-    assert not isinstance(upload.content, Document), "a document is a script"
+    assert not isinstance(upload.content, Document), Message("a document is a script")
     if kind is SourceKind.BAG or not isinstance(upload.content, bytes):
         return _load_bag(upload.content, name)
     if kind is SourceKind.ISAR:
@@ -178,13 +179,15 @@ def _require_no_plan_or_run(upload: Upload) -> None:
     """Raise Invalid if an upload is a plan, or the journal or recording of a run."""
     beginning = _beginning(upload, 64)
     for pattern, kind, remedies in (
-        (_PLAN, "a plan of the planning service, which exports its mission", ()),
-        (_JOURNAL, "the journal of a run", (Remedy.RESUME,)),
-        (_RECORDING, "the recording of a run", (Remedy.REPLAY,)),
+        (_PLAN, Message("a plan of the planning service, which exports its mission"), ()),
+        (_JOURNAL, Message("the journal of a run"), (Remedy.RESUME,)),
+        (_RECORDING, Message("the recording of a run"), (Remedy.REPLAY,)),
     ):
         if pattern.match(beginning):
             raise Invalid(
-                f"{upload.name} is {kind}, not a mission", remedies=remedies, about=upload.name
+                Message("{upload} is {kind}, not a mission", upload=upload.name, kind=kind),
+                remedies=remedies,
+                about=upload.name,
             )
 
 
@@ -218,8 +221,11 @@ def _load_script(
     table = Path(name).suffix.lower() in _TABLES
     if table and draft.mission is None and not _has_steps(draft):
         raise Invalid(
-            f"{name} is no mission, but a table (CSV): write its rows as steps, such as "
-            "`Check checkpoint 4`"
+            Message(
+                "{name} is no mission, but a table (CSV): write its rows as steps, such as "
+                "`Check checkpoint 4`",
+                name=name,
+            )
         )
     mission = draft.require_mission()
     return LoadedMission(mission, draft.diagnostics, Script.of(script_in(upload), name))
@@ -268,7 +274,7 @@ def script_in(upload: Upload) -> str | Document:
     """Return the script in an upload; raises ArgoError as `load_draft` does."""
     if isinstance(upload.content, Document):
         return upload.content
-    assert isinstance(upload.content, bytes), "a script is one file"
+    assert isinstance(upload.content, bytes), Message("a script is one file")
     return _decoded(upload.content, upload.name)
 
 
@@ -316,6 +322,6 @@ def require_no_areas(name: str, start_area: int | None, end_area: int | None) ->
     """Raise Invalid if areas are given for a mission, which has its own."""
     if start_area is not None or end_area is not None:
         raise Invalid(
-            f"{name} has its areas already; they can be chosen for scripts only",
+            Message("{name} has its areas already; they can be chosen for scripts only", name=name),
             remedies=(Remedy.CHOOSE_AREAS,),
         )

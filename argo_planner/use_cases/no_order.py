@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from argo_compiler.base.errors import Conflict, Remedy
+from argo_compiler.base.message import Message, as_message
 from argo_compiler.route.evaluation import evaluate
 from argo_compiler.route.problem import NEVER, RouteProblem, Tour
 from argo_env.formatting import min_sec_text
@@ -14,7 +15,9 @@ from argo_planner.use_cases.routing import SuggestedOrder
 def require_order(found: SuggestedOrder, source_name: str) -> None:
     """Raise Conflict, with the reason, if there is no order or only one without tasks."""
     if why := missing_order_error(found):
-        raise Conflict(f"{source_name}: {why}", remedies=why.remedies)
+        raise Conflict(
+            Message("{source_name}: {why}", source_name=source_name, why=why), remedies=why.remedies
+        )
 
 
 def missing_order_error(found: SuggestedOrder) -> Conflict | None:
@@ -25,8 +28,10 @@ def missing_order_error(found: SuggestedOrder) -> Conflict | None:
         why = _empty_order_error(found)
     else:
         return None
-    notes = (f"\nNote: {reason}" for reason in found.planned.reasons)
-    return Conflict("".join([str(why), *notes]), remedies=why.remedies)
+    message = as_message(str(why))
+    for reason in found.planned.reasons:
+        message += Message("\nNote: {reason}", reason=reason)
+    return Conflict(message, remedies=why.remedies)
 
 
 def _no_route_error(found: SuggestedOrder) -> Conflict:
@@ -34,29 +39,44 @@ def _no_route_error(found: SuggestedOrder) -> Conflict:
     remedies: tuple[Remedy, ...] = ()
     assumed = found.planned.assumptions_clause
     if len(suggestion.infeasible_subset) == 1:
-        text = f"this requirement can't be met{assumed}: {suggestion.infeasible_subset[0]}"
+        text = Message(
+            "this requirement can't be met{assumed}: {infeasible_subset}",
+            assumed=assumed,
+            infeasible_subset=suggestion.infeasible_subset[0],
+        )
     elif suggestion.infeasible_subset:
-        lines = [f"  - {words}" for words in suggestion.infeasible_subset]
-        head = f"no order meets all of these{assumed}, but one does if any of them is left out:"
-        text = "\n".join([head, *lines])
+        text = Message(
+            "no order meets all of these{assumed}, but one does if any of them is left out:",
+            assumed=assumed,
+        )
+        for words in suggestion.infeasible_subset:
+            text += Message("\n  - {words}", words=words)
     elif not suggestion.infeasible:
-        text = "no order was found in time; search for longer"
+        text = Message("no order was found in time; search for longer")
         remedies += (Remedy.SEARCH_LONGER,)
     elif cut_off := _unreachable_names(problem):
-        text = f"the robot can't reach {cut_off}, or can't leave again: check the site there"
+        text = Message(
+            "the robot can't reach {cut_off}, or can't leave again: check the site there",
+            cut_off=cut_off,
+        )
     else:
-        text = (
-            f"no order meets all requirements{assumed}, and the search did not find which of them "
-            "conflict: relax time limits first, then required orders"
+        text = Message(
+            "no order meets all requirements{assumed}, and the search did not find "
+            "which of them conflict: relax time limits first, then required orders",
+            assumed=assumed,
         )
     limit, written = problem.max_duration, found.written.duration
     if limit is not None and written > limit and not problem.selective:
-        text += (
-            f"\nIn its written order the mission takes {min_sec_text(found.to_seconds(written))}"
+        text += Message(
+            "\nIn its written order the mission takes {min_sec}",
+            min_sec=min_sec_text(found.to_seconds(written)),
         )
         if found.written.waiting:
-            text += f", {min_sec_text(found.to_seconds(found.written.waiting))} of it waiting"
-        text += "; with a budget, tasks that do not fit are left out"
+            text += Message(
+                ", {min_sec} of it waiting",
+                min_sec=min_sec_text(found.to_seconds(found.written.waiting)),
+            )
+        text += Message("; with a budget, tasks that do not fit are left out")
         remedies += (Remedy.GIVE_BUDGET,)
     return Conflict(text, remedies=remedies)
 
@@ -70,7 +90,7 @@ def _unreachable_names(problem: RouteProblem) -> str:
         for k, visit in enumerate(problem.visits)
         if visit.mandatory and not (connected[:, k].any() and connected[k].any())
     ]
-    return ", ".join(names)
+    return Message("{names}", names=tuple(names))
 
 
 def _empty_order_error(found: SuggestedOrder) -> Conflict:
@@ -86,14 +106,31 @@ def _empty_order_error(found: SuggestedOrder) -> Conflict:
     worth = [(evaluate(free, route), route.order[0]) for route in alone]
     takes = [(one.duration, visit) for one, visit in worth if one.feasible]
     if not takes:
-        return Conflict(f"nothing fits within the {limit}{assumed}")
+        return Conflict(
+            Message("nothing fits within the {limit}{assumed}", limit=limit, assumed=assumed)
+        )
     least, visit = min(takes)
     which = group[visit].name if visit in group else problem.visits[visit].name
-    nearest = f"the nearest, {which}, takes {min_sec_text(found.to_seconds(least))}"
+    nearest = Message(
+        "the nearest, {which}, takes {min_sec}",
+        which=which,
+        min_sec=min_sec_text(found.to_seconds(least)),
+    )
     if problem.max_duration is not None and least > problem.max_duration:
-        return Conflict(f"nothing fits within the {limit}{assumed}: {nearest}; allow more")
+        return Conflict(
+            Message(
+                "nothing fits within the {limit}{assumed}: {nearest}; allow more",
+                limit=limit,
+                assumed=assumed,
+                nearest=nearest,
+            )
+        )
     return Conflict(
-        f"no order was found that is sure to fit within the {limit}, although {nearest}: allow "
-        "more, or more time to search",
+        Message(
+            "no order was found that is sure to fit within the {limit}, although "
+            "{nearest}: allow more, or more time to search",
+            limit=limit,
+            nearest=nearest,
+        ),
         remedies=(Remedy.SEARCH_LONGER,),
     )

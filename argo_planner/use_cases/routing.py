@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 from argo_compiler.analysis import analyse
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid, Remedy, with_message_prefix
+from argo_compiler.base.message import Message
 from argo_compiler.base.quantity_text import rounded_down
 from argo_compiler.base.stages import stage
 from argo_compiler.diagnostics import DiagnosticError
@@ -63,7 +64,11 @@ class SuggestedOrder:
         """The suggested order; raises Conflict if there is none (see `missing_order_error`)."""
         if self.suggestion.route is None:
             found = self.suggestion.infeasible
-            raise Conflict("no order meets all requirements" if found else "no order was found")
+            raise Conflict(
+                Message("no order meets all requirements")
+                if found
+                else Message("no order was found")
+            )
         return self.suggestion.route
 
     @property
@@ -103,9 +108,9 @@ def parse_requirements(content: bytes, source_name: str) -> Requirements:
         ArgoError: The content is no text or too large.
         DiagnosticError: It is no YAML, or has other fields.
     """
-    require_size(content, source_name, "file of requirements", MAX_BYTES)
+    require_size(content, source_name, Message("file of requirements"), MAX_BYTES)
     return parse_yaml(
-        decode_text(content, source_name, "file of requirements"),
+        decode_text(content, source_name, Message("file of requirements")),
         source_name,
         Requirements,
         "requirements",
@@ -190,9 +195,13 @@ def _progress_text(progress: SearchProgress, unit: float) -> str:
     `unit` is the duration in s that one unit of the search stands for.
     """
     if progress.cost is None:
-        return "none found so far"
+        return Message("none found so far")
     bound = min_sec_text(progress.bound * unit, rounded_down)
-    return f"{min_sec_text(progress.cost * unit)} so far, none takes less than {bound}"
+    return Message(
+        "{min_sec} so far, none takes less than {bound}",
+        min_sec=min_sec_text(progress.cost * unit),
+        bound=bound,
+    )
 
 
 def require_any_time_limit(mission: Mission, requirements: Requirements) -> None:
@@ -230,9 +239,9 @@ def suggest_robust_order(
     robust = suggest_robust_route(problem, spread, time_limit, seed)
     nominal, route = robust.nominal, robust.route
     shortest = nominal.route == route
-    text = f"robust: the best of {robust.tried} orders that were tried"
+    text = Message("robust: the best of {tried} orders that were tried", tried=robust.tried)
     if not shortest:
-        text += "; the shortest one is in time with a probability of "
+        text += Message("; the shortest one is in time with a probability of ")
         text += f"{robust.nominal_completion.probability:.1%}"
     suggestion = replace(
         nominal,

@@ -5,6 +5,7 @@ import logging
 import math
 
 from argo_compiler.base.errors import Invalid, NotFound
+from argo_compiler.base.message import Listing, Message
 from argo_compiler.hfsm import Cancel, Event, GiveBack, Occurred, Pause, Resume, TakeOver, lower
 from argo_compiler.hfsm.events import ReadingGiven
 from argo_compiler.il import EventKind, Mission
@@ -43,7 +44,14 @@ def parse_event(name: str) -> Event:
     if name == EventKind.TIME_UP:
         raise Invalid("this event occurs by itself, at the mission's maximum duration")
     if name not in EVENTS:
-        raise NotFound(f"no event `{name}`; there are: {', '.join(EVENTS)}, {READING}:ID=VALUE")
+        raise NotFound(
+            Message(
+                "no event `{name}`; there are: {events}, {reading}:ID=VALUE",
+                name=name,
+                events=Listing(EVENTS),
+                reading=READING,
+            )
+        )
     return EVENTS[name]
 
 
@@ -54,7 +62,7 @@ def _parse_reading(text: str) -> ReadingGiven:
     except ValueError:
         read = math.nan
     if not id.strip() or not math.isfinite(read):
-        raise Invalid(f"write {READING}:ID=VALUE, such as {READING}:8=4.2")
+        raise Invalid(Message("write {reading}:ID=VALUE, such as {reading}:8=4.2", reading=READING))
     return ReadingGiven(id.strip(), read)
 
 

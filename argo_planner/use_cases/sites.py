@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from argo_compiler.base.errors import Conflict
+from argo_compiler.base.message import Message
 from argo_env.planning.flaws import Flaw, SafeStates, find_flaws
 from argo_env.planning.opening import OpenedSite
 from argo_env.site import load_site, site_names
@@ -78,8 +79,16 @@ def site_yaml_with_name(site: OpenedSite, name: str) -> str:
 def require_free_name(name: str) -> None:
     """Raise Conflict if it is the name of a shipped site or one for generated sites."""
     if is_generated_name(name):
-        raise Conflict(f"{PREFIX}… names a generated site, not a file; choose another name")
+        raise Conflict(
+            Message(
+                "{prefix}… names a generated site, not a file; choose another name", prefix=PREFIX
+            )
+        )
     if name in site_names():
         raise Conflict(
-            f"the site would be called {name}, like the one that Argo ships; choose another name"
+            Message(
+                "the site would be called {name}, like the one that Argo ships; choose "
+                "another name",
+                name=name,
+            )
         )

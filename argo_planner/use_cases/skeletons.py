@@ -7,6 +7,7 @@ from string import Template
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.message import Message
 
 _FOLDER = Path(__file__).parents[1] / "skeletons"
 
@@ -23,7 +24,7 @@ class SkeletonKind(StrEnum):
 def skeleton_file_name(kind: SkeletonKind, name: str) -> str:
     """Return the name of the file of a skeleton. Raises Invalid if `name` can't be its name."""
     if not name or name != Path(name).name or not name.replace("_", "").replace("-", "").isalnum():
-        raise Invalid(f"`{name}` can't be a name: use letters, digits, - and _")
+        raise Invalid(Message("`{name}` can't be a name: use letters, digits, - and _", name=name))
     return f"{name}.txt" if kind is SkeletonKind.MISSION else f"{name}.yaml"
 
 
@@ -45,7 +46,9 @@ def site_values(site: str, catalog: Catalog) -> dict[str, str]:
     Raises Invalid if the site has no starting area or no checkpoint.
     """
     if not catalog.areas or not catalog.checkpoints:
-        raise Invalid(f"{site} has no starting area or no checkpoint: choose another site")
+        raise Invalid(
+            Message("{site} has no starting area or no checkpoint: choose another site", site=site)
+        )
     first, last = catalog.checkpoints[0], catalog.checkpoints[-1]
     return {
         "site": site,

@@ -9,6 +9,7 @@ import math
 from collections import deque
 from dataclasses import dataclass
 
+from argo_compiler.base.message import Message
 from argo_env.closing import NonCopyable
 from argo_env.drives.drive import DriveStatus, Incident, Trouble
 from argo_env.drives.tracked.belts import Traction
@@ -109,7 +110,11 @@ class StallDetector:
         the last call.
         """
         if abs(roll) > _MOST_ROLL or not _LEAST_PITCH < pose.pitch < _MOST_PITCH:
-            detail = f"pitch {math.degrees(pose.pitch):.0f}°, roll {math.degrees(roll):.0f}°"
+            detail = Message(
+                "pitch {degrees:.0f}°, roll {degrees_2:.0f}°",
+                degrees=math.degrees(pose.pitch),
+                degrees_2=math.degrees(roll),
+            )
             return Incident(Trouble.TIPPED, detail, pose)
         self._samples.append(
             _Sample(pose, abs(speed) * self._period, abs(turn_rate) * self._period)
@@ -128,9 +133,13 @@ class StallDetector:
         if (distance <= _LEAST_DISTANCE and turn <= _LEAST_TURN) or share >= _SLIPPING:
             return None
         detail = (
-            f"made {went:.2f} m of {distance:.2f} m commanded"
+            Message("made {went:.2f} m of {distance:.2f} m commanded", went=went, distance=distance)
             if distance > _LEAST_DISTANCE
-            else f"turned {math.degrees(turned):.0f}° of {math.degrees(turn):.0f}° commanded"
+            else Message(
+                "turned {degrees:.0f}° of {degrees_2:.0f}° commanded",
+                degrees=math.degrees(turned),
+                degrees_2=math.degrees(turn),
+            )
         )
         return Incident(Trouble.STUCK if share < _STUCK else Trouble.SLIPPING, detail, pose)
 
@@ -289,16 +298,22 @@ class TrackedDrive(NonCopyable):
             return
         at = f"({incident.pose.x:.2f}, {incident.pose.y:.2f}, {incident.pose.z:.2f})"
         if incident.trouble is Trouble.TIPPED:
-            self._failure = f"the robot tipped over at {at}: {incident.detail}"
+            self._failure = Message(
+                "the robot tipped over at {at}: {detail}", at=at, detail=incident.detail
+            )
             return
         if self._stuck_at is None or _distance(self._stuck_at, incident.pose) > _FREE:
             self._attempts, self._stuck_at = 0, incident.pose
         against = ", ".join(sorted({touch.element for touch in touches}))
         if self._attempts >= ATTEMPTS:
-            self._failure = (
-                f"the robot is stuck at {at}{f' against {against}' if against else ''}: "
-                f"{incident.detail} within {WINDOW:.0f} s, and backing off {ATTEMPTS} times did "
-                "not help"
+            self._failure = Message(
+                "the robot is stuck at {at}{part}: {detail} within {window:.0f} s, and "
+                "backing off {attempts} times did not help",
+                at=at,
+                part=Message(" against {against}", against=against) if against else "",
+                detail=incident.detail,
+                window=WINDOW,
+                attempts=ATTEMPTS,
             )
             return
         motion = self._follower.motion

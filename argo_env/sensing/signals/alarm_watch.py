@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_compiler.base.message import Message
 from argo_compiler.il import EventKind
 from argo_env.robot.pose import BodyPose
 from argo_env.sensing.signals.microphone import Microphone
@@ -99,10 +100,12 @@ class AlarmWatch:
             self._last_tone = now
         if not self._reported and tone and matches_alarm_beat(self._recordings):
             self._reported = True
-            return (Detection(EventKind.PLATFORM_ALARM, "the general platform alarm sounds"),)
+            return (
+                Detection(EventKind.PLATFORM_ALARM, Message("the general platform alarm sounds")),
+            )
         if self._reported and self._last_tone is not None and now - self._last_tone >= CLEAR_TIME:
             self._reported = False
             self._recordings.clear()
             self.loudest = None
-            return (Detection(EventKind.ALL_CLEAR, "the general platform alarm is over"),)
+            return (Detection(EventKind.ALL_CLEAR, Message("the general platform alarm is over")),)
         return ()

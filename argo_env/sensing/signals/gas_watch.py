@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from argo_compiler.base.message import Listing, Message
 from argo_compiler.il import EventKind
 from argo_env.robot.pose import BodyPose
 from argo_env.sensing.signals.frames import NOSE, to_rounded_vector, to_site
@@ -264,8 +265,10 @@ class GasWatch:
             return ()
         self._reported.append(self._current)
         near = self._map.nearest_equipment((pose.x, pose.y, pose.z + 0.5))
-        signs = [f"gas, {ppm:.0f} ppm"] * has_gas + [f"a hiss, {level:.0f} dB at 40 kHz"] * has_hiss
-        detail = f"{' and '.join(signs)}, near {near}"
+        signs = [Message("gas, {ppm:.0f} ppm", ppm=ppm)] * has_gas + [
+            Message("a hiss, {level:.0f} dB at 40 kHz", level=level)
+        ] * has_hiss
+        detail = Message("{signs:and}, near {near}", signs=Listing(signs), near=near)
         return (Detection(EventKind.GAS_LEAK, detail, noticed_from=_position(pose)),)
 
     def _standstill_at(self, pose: BodyPose) -> _Standstill:
@@ -296,7 +299,7 @@ class GasWatch:
         self._reported = [leak for leak in self._reported if leak not in over]
         if self._reported:
             return ()
-        detail = "there is no gas any more where it was"
+        detail = Message("there is no gas any more where it was")
         return (Detection(EventKind.ALL_CLEAR, detail, noticed_from=_position(pose)),)
 
 

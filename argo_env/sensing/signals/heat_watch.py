@@ -12,6 +12,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from argo_compiler.base.message import Message
 from argo_compiler.il import EventKind
 from argo_env.robot.pose import BodyPose
 from argo_env.sensing.signals.frames import rotation, to_rounded_vector, to_site
@@ -201,7 +202,11 @@ class HeatWatch:
         detections = []
         for spot in confirmed:
             self._reported.append(_ReportedSpot(spot.place))
-            detail = f"a hot spot of {spot.temperature:.0f} °C on {spot.element}"
+            detail = Message(
+                "a hot spot of {temperature:.0f} °C on {element}",
+                temperature=spot.temperature,
+                element=spot.element,
+            )
             detections.append(Detection(EventKind.HOT_SPOT, detail, spot.place))
         return tuple(detections)
 

@@ -9,6 +9,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from argo_compiler.base.message import Message
 from argo_compiler.il import EventKind
 from argo_env.robot.pose import BodyPose
 from argo_env.seeding import generator
@@ -197,8 +198,10 @@ class PumpWatch:
         swell = float(best.envelope_spectrum[low : high + 1].max()) * total / best.excess
         # With another faulty pump near, the impacts may come from that one.
         impacts = is_only_pump and swell > BEARING_SHARE
-        description = "with impacts as of a bearing" if impacts else "louder over 2 kHz"
-        detail = f"{pump} sounds {description}"
+        description = (
+            Message("with impacts as of a bearing") if impacts else Message("louder over 2 kHz")
+        )
+        detail = Message("{pump} sounds {description}", pump=pump, description=description)
         return Detection(EventKind.ABNORMAL_SOUND, detail, self._positions[pump])
 
     def _count_quiet(self, listener: Vector) -> None:

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from argo_compiler.base.message import Message
 from argo_env.site import Site
 from argo_env.site.shapes import WALKING_ROLES, Element, Role, Vector
 
@@ -54,7 +55,7 @@ class SiteMap:
         On a site without equipment, the result is the floor at this height, such as `floor 1`.
         """
         if not self._equipment.any():
-            return f"floor {self.site.floor_at(point[2])}"
+            return Message("floor {floor_at}", floor_at=self.site.floor_at(point[2]))
         at = np.array(point)
         outside = np.maximum(np.maximum(self._rays.low - at, at - self._rays.high), 0.0)
         distance = np.where(self._equipment, np.linalg.norm(outside, axis=1), np.inf)

@@ -11,6 +11,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from argo_compiler.base.message import Message
 from argo_compiler.il import EventKind
 from argo_env.navigation.closed_areas import LAYER, Blockage
 from argo_env.navigation.path import wrap
@@ -387,10 +388,14 @@ def _are_inside(
 
 def _detection(kind: EventKind, rect: Rect, z: float, height: float) -> ObstacleDetection:
     x0, y0, x1, y1 = rect
-    size = f"{x1 - x0:.2f} m by {y1 - y0:.2f} m"
+    size = Message("{x1:.2f} m by {y1:.2f} m", x1=x1 - x0, y1=y1 - y0)
     if kind is EventKind.POSITIVE_OBSTACLE:
-        detail = f"an obstacle, {size} in plan as far as it is seen, {height:.2f} m high"
+        detail = Message(
+            "an obstacle, {size} in plan as far as it is seen, {height:.2f} m high",
+            size=size,
+            height=height,
+        )
     else:
-        detail = f"a part of the way is missing, {size}"
+        detail = Message("a part of the way is missing, {size}", size=size)
     place = to_rounded_vector(np.array([(x0 + x1) / 2, (y0 + y1) / 2, z]))
     return ObstacleDetection(kind, detail, place, blockage=Blockage(rect, z, detail))

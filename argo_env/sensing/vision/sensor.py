@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Invalid, Unavailable
 from argo_compiler.base.extras import install_line
+from argo_compiler.base.message import Listing, Message, as_message
 from argo_env.robot.pose import BodyPose
 from argo_env.seeding import generator
 from argo_env.sensing.sensor import Measurement, MeasurementError, PoorViewError
@@ -59,12 +60,20 @@ class CameraSensor:
             import cv2  # noqa: F401
         except ImportError as error:
             raise Unavailable(
-                f"the sensor `camera` needs OpenCV: {install_line('vision')}"
+                Message(
+                    "the sensor `camera` needs OpenCV: {install_line}",
+                    install_line=install_line("vision"),
+                )
             ) from error
         if missing := [joint for joint in JOINTS if joint not in world.robot.arm_raised]:
             raise Invalid(
-                f"the sensor `camera` aims an arm with the joints {', '.join(JOINTS)}; robot "
-                f"{world.robot.name} has no {', '.join(missing)}: use the sensor `ideal`"
+                Message(
+                    "the sensor `camera` aims an arm with the joints {joints}; robot {robot} "
+                    "has no {missing}: use the sensor `ideal`",
+                    joints=Listing(JOINTS),
+                    robot=world.robot.name,
+                    missing=Listing(missing),
+                )
             )
         self._world = world
         self._seed = seed
@@ -93,16 +102,23 @@ class CameraSensor:
         )
         fit = measurement.search(planned)
         if measurement.brightest < _DARK_BRIGHTNESS:
-            raise MeasurementError(f"{checkpoint.name}: too dark")
+            raise MeasurementError(Message("{checkpoint}: too dark", checkpoint=checkpoint.name))
         if not measurement.pictures:
-            raise PoorViewError(f"{checkpoint.name}: the camera can't get it in view from here")
+            raise PoorViewError(
+                Message(
+                    "{checkpoint}: the camera can't get it in view from here",
+                    checkpoint=checkpoint.name,
+                )
+            )
         if fit is None:
-            raise PoorViewError(f"{checkpoint.name}: not found")
+            raise PoorViewError(Message("{checkpoint}: not found", checkpoint=checkpoint.name))
         reading = measurement.read(fit, planned)
         if reading is None or reading.probability < MIN_CONFIDENCE:
             steep = measurement.obliqueness > _STEEP_OBLIQUENESS
-            reason = "seen too obliquely" if steep else "hidden"
-            raise PoorViewError(f"{checkpoint.name}: {reason}")
+            reason = Message("seen too obliquely") if steep else Message("hidden")
+            raise PoorViewError(
+                Message("{name}: {reason}", name=checkpoint.name, reason=as_message(reason))
+            )
         scale = checkpoint.range
         share = min(max(reading.share, 0.0), 1.0)
         value = round(scale.low + share * (scale.high - scale.low), 3)

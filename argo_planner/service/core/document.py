@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from argo_compiler.base.errors import Conflict, NotFound
+from argo_compiler.base.message import Listing, Message
 from argo_compiler.base.model import Model
 from argo_compiler.il import Mission
 from argo_planner.service.core.commands import Revision
@@ -125,7 +126,7 @@ class PlanDocument:
 
         Raises Invalid if the text can't be a name.
         """
-        require_displayable_name(name, "the mission")
+        require_displayable_name(name, Message("the mission"))
         return PlanRenamed(name=name, author=author, at=at)
 
     def make_folder_record(
@@ -152,11 +153,18 @@ class PlanDocument:
             Invalid: The text can't be a name.
             Conflict: The name is taken, or there are too many versions.
         """
-        require_displayable_name(name, "the version")
+        require_displayable_name(name, Message("the version"))
         if any(version.name == name for version in self.versions):
-            raise Conflict(f"there is already a version '{name}': choose another name")
+            raise Conflict(
+                Message("there is already a version '{name}': choose another name", name=name)
+            )
         if len(self.versions) >= MOST_VERSIONS:
-            raise Conflict(f"the mission has {MOST_VERSIONS} versions: drop one of them first")
+            raise Conflict(
+                Message(
+                    "the mission has {most_versions} versions: drop one of them first",
+                    most_versions=MOST_VERSIONS,
+                )
+            )
         version = PlanVersion.model_construct(
             number=max((v.number for v in self.versions), default=0) + 1,
             name=name,
@@ -172,5 +180,9 @@ class PlanDocument:
         for version in self.versions:
             if version.number == number:
                 return version
-        known = ", ".join(f"{v.number} ('{v.name}')" for v in self.versions) or "none"
-        raise NotFound(f"the mission has no version {number}; it has: {known}")
+        known = Listing(f"{v.number} ('{v.name}')" for v in self.versions) or Message("none")
+        raise NotFound(
+            Message(
+                "the mission has no version {number}; it has: {known}", number=number, known=known
+            )
+        )

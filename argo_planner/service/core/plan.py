@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from datetime import datetime
 
 from argo_compiler.base.errors import NotFound
+from argo_compiler.base.message import Listing, Message
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, has_errors
 from argo_compiler.editing import Consequence, EditError
@@ -79,7 +80,10 @@ class MissionPlan:
         known = next((r for r in self.history if r.id == command.id), None)
         if known is not None and known.digest != command_digest(command, author):
             raise CommandIdTaken(
-                f"another command has used the id {command.id}: give each command its own id"
+                Message(
+                    "another command has used the id {id}: give each command its own id",
+                    id=command.id,
+                )
             )
         return known
 
@@ -160,7 +164,11 @@ class MissionPlan:
         Raises NotFound if the history does not have that revision.
         """
         if revision not in {made.number for made in self.history}:
-            raise NotFound(f"revision {revision} is not in the history of the mission")
+            raise NotFound(
+                Message(
+                    "revision {revision} is not in the history of the mission", revision=revision
+                )
+            )
         mission = self._mission_before(revision)
         return MissionPlan(mission, revision - 1)
 
@@ -200,17 +208,27 @@ class MissionPlan:
         """
         if isinstance(command, RedoEdit):
             if not (undone := self.redoable.get(author)):
-                raise NothingToUndo(f"nothing to redo: {author} has undone no change")
+                raise NothingToUndo(
+                    Message("nothing to redo: {author} has undone no change", author=author)
+                )
             return undone[-1]
         mine = self.undoable.get(author, ())
         if not mine:
-            raise NothingToUndo(f"nothing to undo: {author} has made no change that can be undone")
+            raise NothingToUndo(
+                Message(
+                    "nothing to undo: {author} has made no change that can be undone", author=author
+                )
+            )
         if command.revision is None:
             return mine[-1]
         if command.revision not in mine:
             raise NothingToUndo(
-                f"{author} can't undo revision {command.revision}: choose one of "
-                f"{', '.join(map(str, mine[-10:]))}"
+                Message(
+                    "{author} can't undo revision {revision}: choose one of {names}",
+                    author=author,
+                    revision=command.revision,
+                    names=Listing(map(str, mine[-10:])),
+                )
             )
         return command.revision
 
@@ -222,9 +240,15 @@ class MissionPlan:
         if found := new_errors(self.mission, reverted.mission):
             later = self.history[number - self.revision :] if number < self.revision else ()
             others = sorted({r.author for r in later})
-            message = f"revision {number} can't be undone: {found[0].message}"
+            message = Message(
+                "revision {number} can't be undone: {message}",
+                number=number,
+                message=found[0].message,
+            )
             if others:
-                message += f"; later changes by {' and '.join(others)} may depend on it"
+                message += Message(
+                    "; later changes by {others:and} may depend on it", others=Listing(others)
+                )
             raise ChangedSince(message, found)
         return reverted.mission
 
@@ -232,13 +256,17 @@ class MissionPlan:
         """Return why a revision can't be reverted: what was changed later, and by whom."""
         kind, name = subjects[0]
         what = f"`{name}`" if kind == "header" else f"{kind[:-1]} '{name}'"
-        message = f"revision {number} can't be undone: {what} was changed later"
+        message = Message(
+            "revision {number} can't be undone: {what} was changed later", number=number, what=what
+        )
         later = self.revisions_after(number) or ()
         by = [r for r in later if (kind, name) in r.change.subjects]
         if by:
-            message += f", by {by[-1].author} in revision {by[-1].number}"
+            message += Message(
+                ", by {author} in revision {number}", author=by[-1].author, number=by[-1].number
+            )
         more = len(subjects) - 1
-        return message + (f"; so were {more} more parts" if more else "")
+        return message + (Message("; so were {more} more parts", more=more) if more else "")
 
     def _mission_before(self, revision: int) -> Mission:
         missions = (*self.missions, self.mission)
@@ -257,7 +285,11 @@ def _apply_edits(mission: Mission, command: EditPlan) -> tuple[Mission, tuple[Co
         try:
             edited = apply(mission, edit)
         except EditError as error:
-            which = f"edit {index + 1} of {len(command.edits)}: " if index else ""
+            which = (
+                Message("edit {index} of {count}: ", index=index + 1, count=len(command.edits))
+                if index
+                else ""
+            )
             raise EditRefused(
                 which + error.diagnostics[0].message, index, error.diagnostics
             ) from None

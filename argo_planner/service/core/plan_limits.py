@@ -5,6 +5,7 @@ import unicodedata
 from collections.abc import Iterator
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.message import Message
 from argo_compiler.il import Mission
 from argo_planner.service.core.change import MissionChange
 from argo_planner.service.core.refusals import PlanTooLarge
@@ -33,14 +34,25 @@ def require_displayable_name(name: str, what: str) -> None:
     All other texts are allowed. `what` is the thing that is named, for the message.
     """
     if not any(map(_is_visible, name)):
-        raise Invalid(f"{what} needs a name with visible characters: give it one")
+        raise Invalid(
+            Message("{what} needs a name with visible characters: give it one", what=what)
+        )
     if len(name) > LONGEST_NAME:
         raise Invalid(
-            f"{what} has a name of {len(name)} characters: give it one of at most {LONGEST_NAME}"
+            Message(
+                "{what} has a name of {count} characters: give it one of at most {longest_name}",
+                what=what,
+                count=len(name),
+                longest_name=LONGEST_NAME,
+            )
         )
     if found := _INVISIBLE.search(name):
         raise Invalid(
-            f"the name of {what} has an invisible character (U+{ord(found[0]):04X}): remove it"
+            Message(
+                "the name of {what} has an invisible character (U+{ord:04X}): remove it",
+                what=what,
+                ord=ord(found[0]),
+            )
         )
 
 
@@ -58,20 +70,31 @@ def require_within_limits(changed_mission: Mission, change: MissionChange) -> No
     ):
         if count > most:
             raise PlanTooLarge(
-                f"the mission would have {count} {what}, but at most {most} are allowed: split it"
+                Message(
+                    "the mission would have {count} {what}, but at most {most} are allowed: "
+                    "split it",
+                    count=count,
+                    what=what,
+                    most=most,
+                )
             )
     for what, name in _names(change):
         require_displayable_name(name, what)
     for field, value in (change.header.given_fields() if change.header else {}).items():
         if isinstance(value, str) and len(value) > LONGEST_TEXT:
             raise PlanTooLarge(
-                f"`{field}` has {len(value)} characters, but at most {LONGEST_TEXT} are allowed: "
-                "shorten it"
+                Message(
+                    "`{field}` has {count} characters, but at most {longest_text} are allowed: "
+                    "shorten it",
+                    field=field,
+                    count=len(value),
+                    longest_text=LONGEST_TEXT,
+                )
             )
 
 
 def _names(change: MissionChange) -> Iterator[tuple[str, str]]:
     if change.tasks:
-        yield from (("a task", task.name) for task in change.tasks.put)
+        yield from ((Message("a task"), task.name) for task in change.tasks.put)
     if change.groups:
-        yield from (("a group", group.name) for group in change.groups.put)
+        yield from ((Message("a group"), group.name) for group in change.groups.put)

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 
 from argo_compiler.base.errors import ArgoError, Conflict, Invalid
+from argo_compiler.base.message import Message
 from argo_compiler.diagnostics import Diagnostic
 from argo_planner.service.core.commands import Revision
 
@@ -20,8 +21,13 @@ class StaleRevision(Conflict):
     ) -> None:
         self.made_on, self.newest, self.since = made_on, newest, since
         super().__init__(
-            f"the command was made on revision {made_on}, but the mission is at revision {newest}: "
-            "read the changes since then, and send the command again on the newest revision"
+            Message(
+                "the command was made on revision {made_on}, but the mission is at "
+                "revision {newest}: read the changes since then, and send the command "
+                "again on the newest revision",
+                made_on=made_on,
+                newest=newest,
+            )
         )
 
     def __reduce__(self) -> tuple[object, ...]:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from datetime import datetime
 
 from argo_compiler.base.errors import Conflict, Invalid, NotFound
+from argo_compiler.base.message import Message
 from argo_compiler.diagnostics import DiagnosticError
 from argo_compiler.script.documents.document import Document
 from argo_compiler.script.drafts.draft import Draft, IncompleteDraft, LineState
@@ -72,17 +73,27 @@ class Drafts:
         Raises Invalid if it is too long, Conflict if there are MOST_DRAFTS drafts already,
         Unavailable if it can't be stored.
         """
-        require_displayable_name(name, "the mission")
+        require_displayable_name(name, Message("the mission"))
         draft = reading.draft
         document = script if isinstance(script, Document) else None
         text = script if isinstance(script, str) else script.text
         if len(text) > MAX_TEXT_LENGTH or len(draft.lines) > MOST_LINES:
             raise Invalid(
-                f"{IncompleteDraft(draft)}; with more than {MOST_LINES:,} lines or "
-                f"{MAX_TEXT_LENGTH:,} characters that is done with `argo import`"
+                Message(
+                    "{incompletedraft}; with more than {most_lines:,} lines or "
+                    "{max_text_length:,} characters that is done with `argo import`",
+                    incompletedraft=IncompleteDraft(draft),
+                    most_lines=MOST_LINES,
+                    max_text_length=MAX_TEXT_LENGTH,
+                )
             )
         if len(self._summaries) >= MOST_DRAFTS:
-            raise Conflict(f"there are {MOST_DRAFTS} drafts: complete or delete some of them first")
+            raise Conflict(
+                Message(
+                    "there are {most_drafts} drafts: complete or delete some of them first",
+                    most_drafts=MOST_DRAFTS,
+                )
+            )
         now = self._clock()
         stored = _with_counts(
             DraftRecord(

@@ -12,7 +12,8 @@ from collections.abc import Callable
 from datetime import datetime
 from pathlib import Path
 
-from argo_compiler.base.errors import ArgoError, Conflict, NotFound, Unavailable
+from argo_compiler.base.errors import ArgoError, Conflict, NotFound, Unavailable, reason_text
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_compiler.files.atomic_write import write_atomically
 from argo_env.evaluation.folder import REPORT
@@ -79,8 +80,13 @@ class EvaluationFolder:
                 shutil.rmtree(folder, ignore_errors=True)
                 remove_if_empty(self._path)
             raise Unavailable(
-                f"evaluation {evaluation.job.id} can't be stored: {folder}: {error.strerror}; free "
-                "disk space, and try again"
+                Message(
+                    "evaluation {id} can't be stored: {folder}: {reason}; free disk space, "
+                    "and try again",
+                    id=evaluation.job.id,
+                    folder=folder,
+                    reason=reason_text(error),
+                )
             ) from error
 
     def load_all(self) -> list[StoredEvaluation]:
@@ -116,7 +122,11 @@ class EvaluationFolder:
             shutil.rmtree(self.unchecked_evaluation_path(id))
         except OSError as error:
             raise Unavailable(
-                f"{self.unchecked_evaluation_path(id)} can't be deleted: {error.strerror}"
+                Message(
+                    "{unchecked_evaluation_path} can't be deleted: {reason}",
+                    unchecked_evaluation_path=self.unchecked_evaluation_path(id),
+                    reason=reason_text(error),
+                )
             ) from error
 
     def load_evaluation(self, id: str) -> StoredEvaluation:
@@ -135,22 +145,28 @@ class EvaluationFolder:
         try:
             content = read_stored_bytes(path)
         except FileNotFoundError:
-            raise NotFound(f"{path} does not exist") from None
+            raise NotFound(Message("{path} does not exist", path=path)) from None
         except OSError as error:
-            raise Unavailable(f"{path} can't be read: {error.strerror}; evaluate again") from None
-        check_page(content, path, "evaluate again")
+            raise Unavailable(
+                Message(
+                    "{path} can't be read: {reason}; evaluate again",
+                    path=path,
+                    reason=reason_text(error),
+                )
+            ) from None
+        check_page(content, path, Message("evaluate again"))
         return content
 
     def _read(self, id: str) -> StoredEvaluation:
         folder = self.unchecked_evaluation_path(id)
         require_regular_files(folder)
         path = folder / _JOB_FILE
-        remedy = "restore it from a copy, or delete its folder and evaluate again"
+        remedy = Message("restore it from a copy, or delete its folder and evaluate again")
         evaluation = read_stored(StoredEvaluation, path, remedy)
-        require_own_id(folder, evaluation.job.id, id, "move it out of this folder")
+        require_own_id(folder, evaluation.job.id, id, Message("move it out of this folder"))
         if evaluation.job.state is not JobState.RUNNING:
             return evaluation
-        why = "the service ended before the end of this evaluation was stored"
+        why = Message("the service ended before the end of this evaluation was stored")
         job = evaluation.job.model_copy(update={"state": JobState.INTERRUPTED, "problem": why})
         return evaluation.model_copy(update={"job": self.with_stored_results(job)})
 
@@ -219,7 +235,11 @@ class Evaluations:
         async with self._turn:
             job = self.find(id)
             if job.state not in (JobState.INTERRUPTED, JobState.CANCELLED):
-                raise Conflict(f"evaluation {id} can't be resumed: it is {job.state}")
+                raise Conflict(
+                    Message(
+                        "evaluation {id} can't be resumed: it is {state}", id=id, state=job.state
+                    )
+                )
             self._require_none_running()
             stored = await asyncio.to_thread(self._folder.load_evaluation, id)
             job = job.model_copy(update={"state": JobState.RUNNING, "problem": None})
@@ -229,7 +249,7 @@ class Evaluations:
         """Return an evaluation; raises NotFound if there is no such job or it is no evaluation."""
         job = self._jobs.job(id)
         if not isinstance(job, EvaluationJob):
-            raise NotFound(f"job {id} is not an evaluation")
+            raise NotFound(Message("job {id} is not an evaluation", id=id))
         return job
 
     async def cancel_for_mission(self, plan: str) -> None:
@@ -247,7 +267,7 @@ class Evaluations:
         async with self._turn:
             job = self.find(id)
             if job.state is JobState.RUNNING:
-                raise Conflict(f"evaluation {id} is running: cancel it first")
+                raise Conflict(Message("evaluation {id} is running: cancel it first", id=id))
             self._jobs.discard_if_present(id)
             self._ends.discard_pending(lambda end: end.job.id == id)
             await asyncio.to_thread(self._folder.delete, id)
@@ -267,7 +287,7 @@ class Evaluations:
         """
         job = self.find(id)
         if job.state is JobState.RUNNING:  # an earlier report would lack the new runs
-            raise NotFound(f"evaluation {id} has no report yet: it is running")
+            raise NotFound(Message("evaluation {id} has no report yet: it is running", id=id))
         if job.state in (JobState.CANCELLED, JobState.INTERRUPTED):
             work = JobProcess(write_partial_report, self._folder.unchecked_evaluation_path(id))
             try:
@@ -278,8 +298,12 @@ class Evaluations:
             return await asyncio.to_thread(self._folder.read_report, id)
         except NotFound:
             raise NotFound(
-                f"evaluation {id} has no report: it is {job.state}, and the report is written "
-                "when all runs are complete"
+                Message(
+                    "evaluation {id} has no report: it is {state}, and the report is written "
+                    "when all runs are complete",
+                    id=id,
+                    state=job.state,
+                )
             ) from None
 
     async def replay(self, id: str, key: str) -> ReplayedRun:
@@ -305,8 +329,12 @@ class Evaluations:
                     return await work.start_and_wait(lambda _: None)
             except TimeoutError:
                 raise Unavailable(
-                    f"the replay of the run takes longer than {LONGEST_REPLAY:.0f} s: the report "
-                    "of the evaluation has a command that replays it on the machine of the service"
+                    Message(
+                        "the replay of the run takes longer than {longest_replay:.0f} s: the "
+                        "report of the evaluation has a command that replays it on the machine of "
+                        "the service",
+                        longest_replay=LONGEST_REPLAY,
+                    )
                 ) from None
             finally:
                 await work.end()
@@ -315,8 +343,12 @@ class Evaluations:
         for job in self._jobs.running(EvaluationJob):
             assert isinstance(job, EvaluationJob)
             raise Conflict(
-                f"{job.author} has started an evaluation of mission {job.name!r}: wait for it, or "
-                "cancel it"
+                Message(
+                    "{author} has started an evaluation of mission {job}: wait for it, or "
+                    "cancel it",
+                    author=job.author,
+                    job=repr(job.name),
+                )
             )
 
     async def _start_job(self, evaluation: StoredEvaluation) -> EvaluationJob:

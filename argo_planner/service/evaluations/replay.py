@@ -4,6 +4,7 @@ from datetime import datetime
 from pathlib import Path
 
 from argo_compiler.base.errors import NotFound
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_env.evaluation.folder import find_stored_plan
 from argo_env.evaluation.store import read_rows
@@ -54,7 +55,7 @@ def replay_run(request: ReplayRequest, folder: Path, report: ReportProgress) -> 
     plan = find_stored_plan(folder)
     row = next((row for row in read_rows(folder) if row.key == request.key), None)
     if plan is None or row is None:
-        raise NotFound(f"the evaluation has no run {request.key[:40]!r}")
+        raise NotFound(Message("the evaluation has no run {key}", key=repr(request.key[:40])))
     case = next(k for k, case in enumerate(plan.cases) if case.faults == row.faults)
     spec = plan.planned_run(case, row.seed).spec
     collector = _EntryCollector()

@@ -7,9 +7,10 @@ from loky.backend.context import LokyContext
 from loky.process_executor import BrokenProcessPool
 
 from argo_compiler.analysis import Analysis, analyse
-from argo_compiler.base.errors import ArgoError
-from argo_compiler.base.model import Model
+from argo_compiler.base.errors import ArgoError, reason_text
+from argo_compiler.base.message import Message
 from argo_compiler.base.process_pool import ProcessPool
+from argo_compiler.base.wording import Text, Worded, Wording, wording_field
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import has_errors
 from argo_compiler.il import Mission
@@ -20,13 +21,14 @@ from argo_planner.service.processes.context import CONTEXT
 from argo_planner.use_cases.checking import MAX_POSES
 
 
-class AnalysisFound(Model):
+class AnalysisFound(Worded):
     """Result of the analysis of a revision."""
 
     revision: int
     analysis: Analysis | None = None
     """analysis without its witnesses; None: `problem` states why there is none"""
-    problem: str | None = None
+    problem: Text | None = None
+    problem_wording: Wording | None = wording_field("problem")
 
 
 class Analyst:
@@ -50,12 +52,14 @@ class Analyst:
                 job = await asyncio.to_thread(pool.submit, _analyse, self._site, mission, revision)
                 return await asyncio.wrap_future(job)
             except BrokenProcessPool:
-                problem = "the analysis process has died"
+                problem = Message("the analysis process has died")
                 pool.shutdown(wait=False)
                 if pool is self._pool:  # unless another analysis has replaced it
                     self._pool = _make_pool()
             except OSError as error:
-                problem = f"the analysis process can't start: {error.strerror}"
+                problem = Message(
+                    "the analysis process can't start: {reason}", reason=reason_text(error)
+                )
         return AnalysisFound(revision=revision, problem=problem)
 
     def close(self) -> None:
@@ -76,7 +80,7 @@ def _analyse(reference: str, mission: Mission, revision: int) -> AnalysisFound:
     try:
         site = open_site(reference)
         if has_errors(check(mission, site.catalog)):
-            return AnalysisFound(revision=revision, problem="the mission has errors")
+            return AnalysisFound(revision=revision, problem=Message("the mission has errors"))
         poses = len({task.pose for task in mission.tasks if task.pose is not None})
         travel = None if poses > MAX_POSES else site.travel
         analysis = analyse(mission, site.catalog, travel)

@@ -12,6 +12,7 @@ from pathlib import Path
 from pydantic import Field, field_validator, model_validator
 
 from argo_compiler.base.errors import Invalid, NotFound
+from argo_compiler.base.message import Listing, Message
 from argo_compiler.base.model import Model
 from argo_compiler.base.operating_system import niceness, set_niceness
 from argo_compiler.il import Mission
@@ -138,8 +139,10 @@ class EvaluationSpec(Model):
             case.model_copy(update={"digest": f"{case.digest} {obstacles_digest}"})
             for case in evaluation.plan.cases
         )
-        added = ", ".join(obstacle.name or obstacle.id for obstacle in self.obstacles)
-        return evaluation.plan.with_changes(cases=cases, added=f"obstacles: {added}")
+        added = Listing(obstacle.name or obstacle.id for obstacle in self.obstacles)
+        return evaluation.plan.with_changes(
+            cases=cases, added=Message("obstacles: {added}", added=added)
+        )
 
 
 def evaluate_mission(

@@ -10,8 +10,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, TypeVar
 
-from argo_compiler.base.errors import ArgoError, Invalid, Unavailable
+from argo_compiler.base.errors import ArgoError, Invalid, Unavailable, reason_text
 from argo_compiler.base.limited_process import CallLimits, LimitExceeded, limited, limits_for_size
+from argo_compiler.base.message import Message
 from argo_compiler.base.operating_system import niceness, set_niceness
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError
 from argo_compiler.il import Mission
@@ -155,8 +156,11 @@ class Imports:
     ) -> Result:
         if self._under_way[visitor] >= MOST_OF_VISITOR:
             raise Unavailable(
-                f"{MOST_OF_VISITOR} imports with this token are under way: try again when some of "
-                "them have ended"
+                Message(
+                    "{most_of_visitor} imports with this token are under way: try again when "
+                    "some of them have ended",
+                    most_of_visitor=MOST_OF_VISITOR,
+                )
             )
         self._under_way[visitor] += 1
         try:
@@ -199,7 +203,11 @@ class Imports:
             return await process.start_and_wait(lambda _: None)
         except LimitExceeded as error:
             raise Invalid(
-                f"{name} {error}: is it the right file? A mission takes far less"
+                Message(
+                    "{name} {error}: is it the right file? A mission takes far less",
+                    name=name,
+                    error=error,
+                )
             ) from None
         finally:
             await process.end()
@@ -218,7 +226,10 @@ async def _store(path: Path, content: AsyncIterable[bytes]) -> int:
 
 def _unwritable(error: OSError) -> ArgoError:
     return Unavailable(
-        f"the upload can't be stored: {error.strerror}; free some space for temporary files"
+        Message(
+            "the upload can't be stored: {reason}; free some space for temporary files",
+            reason=reason_text(error),
+        )
     )
 
 

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator
 
-from argo_compiler.base.model import Model
+from argo_compiler.base.wording import Text, Worded, Wording, wording_field
 from argo_planner.service.jobs.evaluation import EvaluationAsked
 from argo_planner.service.jobs.evaluation_status import EvaluationStanding
 from argo_planner.service.jobs.order_search import OrderFound, OrderProgress
@@ -28,7 +28,7 @@ class JobState(StrEnum):
     """its process or the service has died; an evaluation can continue from its rows"""
 
 
-class _Job(Model):
+class _Job(Worded):
     """Fields that all jobs have."""
 
     id: str
@@ -39,8 +39,9 @@ class _Job(Model):
     author: str
     begun: datetime
     state: JobState = JobState.RUNNING
-    problem: str | None = None
+    problem: Text | None = None
     """why the job failed or was interrupted, or its result can't be stored; None: nothing"""
+    problem_wording: Wording | None = wording_field("problem")
 
 
 class OrderJob(_Job):

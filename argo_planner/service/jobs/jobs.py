@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from argo_compiler.base.errors import ArgoError, Conflict, NotFound, Unavailable
+from argo_compiler.base.message import Message
 from argo_planner.service.jobs.job import EvaluationJob, Job, JobState
 from argo_planner.service.processes.job_process import JobProcess
 
@@ -58,7 +59,7 @@ class Jobs:
     def job(self, id: str) -> Job:
         """Return the job with that id; raises NotFound if there is none."""
         if id not in self._jobs:
-            raise NotFound(f"there is no job {id[:40]!r}")
+            raise NotFound(Message("there is no job {id}", id=repr(id[:40])))
         return self._jobs[id]
 
     def running(self, kind: type[Job]) -> list[Job]:
@@ -90,7 +91,9 @@ class Jobs:
         job = self.job(id)
         running = self._running.pop(id, None)
         if running is None:
-            raise Conflict(f"job {id} has already ended: it is {job.state}")
+            raise Conflict(
+                Message("job {id} has already ended: it is {state}", id=id, state=job.state)
+            )
         running.watching.cancel()
         await running.work.end()
         job = self._store(job.model_copy(update={"state": JobState.CANCELLED}))

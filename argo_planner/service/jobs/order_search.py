@@ -1,6 +1,8 @@
 """Search for a mission's best order (see `use_cases.routing`), as the work of a job."""
 
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
+from argo_compiler.base.wording import Text, Wording, wording_field
 from argo_compiler.il import Mission
 from argo_compiler.reorder.requirements import Requirements
 from argo_compiler.route.stop import SearchProgress
@@ -30,13 +32,16 @@ class OrderFound(Model):
     """the order, its duration and whether it is proven; None: there is none, see `why_none`"""
     left_out: tuple[str, ...] = ()
     """names of tasks that are left out"""
-    reasons: tuple[str, ...] = ()
+    reasons: tuple[Text, ...] = ()
     """how the order was found, and why tasks are left out"""
-    why_none: str | None = None
+    reasons_wording: tuple[Wording | None, ...] = wording_field("reasons")
+    why_none: Text | None = None
     """why there is no order; None: there is one"""
-    warning: str | None = None
+    why_none_wording: Wording | None = wording_field("why_none")
+    warning: Text | None = None
     """message that this order exceeds the mission's time limit, by its exact travel times; None: it
     does not, or the mission has no limit"""
+    warning_wording: Wording | None = wording_field("warning")
     mission: Mission | None = None
     """the mission in the new order; None: there is no order"""
 
@@ -60,7 +65,7 @@ def search_order(
         best = None if progress.cost is None else progress.cost * unit
         report(OrderProgress(time=progress.time, best=best, bound=progress.bound * unit))
 
-    imported = ImportedMission(mission, "the mission", (), ())
+    imported = ImportedMission(mission, Message("the mission"), (), ())
     found = suggest_order(
         imported,
         opened,

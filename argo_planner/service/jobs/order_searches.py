@@ -8,7 +8,8 @@ from contextlib import suppress
 from datetime import datetime
 from pathlib import Path
 
-from argo_compiler.base.errors import ArgoError, Conflict, NotFound, Unavailable
+from argo_compiler.base.errors import ArgoError, Conflict, NotFound, Unavailable, reason_text
+from argo_compiler.base.message import Message
 from argo_compiler.files.atomic_write import write_atomically
 from argo_compiler.il import Mission
 from argo_compiler.reorder.requirements import Requirements
@@ -30,7 +31,7 @@ MOST_SEARCHES = 2
 """searches that run at the same time"""
 MOST_STORED = 100
 """found orders that are stored; the oldest ones are deleted"""
-_REMEDY = "delete it, and search again"
+_REMEDY = Message("delete it, and search again")
 
 
 class OrderFolder:
@@ -50,8 +51,12 @@ class OrderFolder:
         except OSError as error:
             remove_if_empty(self._path)
             raise Unavailable(
-                f"the found order can't be stored: {path}: {error.strerror}; accept it, or free "
-                "disk space, as it is lost if the service ends before"
+                Message(
+                    "the found order can't be stored: {path}: {reason}; accept it, or free "
+                    "disk space, as it is lost if the service ends before",
+                    path=path,
+                    reason=reason_text(error),
+                )
             ) from error
 
     def load_orders(self) -> list[OrderJob]:
@@ -138,7 +143,10 @@ class OrderSearches:
         """
         if len(self._jobs.running(OrderJob)) >= MOST_SEARCHES:
             raise Conflict(
-                f"{MOST_SEARCHES} searches are running: wait for one of them, or cancel it"
+                Message(
+                    "{most_searches} searches are running: wait for one of them, or cancel it",
+                    most_searches=MOST_SEARCHES,
+                )
             )
         job = OrderJob(
             id=self._new_id(), mission=plan, revision=revision, author=author, begun=self._clock()
@@ -163,7 +171,9 @@ class OrderSearches:
         """
         job = self._jobs.job(id)
         if not isinstance(job, OrderJob):
-            raise NotFound(f"job {id} is not a search for an order")
+            raise NotFound(Message("job {id} is not a search for an order", id=id))
         if job.found is None or job.found.mission is None:
-            raise Conflict(f"job {id} is {job.state}, and has found no order")
+            raise Conflict(
+                Message("job {id} is {state}, and has found no order", id=id, state=job.state)
+            )
         return job, job.found.mission

@@ -11,8 +11,9 @@ from multiprocessing.connection import Connection
 from threading import Lock
 from typing import Any, Generic, TypeVar
 
-from argo_compiler.base.errors import ArgoError, Unavailable
+from argo_compiler.base.errors import ArgoError, Unavailable, reason_text
 from argo_compiler.base.limited_process import CallLimits, exceeded_limit
+from argo_compiler.base.message import Message
 from argo_env.worker_processes import ignore_sigint_and_end_with_parent
 from argo_planner.service.processes.context import CONTEXT
 
@@ -100,8 +101,10 @@ class JobProcess(Generic[Result]):
                 if not self._ended:
                     self._process.start()
             except OSError as error:
-                why = f"the process of this job can't start: {error.strerror}"
-                raise Unavailable(f"{why}; try again") from error
+                why = Message(
+                    "the process of this job can't start: {reason}", reason=reason_text(error)
+                )
+                raise Unavailable(Message("{why}; try again", why=why)) from error
             finally:
                 self._sender.close()
 

@@ -4,6 +4,8 @@ import asyncio
 from collections import deque
 from collections.abc import Iterable
 
+from argo_compiler.base.message import Message
+
 MOST_MESSAGES = 2_000
 MOST_CHARACTERS = 16_000_000
 
@@ -49,7 +51,7 @@ class Mailbox:
             self._messages.clear()
             self._past = 0
             self._newest.clear()
-            self.close(MailboxClosed("too slow: connect again and resume", too_slow=True))
+            self.close(MailboxClosed(Message("too slow: connect again and resume"), too_slow=True))
         self._changed.set()
 
     def post_newest(self, kind: str, message: str) -> None:

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from argo_compiler.base.model import Model
+from argo_compiler.base.wording import Text, Wording, wording_field
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.il import Mission
 from argo_planner.service.core.commands import Revision
@@ -72,8 +73,9 @@ class PlanState(Model):
     """revisions of the requesting author that can be undone, the newest one last"""
     redoable: tuple[int, ...] = ()
     """undos of the requesting author that can be reverted by a redo, the newest one last"""
-    recovered: str | None = None
+    recovered: Text | None = None
     """what was lost when a damaged file was opened; None: nothing"""
+    recovered_wording: Wording | None = wording_field("recovered")
 
     @staticmethod
     def from_document(

@@ -9,6 +9,7 @@ from typing import Any, ParamSpec, TypeVar
 
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.errors import Conflict
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_compiler.checks import check
 from argo_planner.service.core.commands import PlanCommand, ReplaceFrom, Revision
@@ -295,7 +296,7 @@ class PlanRoom:
         if self._analysing is not None:
             self._analysing.cancel()
         for _, mailbox in self._members.values():
-            mailbox.close(MailboxClosed("the mission is closed"))
+            mailbox.close(MailboxClosed(Message("the mission is closed")))
         self._file.close()
 
     def _member_list(self) -> tuple[Member, ...]:

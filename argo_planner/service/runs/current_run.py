@@ -4,6 +4,7 @@ import logging
 from collections.abc import Iterable, Sequence
 
 from argo_compiler.base.errors import ArgoError, NotFound
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_planner.service.rooms.mailbox import Mailbox, MailboxClosed
 from argo_planner.service.runs.folder import DiskThread, RunFolder, StoredRun
@@ -63,7 +64,7 @@ class CurrentRun:
         """Return the state of the run `run`; raises NotFound unless it is the current run."""
         state = self.state
         if state is None or state.id != run:
-            raise NotFound(f"run {run[:40]!r} is not the current run")
+            raise NotFound(Message("run {run} is not the current run", run=repr(run[:40])))
         return state
 
     def list_entries(self, after_first: int, most: int) -> EntryList:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 
 from argo_compiler.base.errors import ArgoError, Conflict, NotFound
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_compiler.hfsm import ByHand, Cancel, GiveBack, Occurred, Pause, Resume, TakeOver
 from argo_compiler.hfsm.events import ReadingGiven
@@ -150,11 +151,16 @@ class SupervisedRun:
             )
         task = self._simulation.spec.mission.task(name)
         if task is None or task.action is Action.START:
-            raise NotFound(f"the mission has no task '{name}' that can be skipped")
+            raise NotFound(
+                Message("the mission has no task '{name}' that can be skipped", name=name)
+            )
         if name in self._skipped:
             raise Conflict(
-                f"the next visit of '{name}' is skipped already; it is left out when the robot is "
-                "given back"
+                Message(
+                    "the next visit of '{name}' is skipped already; it is left out when the "
+                    "robot is given back",
+                    name=name,
+                )
             )
         self._skipped.append(name)
 
@@ -184,7 +190,7 @@ class SupervisedRun:
         if isinstance(request, asked.DoTask):
             task = mission.task(request.task)
             if task is None:
-                raise NotFound(f"the mission has no task '{request.task}'")
+                raise NotFound(Message("the mission has no task '{task}'", task=request.task))
             return task
         drive = isinstance(request, asked.DriveTo)
         name = "drive by hand" if drive else "measure by hand"
@@ -433,11 +439,12 @@ class RunDriver:
         """Settle the requests that have taken effect; the others fail if the run has ended."""
         settled = []
         for id, has_effect in [*self._effects.items()]:
-            progress, reason = RequestProgress.CONFIRMED, None
+            progress = RequestProgress.CONFIRMED
+            reason: str | None = None
             if not has_effect():
                 if not self.over:
                     continue
-                progress, reason = RequestProgress.FAILED, "the run ended first"
+                progress, reason = RequestProgress.FAILED, Message("the run ended first")
             elif id == self._by_hand:
                 self._by_hand = None
                 progress, reason = self._outcome_by_hand()

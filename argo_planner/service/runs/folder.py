@@ -18,7 +18,8 @@ from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
-from argo_compiler.base.errors import ArgoError, NotFound, Unavailable
+from argo_compiler.base.errors import ArgoError, NotFound, Unavailable, reason_text
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_compiler.base.operating_system import NO_LINK_FLAGS, sync_folder
 from argo_compiler.files.atomic_write import write_atomically
@@ -53,8 +54,12 @@ RUN_ID = r"[0-9]{8}-[0-9]{6}-[0-9a-f]{4}"
 """regular expression for the id of a run: its start in UTC, and a random part"""
 _RUN_FILE = "run.json"
 _REQUEST_FILE = "requests"
-_REMEDY = "restore it from a copy, or resume the newest journal in its folder with `argo resume`"
-_REPORT_REMEDY = "write it again, from the newest journal in its folder, with `argo resume`"
+_REMEDY = Message(
+    "restore it from a copy, or resume the newest journal in its folder with `argo resume`"
+)
+_REPORT_REMEDY = Message(
+    "write it again, from the newest journal in its folder, with `argo resume`"
+)
 _FLAGS = os.O_RDWR | os.O_APPEND | os.O_CREAT | NO_LINK_FLAGS
 
 
@@ -96,8 +101,12 @@ class RequestFile:
                 sync_folder(self._path.parent)
         except OSError as error:
             raise Unavailable(
-                f"{self._path} can't be written: {error.strerror}; nothing was passed on to the "
-                "run: try again when the disk has room"
+                Message(
+                    "{path} can't be written: {reason}; nothing was passed on to the run: "
+                    "try again when the disk has room",
+                    path=self._path,
+                    reason=reason_text(error),
+                )
             ) from error
 
     def load_requests(self) -> list[RequestState]:
@@ -111,7 +120,11 @@ class RequestFile:
         except FileNotFoundError:
             return []
         except OSError as error:
-            raise Unavailable(f"{self._path} can't be read: {error.strerror}") from error
+            raise Unavailable(
+                Message(
+                    "{path} can't be read: {reason}", path=self._path, reason=reason_text(error)
+                )
+            ) from error
         requests: dict[str, RequestState] = {}
         lines = content.split(b"\n")
         for number, line in enumerate(lines, 1):
@@ -150,7 +163,11 @@ class RunFolder:
             sync_folder(self._path)
         except OSError as error:
             remove_if_empty(self._path)
-            raise Unavailable(f"{folder} can't be created: {error.strerror}") from error
+            raise Unavailable(
+                Message(
+                    "{folder} can't be created: {reason}", folder=folder, reason=reason_text(error)
+                )
+            ) from error
         try:
             self.store(stored)
         except Unavailable:
@@ -167,7 +184,11 @@ class RunFolder:
             sync_folder(path.parent)
         except OSError as error:
             raise Unavailable(
-                f"{path} can't be written: {error.strerror}; free disk space, and try again"
+                Message(
+                    "{path} can't be written: {reason}; free disk space, and try again",
+                    path=path,
+                    reason=reason_text(error),
+                )
             ) from error
 
     def load_runs_newest_first(self) -> list[StoredRun]:
@@ -223,8 +244,8 @@ class RunFolder:
         try:
             stored = read_stored(StoredRun, path, _REMEDY)
         except NotFound:
-            raise NotFound(f"there is no run {id}") from None
-        require_own_id(path.parent, stored.state.id, id, "move it out of this folder")
+            raise NotFound(Message("there is no run {id}", id=id)) from None
+        require_own_id(path.parent, stored.state.id, id, Message("move it out of this folder"))
         return stored
 
     def run_path(self, id: str) -> Path:
@@ -234,7 +255,7 @@ class RunFolder:
         """
         path = self._path / id
         if not re.fullmatch(RUN_ID, id) or os.path.islink(path):
-            raise NotFound(f"there is no run {id[:40]!r}")
+            raise NotFound(Message("there is no run {id}", id=repr(id[:40])))
         return path
 
     def load_entries(self, id: str) -> tuple[Entry, ...]:
@@ -247,8 +268,13 @@ class RunFolder:
         entries = load_entries(path)
         if len(entries) < state.entries and (state.status is RunStatus.ENDED or not entries):
             raise Unavailable(
-                f"{path}: its journals have {len(entries)} of {state.entries} entries: restore the "
-                "missing journal from a copy"
+                Message(
+                    "{path}: its journals have {count} of {entries} entries: restore the "
+                    "missing journal from a copy",
+                    path=path,
+                    count=len(entries),
+                    entries=state.entries,
+                )
             )
         return entries
 
@@ -269,7 +295,9 @@ class RunFolder:
         except FileNotFoundError:
             return None
         except OSError as error:
-            raise Unavailable(f"{path} can't be read: {error.strerror}") from error
+            raise Unavailable(
+                Message("{path} can't be read: {reason}", path=path, reason=reason_text(error))
+            ) from error
         if file == RECORD:
             unchecked_json(content, path, _REPORT_REMEDY)
         elif file == PAGE:

@@ -9,7 +9,8 @@ from datetime import datetime
 from enum import StrEnum
 from pathlib import Path
 
-from argo_compiler.base.errors import ArgoError, Conflict, NotFound
+from argo_compiler.base.errors import ArgoError, Conflict, NotFound, reason_text
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_env.run.log import Entry
 from argo_planner.service.rooms.mailbox import Mailbox, MailboxClosed
@@ -63,7 +64,7 @@ class RobotConnection:
 
     def replace_connection(self) -> Mailbox:
         """Begin a new connection, close an earlier one, and return the mailbox of the new one."""
-        self.close("the robot has connected again")
+        self.close(Message("the robot has connected again"))
         self._mailbox = Mailbox()
         return self._mailbox
 
@@ -155,7 +156,7 @@ class RunHost:
                 _log.error("%s; the requests to run %s are not known", error, last.state.id)
                 requests = []
             current.replace_run_silently(last, requests)
-            await self._handle_loss("the service has ended during the run", may_stop=True)
+            await self._handle_loss(Message("the service has ended during the run"), may_stop=True)
             if self._after_restart is AfterRestart.GO_ON and (
                 current.stored.state.status is RunStatus.INTERRUPTED
             ):
@@ -171,9 +172,15 @@ class RunHost:
             state = self.state
             if state is not None and state.status is not RunStatus.ENDED:
                 raise Conflict(
-                    f"{state.by} has begun run {state.id} of '{state.name}' at "
-                    f"{state.begun:%H:%M:%S} UTC, and it is {state.status}: wait until it ends, or "
-                    "stop it"
+                    Message(
+                        "{by} has begun run {id} of '{state}' at {begun} UTC, and it is "
+                        "{status}: wait until it ends, or stop it",
+                        by=state.by,
+                        id=state.id,
+                        state=state.name,
+                        begun=f"{state.begun:%H:%M:%S}",
+                        status=state.status,
+                    )
                 )
             now = self._clock()
             first = RunState(
@@ -213,17 +220,25 @@ class RunHost:
             if (known := self._current.book.find_repeated(request, by)) is not None:
                 return known
             if state.status is RunStatus.ENDED:
-                raise Conflict(f"run {run} is over")
+                raise Conflict(Message("run {run} is over", run=run))
             interrupted = state.status is RunStatus.INTERRUPTED
             if interrupted and not isinstance(request, GoOnWithRun | EndRun):
                 raise Conflict(
-                    f"run {run} is interrupted ({state.problem}): only the requests `go_on` and "
-                    "`stop` are possible"
+                    Message(
+                        "run {run} is interrupted ({problem}): only the requests `go_on` and "
+                        "`stop` are possible",
+                        run=run,
+                        problem=state.problem,
+                    )
                 )
             if worker is not None:
                 worker.require_queue_space()
             elif not interrupted:
-                raise Conflict(f"run {run} is {state.status}: try again in a moment")
+                raise Conflict(
+                    Message(
+                        "run {run} is {status}: try again in a moment", run=run, status=state.status
+                    )
+                )
             accepted = RequestState(
                 id=request.id, kind=request.kind, by=by, progress=RequestProgress.ACCEPTED
             )
@@ -332,8 +347,8 @@ class RunHost:
         while self._workers:
             await asyncio.to_thread(next(iter(self._workers)).kill_and_wait)
         await asyncio.to_thread(self._disk.close)
-        self._current.close("the service ends")
-        self.robot.close("the service ends")
+        self._current.close(Message("the service ends"))
+        self.robot.close(Message("the service ends"))
 
     def _is_current(self, run: str) -> bool:
         return self.state is not None and self.state.id == run
@@ -356,7 +371,7 @@ class RunHost:
         try:
             worker = await asyncio.to_thread(RunProcess, *arguments)
         except OSError as error:
-            problem = f"its process can't be started: {error.strerror}"
+            problem = Message("its process can't be started: {reason}", reason=reason_text(error))
             await self._handle_loss(problem, may_stop=False)
             return
         self._worker = worker
@@ -397,7 +412,9 @@ class RunHost:
             async with self._lock:
                 if worker is self._worker:
                     self._worker = None
-                    problem = worker.problem or f"its process has ended ({worker.exit_reason()})"
+                    problem = worker.problem or Message(
+                        "its process has ended ({exit_reason})", exit_reason=worker.exit_reason()
+                    )
                     await self._handle_loss(problem, may_stop=not worker.for_stop)
         finally:
             self._workers.discard(worker)
@@ -480,7 +497,10 @@ def _settle_loss(
         if request.kind == "stop" and over:
             outcome = {"progress": RequestProgress.CONFIRMED, "reason": why}
         else:
-            outcome = {"progress": RequestProgress.FAILED, "reason": why or "the run ended first"}
+            outcome = {
+                "progress": RequestProgress.FAILED,
+                "reason": why or Message("the run ended first"),
+            }
         if over or request is not stop:
             settled.append(request.model_copy(update=outcome))
     update = {"status": status, "problem": why, "moving": False, "task": None, "by_hand": False}
@@ -494,17 +514,26 @@ def _missing_report_error(
 
     `journal` is the last one of the run; `is_writing` is True if the run's process still exists.
     """
-    entries = f"its log is in /api/runs/{state.id}/entries"
+    entries = Message("its log is in /api/runs/{id}/entries", id=state.id)
     if state.status is not RunStatus.ENDED:
-        why = f"it is {state.status}, and the report is written when it has ended; {entries}"
-    elif is_writing:
-        why = "it has just ended, and the report is being written: try again in a moment"
-    elif journal is None or state.entries == 0:
-        why = f"it ended before anything had happened ({state.problem}): start another run"
-    else:
-        why = (
-            "its process ended before the report was written, or the report was deleted; "
-            f"{entries}, and `argo resume {journal} --report FOLDER`, on the machine of the "
-            "service, writes the report"
+        why = Message(
+            "it is {status}, and the report is written when it has ended; {entries}",
+            status=state.status,
+            entries=entries,
         )
-    return NotFound(f"run {state.id} has no {file}: {why}")
+    elif is_writing:
+        why = Message("it has just ended, and the report is being written: try again in a moment")
+    elif journal is None or state.entries == 0:
+        why = Message(
+            "it ended before anything had happened ({problem}): start another run",
+            problem=state.problem,
+        )
+    else:
+        why = Message(
+            "its process ended before the report was written, or the report was "
+            "deleted; {entries}, and `argo resume {journal} --report FOLDER`, on the "
+            "machine of the service, writes the report",
+            entries=entries,
+            journal=journal,
+        )
+    return NotFound(Message("run {id} has no {file}: {why}", id=state.id, file=file, why=why))

@@ -6,6 +6,7 @@ from multiprocessing.connection import Connection
 from typing import Any
 
 from argo_compiler.base.model import Model
+from argo_compiler.base.wording import Text, Wording, wording_field
 from argo_planner.service.runs.requests import RunRequest
 
 
@@ -18,7 +19,8 @@ class RobotText(Model):
 class WorkerFailed(Model):
     """Last message of a process that can't start or continue the run."""
 
-    problem: str
+    problem: Text
+    problem_wording: Wording | None = wording_field("problem")
 
 
 class WorkerPipe:

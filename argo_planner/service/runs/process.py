@@ -7,6 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from argo_compiler.base.errors import Unavailable
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_planner.service.processes.context import CONTEXT
 from argo_planner.service.runs.pipe import RobotText
@@ -53,7 +54,7 @@ class RunProcess:
         self._pipe, worker_end = CONTEXT.Pipe()
         arguments = (worker_end, folder, order, first, foxglove, request)
         self._process = CONTEXT.Process(
-            target=run_worker, args=arguments, name=f"run {self.run}", daemon=True
+            target=run_worker, args=arguments, name=Message("run {run}", run=self.run), daemon=True
         )
         self._process.start()
         worker_end.close()
@@ -122,7 +123,11 @@ class RunProcess:
     def exit_reason(self) -> str:
         """Return the signal or the exit status with which the process ended, as text."""
         status = self._process.exitcode
-        return f"signal {-status}" if status is not None and status < 0 else f"status {status}"
+        return (
+            Message("signal {value}", value=-status)
+            if status is not None and status < 0
+            else Message("status {status}", status=status)
+        )
 
     def _receive_messages(self) -> Sequence[Model]:
         """Wait for messages; return at least one, or none if the process has ended."""
@@ -150,7 +155,12 @@ class RunProcess:
 
     def _overload_error(self) -> Unavailable:
         return Unavailable(
-            f"the process of run {self.run} accepts no more messages: {MOST_WAITING} are waiting. "
-            f"Try again in a moment; if it hangs, end process {self._process.pid} and resume the "
-            "run from its journal"
+            Message(
+                "the process of run {run} accepts no more messages: {most_waiting} are "
+                "waiting. Try again in a moment; if it hangs, end process {pid} and resume "
+                "the run from its journal",
+                run=self.run,
+                most_waiting=MOST_WAITING,
+                pid=self._process.pid,
+            )
         )

@@ -7,7 +7,9 @@ from typing import Annotated, Literal
 from pydantic import Discriminator, Field
 
 from argo_compiler.base.errors import Conflict, NotFound
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model, Pose
+from argo_compiler.base.wording import Text, Worded, Wording, wording_field
 from argo_compiler.il import EventKind, Mission
 from argo_env.faults.kinds import AnyFault
 from argo_planner.service.core.commands import CommandId
@@ -60,7 +62,7 @@ class RequestProgress(StrEnum):
     """the request was begun, but not completed"""
 
 
-class RequestState(Model):
+class RequestState(Worded):
     """State of a request."""
 
     id: CommandId
@@ -68,8 +70,9 @@ class RequestState(Model):
     by: str
     """author of the request"""
     progress: RequestProgress
-    reason: str | None = None
+    reason: Text | None = None
     """why the request was refused or has failed, or why a run that was to stop ended otherwise"""
+    reason_wording: Wording | None = wording_field("reason")
 
     @property
     def over(self) -> bool:
@@ -235,7 +238,9 @@ class RequestBook:
     def find(self, id: str) -> RequestState:
         """Return the state of a request; raises NotFound if there is no such request."""
         if id not in self._requests:
-            raise NotFound(f"run {self._run} has no request {id[:64]!r}")
+            raise NotFound(
+                Message("run {run} has no request {id}", run=self._run, id=repr(id[:64]))
+            )
         return self._requests[id]
 
     def find_repeated(self, request: RunRequest, by: str) -> RequestState | None:
@@ -246,7 +251,10 @@ class RequestBook:
         known = self._requests.get(request.id)
         if known is not None and (known.kind, known.by) != (request.kind, by):
             raise Conflict(
-                f"another request has used the id {request.id}: give each request an id of its own"
+                Message(
+                    "another request has used the id {id}: give each request an id of its own",
+                    id=request.id,
+                )
             )
         return known
 

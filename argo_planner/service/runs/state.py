@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from argo_compiler.base.model import Model
+from argo_compiler.base.wording import Text, Worded, Wording, wording_field
 from argo_compiler.il import EventKind
 from argo_env.run.log import Entry
 from argo_env.run.record import Reading
@@ -49,7 +50,7 @@ class TaskCount(Model):
     """visits that a person has done or skipped"""
 
 
-class RunState(Model):
+class RunState(Worded):
     """State of a run, as the service sends it to clients."""
 
     id: str
@@ -99,8 +100,9 @@ class RunState(Model):
     """result of the run in a few words; None: it has not ended"""
     silent_since: float | None = None
     """simulated time in s since when a remote robot sends nothing; None: the robot is connected"""
-    problem: str | None = None
+    problem: Text | None = None
     """why the run was interrupted, or ended without being carried out or stopped properly"""
+    problem_wording: Wording | None = wording_field("problem")
 
 
 class RunSummary(Model):

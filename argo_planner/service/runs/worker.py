@@ -11,6 +11,7 @@ from uuid import uuid4
 
 from argo_compiler.base.errors import ArgoError, Unavailable
 from argo_compiler.base.extensions import naming_packages
+from argo_compiler.base.message import Message
 from argo_compiler.files.atomic_write import write_atomically
 from argo_env.planning.opening import OpenedSite, open_site
 from argo_env.recording.live import LiveWriter, serve_live
@@ -48,8 +49,14 @@ def journal_paths(folder: Path) -> list[Path]:
     for number, path in enumerate(paths, 1):
         expected = folder / f"run-{number:04d}.journal"
         if path != expected or os.path.islink(path):
-            why = "is missing" if path != expected else "is a link, and links are not followed"
-            raise Unavailable(f"{expected} {why}: restore it from a copy")
+            why = (
+                Message("is missing")
+                if path != expected
+                else Message("is a link, and links are not followed")
+            )
+            raise Unavailable(
+                Message("{expected} {why}: restore it from a copy", expected=expected, why=why)
+            )
     return paths
 
 
@@ -138,7 +145,7 @@ class _RunWorker:
                         driver, simulation = self._continue(driver, simulation, stack)
             driver.send_state()
             if self._robot is not None and not self._robot.wait_acknowledged(ACK_TIMEOUT):
-                problem = "the robot has not acknowledged yet that the run is over"
+                problem = Message("the robot has not acknowledged yet that the run is over")
                 state = driver.run_state().model_copy(update={"problem": problem})
                 self._pipe.send_to_service(StateTold(state=state))
             return simulation.record()
@@ -164,7 +171,7 @@ class _RunWorker:
         except Unavailable as error:
             if not self._only_stops:
                 raise
-            problem = f"the robot was not told that the run is over: {error}"
+            problem = Message("the robot was not told that the run is over: {error}", error=error)
             self._state = self._state.model_copy(update={"problem": problem})
             return None
 
@@ -229,7 +236,7 @@ class _RunWorker:
         assert driver.continuation is not None
         spec, revision = driver.continuation
         journal = self._create_journal(spec, stack)
-        simulation.handle(StopRun("it continues with an edited plan"))
+        simulation.handle(StopRun(Message("it continues with an edited plan")))
         simulation.close()
         limit = spec.mission.max_duration
         update = {"revision": revision, "max_duration": limit, "speed": driver.speed, "skipped": ()}

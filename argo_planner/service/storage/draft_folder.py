@@ -8,7 +8,8 @@ from contextlib import suppress
 from datetime import datetime
 from pathlib import Path
 
-from argo_compiler.base.errors import ArgoError, NotFound, Unavailable
+from argo_compiler.base.errors import ArgoError, NotFound, Unavailable, reason_text
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_compiler.files.atomic_write import write_atomically
 from argo_compiler.script.documents.document import Document
@@ -24,7 +25,7 @@ from argo_planner.service.storage.stored_files import (
 _log = logging.getLogger(__name__)
 DRAFT_ID = r"[0-9a-f]{12}"
 """regular expression for the id of a draft"""
-_REMEDY = "restore the file from a copy, or delete it and import the script again"
+_REMEDY = Message("restore the file from a copy, or delete it and import the script again")
 
 
 class DraftRecord(Model):
@@ -74,7 +75,11 @@ class DraftFolder:
         except OSError as error:
             remove_if_empty(self._path)
             raise Unavailable(
-                f"the draft can't be stored: {path}: {error.strerror}; nothing was changed"
+                Message(
+                    "the draft can't be stored: {path}: {reason}; nothing was changed",
+                    path=path,
+                    reason=reason_text(error),
+                )
             ) from error
 
     def load(self, id: str) -> DraftRecord:
@@ -103,7 +108,9 @@ class DraftFolder:
         except FileNotFoundError:
             raise _no_draft(id) from None
         except OSError as error:
-            raise Unavailable(f"draft {id} can't be deleted: {error.strerror}") from error
+            raise Unavailable(
+                Message("draft {id} can't be deleted: {reason}", id=id, reason=reason_text(error))
+            ) from error
         with suppress(OSError):
             remove_if_empty(self._path)
 
@@ -114,4 +121,4 @@ class DraftFolder:
 
 
 def _no_draft(id: str) -> NotFound:
-    return NotFound(f"there is no draft {id[:40]!r} here")
+    return NotFound(Message("there is no draft {id} here", id=repr(id[:40])))

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
-from argo_compiler.base.errors import Conflict, NotFound, Unavailable
+from argo_compiler.base.errors import Conflict, NotFound, Unavailable, reason_text
+from argo_compiler.base.message import Message
 from argo_compiler.base.operating_system import NO_LINK_FLAGS, sync_folder, try_lock
 from argo_compiler.il import Mission
 from argo_env.closing import Closing
@@ -61,19 +62,29 @@ class PlanFolder(Closing):
                 os.path.islink(path / name) or not os.path.isdir(path / name)
             ):
                 raise Unavailable(
-                    f"{path / name} is not a folder, or a link, which is not followed: move it away"
+                    Message(
+                        "{path} is not a folder, or a link, which is not followed: move it away",
+                        path=path / name,
+                    )
                 )
         try:
             make_private_folder(path / _BIN)
             self._lock = os.open(path / ".lock", os.O_RDWR | os.O_CREAT | NO_LINK_FLAGS, 0o600)
         except OSError as error:
             raise Unavailable(
-                f"{path} can't be used as a folder of missions: {error.strerror}; choose another"
+                Message(
+                    "{path} can't be used as a folder of missions: {reason}; choose another",
+                    path=path,
+                    reason=reason_text(error),
+                )
             ) from error
         if not try_lock(self._lock):
             os.close(self._lock)
             raise Conflict(
-                f"{path}: another service uses this folder: stop it, or choose another folder"
+                Message(
+                    "{path}: another service uses this folder: stop it, or choose another folder",
+                    path=path,
+                )
             )
 
     def close(self) -> None:
@@ -100,9 +111,14 @@ class PlanFolder(Closing):
         Conflict if the folder on disk has MOST_PLANS plans (those in the bin don't count),
         Unavailable if the file can't be written.
         """
-        require_displayable_name(name, "the mission")
+        require_displayable_name(name, Message("the mission"))
         if sum(1 for _ in _files(self.path)) >= MOST_PLANS:
-            raise Conflict(f"there are {MOST_PLANS} missions: delete some of them first")
+            raise Conflict(
+                Message(
+                    "there are {most_plans} missions: delete some of them first",
+                    most_plans=MOST_PLANS,
+                )
+            )
         id = self._free_id()
         document = PlanDocument(id, name, at, at, MissionPlan(mission), folder=folder)
         return write_plan_file(self._path(id), document)
@@ -120,7 +136,12 @@ class PlanFolder(Closing):
         Unavailable if the file can't be moved.
         """
         if sum(1 for _ in _files(self.path / _BIN)) >= MOST_PLANS:
-            raise Conflict(f"there are {MOST_PLANS} missions in the bin: empty it first")
+            raise Conflict(
+                Message(
+                    "there are {most_plans} missions in the bin: empty it first",
+                    most_plans=MOST_PLANS,
+                )
+            )
         self._move(self._path(id), self._deleted_path(id), id)
 
     def restore(self, id: str) -> None:
@@ -145,7 +166,13 @@ class PlanFolder(Closing):
     def _move(self, source: Path, target: Path, id: str) -> None:
         _require_file(source, id)
         if os.path.lexists(target):
-            raise Conflict(f"{target} exists already: move it away, or {source}")
+            raise Conflict(
+                Message(
+                    "{target} exists already: move it away, or {source}",
+                    target=target,
+                    source=source,
+                )
+            )
         try:
             for other in _companion_files(source):
                 other.replace(target.parent / other.name)
@@ -153,7 +180,9 @@ class PlanFolder(Closing):
             sync_folder(source.parent)
             sync_folder(target.parent)
         except OSError as error:
-            raise Unavailable(f"mission {id} can't be moved: {error.strerror}") from error
+            raise Unavailable(
+                Message("mission {id} can't be moved: {reason}", id=id, reason=reason_text(error))
+            ) from error
 
     def _summaries(self, folder: Path, open_plans: Mapping[str, PlanSummary]) -> list[PlanSummary]:
         paths = {*_files(folder)}
@@ -228,10 +257,10 @@ def _companion_files(path: Path) -> list[Path]:
 
 def _require_file(path: Path, id: str) -> None:
     if os.path.islink(path) or not os.path.isfile(path):
-        raise NotFound(f"there is no mission {id} here")
+        raise NotFound(Message("there is no mission {id} here", id=id))
 
 
 def _require_id(id: str) -> str:
     if not re.fullmatch(PLAN_ID, id):
-        raise NotFound(f"there is no mission {id[:40]!r} here")
+        raise NotFound(Message("there is no mission {id} here", id=repr(id[:40])))
     return id

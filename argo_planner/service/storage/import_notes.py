@@ -8,6 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from argo_compiler.base.errors import NotFound, Unavailable
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_compiler.diagnostics import Diagnostic
 from argo_compiler.files.atomic_write import write_atomically
@@ -69,7 +70,7 @@ def load_imported_script(folder: Path, plan: str) -> tuple[int, str]:
 
 def _load(folder: Path, plan: str) -> _Notes:
     try:
-        return read_stored(_Notes, _path(folder, plan), "import the mission again")
+        return read_stored(_Notes, _path(folder, plan), Message("import the mission again"))
     except NotFound:
         return _Notes(revision=0)
     except Unavailable as error:

@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from argo_compiler.base.errors import ArgoError, NotFound
-from argo_compiler.base.model import Model
+from argo_compiler.base.message import Message
+from argo_compiler.base.wording import Text, Worded, Wording, wording_field
 from argo_env.files.checked_lines import parse_lines
 from argo_planner.service.storage.plan_file import (
     parse_first_line,
@@ -16,7 +17,7 @@ from argo_planner.service.storage.plan_file import (
 )
 
 
-class PlanSummary(Model):
+class PlanSummary(Worded):
     """Summary of a mission plan, for lists."""
 
     id: str
@@ -33,8 +34,9 @@ class PlanSummary(Model):
     """least duration over all executions, in s; None: not known without opening the mission"""
     most_time: float | None = None
     """greatest duration, likewise; None: not known, or it has no limit"""
-    problem: str | None = None
+    problem: Text | None = None
     """why the plan can't be opened; None: it can be opened"""
+    problem_wording: Wording | None = wording_field("problem")
 
 
 def read_plan_summary(path: Path) -> PlanSummary:
@@ -53,7 +55,7 @@ def read_plan_summary(path: Path) -> PlanSummary:
     except ArgoError as error:
         return PlanSummary(id=path.stem, name=path.stem, problem=str(error))
     if summary is None:
-        problem = f"{path.name} is damaged from its first line on"
+        problem = Message("{path} is damaged from its first line on", path=path.name)
         return PlanSummary(id=path.stem, name=path.stem, problem=problem)
     return summary
 

@@ -14,7 +14,8 @@ from typing import Any, Literal
 
 from pydantic import TypeAdapter, ValidationError
 
-from argo_compiler.base.errors import Invalid, NotFound, Unavailable
+from argo_compiler.base.errors import Invalid, NotFound, Unavailable, reason_text
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_compiler.base.operating_system import NO_LINK_FLAGS, sync_folder
 from argo_compiler.base.quantity_text import counted_text
@@ -101,8 +102,11 @@ class PlanFile(Closing):
             self._rewrite()
         if self._size_with(data) > MAX_BYTES:
             raise PlanTooLarge(
-                f"the mission's file would have more than {MAX_BYTES // 1_000_000} MB: delete some "
-                "of its versions, or continue with a copy"
+                Message(
+                    "the mission's file would have more than {max_bytes} MB: delete some of "
+                    "its versions, or continue with a copy",
+                    max_bytes=MAX_BYTES // 1000000,
+                )
             )
         try:
             self._opened.lines.append_and_sync(data)
@@ -174,12 +178,15 @@ def open_plan_file(path: Path) -> PlanFile:
     if parsed is None and os.path.exists(previous):
         parsed_previous = _parse(path, read_plan_bytes_or_raise(previous))
         if parsed_previous is not None:
-            lost = "its first line is damaged: this is an earlier state of the mission"
+            lost = Message("its first line is damaged: this is an earlier state of the mission")
             return _recover(path, parsed_previous.document, lost)
     if parsed is None:
         raise Invalid(
-            f"{path.name} is damaged from its first line on, and nothing in it can be read: "
-            "restore it from a copy"
+            Message(
+                "{path} is damaged from its first line on, and nothing in it can be read: "
+                "restore it from a copy",
+                path=path.name,
+            )
         )
     if parsed.lost:
         return _recover(path, parsed.document, parsed.lost)
@@ -227,10 +234,19 @@ def _parse(path: Path, content: bytes) -> _ParsedFile | None:
 
 def _lost(document: PlanDocument, number: int, count: int, known: bool) -> str:
     """Return what is lost from the line with this number on; `known`: it was on disk once."""
-    which = f"at least {counted_text(count, 'line')} after the first {number}"
-    why = "" if known else ", as by a loss of power, not known to be on disk"
-    present = f"this is the mission at revision {document.plan.revision}"
-    return f"the file is damaged, and the loss is {which}{why}: {present}"
+    which = Message(
+        "at least {counted} after the first {number}",
+        counted=counted_text(count, "line"),
+        number=number,
+    )
+    why = "" if known else Message(", as by a loss of power, not known to be on disk")
+    present = Message("this is the mission at revision {revision}", revision=document.plan.revision)
+    return Message(
+        "the file is damaged, and the loss is {which}{why}: {present}",
+        which=which,
+        why=why,
+        present=present,
+    )
 
 
 def parse_first_line(path: Path, line: bytes) -> dict[str, Any] | None:
@@ -245,10 +261,14 @@ def parse_first_line(path: Path, line: bytes) -> dict[str, Any] | None:
         return None
     if base.get("version") != VERSION:
         raise Invalid(
-            f"the mission's file has format version {base.get('version')}, but this Argo reads "
-            f"version {VERSION}: open it with the Argo that wrote it"
+            Message(
+                "the mission's file has format version {get}, but this Argo reads version "
+                "{version}: open it with the Argo that wrote it",
+                get=base.get("version"),
+                version=VERSION,
+            )
         )
-    require_own_id(path, str(base.get("id")), path.stem, "copy the mission in the service")
+    require_own_id(path, str(base.get("id")), path.stem, Message("copy the mission in the service"))
     return base
 
 
@@ -280,7 +300,10 @@ def _recover(path: Path, document: PlanDocument, lost: str) -> PlanFile:
         raise _write_error(path, error) from error
     count = len(document.plan.history)
     opened = PlanFile(path, _write_plan(path, document, count, keep_previous=False), document)
-    opened.recovery = Recovery(f"{lost}; the damaged file is now {damaged.name}", damaged.name)
+    opened.recovery = Recovery(
+        Message("{lost}; the damaged file is now {damaged}", lost=lost, damaged=damaged.name),
+        damaged.name,
+    )
     return opened
 
 
@@ -354,9 +377,11 @@ def _open(path: Path, open_file: Callable[[Path], int]) -> int:
     try:
         return open_file(path)
     except FileNotFoundError:
-        raise NotFound(f"{path.name}: there is no such mission") from None
+        raise NotFound(Message("{path}: there is no such mission", path=path.name)) from None
     except OSError as error:
-        raise Unavailable(f"{path.name} can't be opened: {error.strerror}") from error
+        raise Unavailable(
+            Message("{path} can't be opened: {reason}", path=path.name, reason=reason_text(error))
+        ) from error
 
 
 def read_plan_bytes_or_raise(path: Path) -> bytes:
@@ -369,13 +394,19 @@ def read_plan_bytes_or_raise(path: Path) -> bytes:
     try:
         if os.fstat(file).st_size > MAX_BYTES:
             raise Invalid(
-                f"{path.name} is larger than {MAX_BYTES // 1_000_000} MB, the limit for a mission"
+                Message(
+                    "{path} is larger than {max_bytes} MB, the limit for a mission",
+                    path=path.name,
+                    max_bytes=MAX_BYTES // 1000000,
+                )
             )
         parts = []
         while part := os.read(file, 1 << 20):
             parts.append(part)
     except OSError as error:
-        raise Unavailable(f"{path.name} can't be read: {error.strerror}") from error
+        raise Unavailable(
+            Message("{path} can't be read: {reason}", path=path.name, reason=reason_text(error))
+        ) from error
     finally:
         os.close(file)
     return b"".join(parts)
@@ -383,6 +414,10 @@ def read_plan_bytes_or_raise(path: Path) -> bytes:
 
 def _write_error(path: Path, error: OSError) -> Unavailable:
     return Unavailable(
-        f"{path.name} can't be written: {error.strerror}; nothing was changed. Free disk "
-        "space, or choose another folder"
+        Message(
+            "{path} can't be written: {reason}; nothing was changed. Free disk "
+            "space, or choose another folder",
+            path=path.name,
+            reason=reason_text(error),
+        )
     )

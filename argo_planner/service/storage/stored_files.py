@@ -9,7 +9,8 @@ from typing import TypeVar
 
 from pydantic import ValidationError
 
-from argo_compiler.base.errors import NotFound, Unavailable
+from argo_compiler.base.errors import NotFound, Unavailable, reason_text
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_compiler.base.operating_system import NO_LINK_FLAGS
 from argo_env.files.checked_files import damaged, read_checked
@@ -52,27 +53,38 @@ def read_stored(model: type[ModelT], path: Path, remedy: str) -> ModelT:
     try:
         content = read_stored_bytes(path)
     except (FileNotFoundError, NotADirectoryError):
-        raise NotFound(f"{path} does not exist") from None
+        raise NotFound(Message("{path} does not exist", path=path)) from None
     except OSError as error:
-        raise Unavailable(f"{path} can't be read: {error.strerror}; {remedy}") from None
+        raise Unavailable(
+            Message(
+                "{path} can't be read: {reason}; {remedy}",
+                path=path,
+                reason=reason_text(error),
+                remedy=remedy,
+            )
+        ) from None
     try:
         return read_checked(model, content, path, remedy)
     except ValidationError as error:
         field = ".".join(map(str, error.errors(include_url=False)[0]["loc"]))
-        why = f"its `{field}` is not of this version of Argo"
+        why = Message("its `{field}` is not of this version of Argo", field=field)
         raise damaged(path, why, remedy) from None
 
 
 def require_regular_files(folder: Path) -> None:
     """Raise Unavailable if a folder is a link, or has links or pipes inside."""
     if os.path.islink(folder):
-        raise Unavailable(f"{folder} is a link, and links are not followed: move it away")
+        raise Unavailable(
+            Message("{folder} is a link, and links are not followed: move it away", folder=folder)
+        )
     for above, folders, files in os.walk(folder):
         for path in (Path(above, name) for name in (*folders, *files)):
             with suppress(FileNotFoundError):  # a draft that has meanwhile replaced its file
                 mode = path.lstat().st_mode
                 if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
-                    raise Unavailable(f"{path} is a link, or not a regular file: move it away")
+                    raise Unavailable(
+                        Message("{path} is a link, or not a regular file: move it away", path=path)
+                    )
 
 
 def require_own_id(path: Path, stored: str, id: str, remedy: str) -> None:
@@ -82,8 +94,13 @@ def require_own_id(path: Path, stored: str, id: str, remedy: str) -> None:
     """
     if stored != id:
         raise Unavailable(
-            f"{path} was copied or renamed, as the id in it is {stored[:40]}: rename it so, or "
-            f"{remedy}"
+            Message(
+                "{path} was copied or renamed, as the id in it is {stored}: rename it so, "
+                "or {remedy}",
+                path=path,
+                stored=stored[:40],
+                remedy=remedy,
+            )
         )
 
 

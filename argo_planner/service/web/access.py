@@ -12,6 +12,7 @@ from pathlib import Path
 from urllib.parse import unquote
 
 from argo_compiler.base.errors import ArgoError, Invalid, Unavailable, reason_text
+from argo_compiler.base.message import Listing, Message
 from argo_compiler.base.operating_system import NO_LINK_FLAGS
 from argo_planner.service.core.plan_limits import require_displayable_name
 from argo_planner.service.storage.stored_files import read_stored_bytes
@@ -85,7 +86,11 @@ class Visitor:
         """Raise AccessDenied if the visitor's role does not include `role`."""
         if not self.role.includes(role):
             raise AccessDenied(
-                f"this needs the role `{role}`, but yours is `{self.role}`: ask for another token"
+                Message(
+                    "this needs the role `{role}`, but yours is `{role_2}`: ask for another token",
+                    role=role,
+                    role_2=self.role,
+                )
             )
 
 
@@ -126,7 +131,7 @@ def identify_visitor(
         name = token.name or "somebody"
         return Visitor(token.role, name, token.name is not None, token.cookie)
     author = unquote(stated)
-    require_displayable_name(author, "the author of this request")
+    require_displayable_name(author, Message("the author of this request"))
     return Visitor(token.role, author, key=token.cookie)
 
 
@@ -140,27 +145,46 @@ def read_tokens(path: Path) -> tuple[AccessToken, ...]:
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        raise Unavailable(f"{path} can't be read as a token file: {reason_text(error)}") from None
+        raise Unavailable(
+            Message(
+                "{path} can't be read as a token file: {error}", path=path, error=reason_text(error)
+            )
+        ) from None
     tokens = []
     for number, line in enumerate(text.splitlines(), start=1):
         words = line.partition("#")[0].split(maxsplit=2)
         if not words:
             continue
-        where = f"{path}, line {number}"
+        where = Message("{path}, line {number}", path=path, number=number)
         role = words[1] if len(words) > 1 else AccessRole.OPERATE
         if role not in list(AccessRole):
             raise Invalid(
-                f"{where}: there is no role `{role}`; choose from {', '.join(AccessRole)}"
+                Message(
+                    "{where}: there is no role `{role}`; choose from {accessrole}",
+                    where=where,
+                    role=role,
+                    accessrole=Listing(AccessRole),
+                )
             )
         name = words[2].strip() if len(words) > 2 else None
         if name is not None:
-            require_displayable_name(name, f"the owner of the token in {where}")
+            require_displayable_name(
+                name, Message("the owner of the token in {where}", where=where)
+            )
         tokens.append(AccessToken(validate_secret(words[0], where), AccessRole(role), name))
     if not tokens:
-        raise Invalid(f"{path} has no tokens: write one per line, such as `SECRET plan Ann`")
+        raise Invalid(
+            Message(
+                "{path} has no tokens: write one per line, such as `SECRET plan Ann`", path=path
+            )
+        )
     if len({token.secret for token in tokens}) < len(tokens):
         raise Invalid(
-            f"{path} has the same token on two lines: remove one of them, or give it another token"
+            Message(
+                "{path} has the same token on two lines: remove one of them, or give it "
+                "another token",
+                path=path,
+            )
         )
     return tuple(tokens)
 
@@ -172,9 +196,17 @@ def validate_secret(secret: str, where: str) -> str:
     place of the secret, for the message.
     """
     if len(secret) < MIN_TOKEN_LENGTH:
-        raise Invalid(f"{where}: a token needs at least {MIN_TOKEN_LENGTH} characters")
+        raise Invalid(
+            Message(
+                "{where}: a token needs at least {min_token_length} characters",
+                where=where,
+                min_token_length=MIN_TOKEN_LENGTH,
+            )
+        )
     if not secret.isascii() or not all(c.isalnum() or c in "-._~" for c in secret):
-        raise Invalid(f"{where}: a token may have only letters, digits and `-._~`")
+        raise Invalid(
+            Message("{where}: a token may have only letters, digits and `-._~`", where=where)
+        )
     return secret
 
 
@@ -196,7 +228,11 @@ def load_or_make_secret(folder: Path) -> str:
         return validate_secret(secret.strip(), str(path))
     except (OSError, UnicodeDecodeError) as error:
         raise Unavailable(
-            f"{path}: the token can't be stored: {reason_text(error)}; choose another folder"
+            Message(
+                "{path}: the token can't be stored: {error}; choose another folder",
+                path=path,
+                error=reason_text(error),
+            )
         ) from None
 
 

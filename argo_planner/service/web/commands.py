@@ -8,6 +8,7 @@ from fastapi import Response
 from pydantic import Discriminator, Field
 
 from argo_compiler.base.errors import NotFound
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_compiler.script.write.reading import MissionReading
 from argo_planner.service.core.commands import (
@@ -82,7 +83,9 @@ async def write_script(
     room = await service.rooms.open(id)
     read = await service.scripts.import_upload("script", _parts(given.script), visitor.key)
     imported = read.require_mission()
-    command = ReplacePlan.model_construct(id=given.id, mission=imported.mission, about="a script")
+    command = ReplacePlan.model_construct(
+        id=given.id, mission=imported.mission, about=Message("a script")
+    )
     answer = await execute_command(room, command, visitor.author, made_on)
     revision = room.document.plan.revision
     notes = (imported.diagnostics, given.script)

@@ -10,9 +10,11 @@ from urllib.parse import parse_qsl, quote, urlencode
 
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import RedirectResponse, Response
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.types import ASGIApp, Receive, Scope, Send
+from starlette.types import Message as AsgiMessage
 
 from argo_compiler.base.errors import ArgoError, Unavailable
+from argo_compiler.base.message import Message
 from argo_planner.service.web.access import AccessToken, TokenBook, TokenMissing, identify_visitor
 from argo_planner.service.web.problems import (
     Problem,
@@ -31,9 +33,9 @@ from argo_planner.service.web.upload_limits import (
 LOOPBACK = ("localhost", "127.0.0.1", "[::1]")
 
 _POLICY = (
-    "default-src 'self'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
-    "connect-src 'self'; worker-src 'self' blob:; object-src 'none'; base-uri 'none'; "
-    "form-action 'none'; frame-ancestors 'none'"
+    "default-src 'self'; script-src 'self'; style-src 'self'; img-src 'self' "
+    "data: blob:; connect-src 'self'; worker-src 'self' blob:; object-src "
+    "'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
 _HEADERS = {
     "content-security-policy": _POLICY,
@@ -81,8 +83,10 @@ class Guard:
             if token is None:
                 refused = problem_from_error(
                     TokenMissing(
-                        "the token is missing or unknown: open the address that the service "
-                        "printed when it started, or send `Authorization: Bearer TOKEN`"
+                        Message(
+                            "the token is missing or unknown: open the address that the service "
+                            "printed when it started, or send `Authorization: Bearer TOKEN`"
+                        )
                     )
                 )
             elif in_address:
@@ -98,8 +102,11 @@ class Guard:
         if refused is None and self._under_way[scope["visitor"].key] >= MOST_REQUESTS:
             refused = problem_from_error(
                 Unavailable(
-                    f"{MOST_REQUESTS} requests with this token are under way: try again when some "
-                    "of them have ended"
+                    Message(
+                        "{most_requests} requests with this token are under way: try again when "
+                        "some of them have ended",
+                        most_requests=MOST_REQUESTS,
+                    )
                 )
             )
         if refused is not None:
@@ -125,7 +132,10 @@ class Guard:
         except TimeoutError:
             if not limit.expired():  # an error of the application
                 raise
-            late = f"the request was not answered within {REQUEST_TIMEOUT:.0f} s: try again later"
+            late = Message(
+                "the request was not answered within {request_timeout:.0f} s: try again later",
+                request_timeout=REQUEST_TIMEOUT,
+            )
             refused = None if body.answered else problem_from_error(Unavailable(late))
         if body.refusal is not None:
             refused = problem_from_error(body.refusal)
@@ -139,23 +149,24 @@ class Guard:
         if len(hosts) != 1 or not (
             "*" in self._settings.hosts or name.lower() in self._settings.hosts
         ):
-            reason = (
-                "the service does not accept this host name (`Host`): open the address that it "
-                "printed when it started, or allow the name with `argo serve --allow-host`"
+            reason = Message(
+                "the service does not accept this host name (`Host`): open the address "
+                "that it printed when it started, or allow the name with `argo serve "
+                "--allow-host`"
             )
             return plain_problem(HTTPStatus.FORBIDDEN, "foreign-host", reason)
         origin = headers.get("origin")
         if origin is not None and origin not in self._settings.origins:
             if origin.lower() not in (f"http://{hosts[0].lower()}", f"https://{hosts[0].lower()}"):
-                reason = (
-                    "pages of another origin may not use the service (`Origin`): allow the address "
-                    "of a proxy with `argo serve --origin`"
+                reason = Message(
+                    "pages of another origin may not use the service (`Origin`): allow the "
+                    "address of a proxy with `argo serve --origin`"
                 )
                 return plain_problem(HTTPStatus.FORBIDDEN, "foreign-origin", reason)
         elif origin is None and headers.get("sec-fetch-site") in ("cross-site", "same-site"):
             safe = scope["type"] == "http" and scope["method"] == "GET"
             if not (safe and headers.get("sec-fetch-mode") == "navigate"):
-                reason = "pages of another site may not use the service (`Sec-Fetch-Site`)"
+                reason = Message("pages of another site may not use the service (`Sec-Fetch-Site`)")
                 return plain_problem(HTTPStatus.FORBIDDEN, "foreign-origin", reason)
         return None
 
@@ -217,12 +228,20 @@ def _check_content_length(scope: Scope, headers: Headers) -> Problem | None:
 
 def _too_large(scope: Scope) -> TooLarge:
     megabytes = max_body_bytes(scope["path"]) // 1_000_000
-    return TooLarge(f"the request has more than {megabytes} MB: send at most {megabytes} MB")
+    return TooLarge(
+        Message(
+            "the request has more than {megabytes} MB: send at most {megabytes} MB",
+            megabytes=megabytes,
+        )
+    )
 
 
 def _too_slow() -> ArgoError:
     return Unavailable(
-        f"no part of the request's body arrived for {PART_TIMEOUT:.0f} s: send it again"
+        Message(
+            "no part of the request's body arrived for {part_timeout:.0f} s: send it again",
+            part_timeout=PART_TIMEOUT,
+        )
     )
 
 
@@ -241,7 +260,7 @@ class _LimitedBody:
         self.refusal: ArgoError | None = None
         """why the rest of the body was not read, unless a response had begun"""
 
-    async def receive(self) -> Message:
+    async def receive(self) -> AsgiMessage:
         try:
             # After the whole body, this waits until the client disconnects.
             async with asyncio.timeout(None if self._complete else PART_TIMEOUT):
@@ -267,7 +286,7 @@ class _LimitedBody:
         answer that the request is bad, which is dropped here.
         """
 
-        async def send_unless_refused(message: Message) -> None:
+        async def send_unless_refused(message: AsgiMessage) -> None:
             self.answered = True
             if self.refusal is None:
                 await send(message)
@@ -282,7 +301,7 @@ def _add_headers(scope: Scope, send: Send) -> Send:
     """
     api = scope["path"].startswith("/api/")
 
-    async def send_with_headers(message: Message) -> None:
+    async def send_with_headers(message: AsgiMessage) -> None:
         if message["type"] == "http.response.start":
             headers = MutableHeaders(scope=message)
             for name, value in _HEADERS.items():

@@ -7,6 +7,7 @@ from pydantic import Field
 
 from argo_compiler.base.errors import Invalid, NotFound
 from argo_compiler.base.extensions import installed_names
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_compiler.reorder.mission_problem import require_known
 from argo_compiler.reorder.requirements import Requirements
@@ -73,7 +74,9 @@ async def start_order_search(
     plan = (await open_valid_plan(service, id)).plan
     known = installed_names("argo.solvers")
     if unknown := [name for name in asked.solvers if name not in known]:
-        raise Invalid(f"no installed package offers the solver `{unknown[0]}`")
+        raise Invalid(
+            Message("no installed package offers the solver `{unknown}`", unknown=unknown[0])
+        )
     try:
         require_known(plan.mission, asked.requirements)
     except NotFound as error:  # 404 would be about the address

@@ -10,6 +10,7 @@ from fastapi import APIRouter, Query, WebSocket, WebSocketDisconnect
 from pydantic import ValidationError
 
 from argo_compiler.base.errors import ArgoError, Unavailable
+from argo_compiler.base.message import Message
 from argo_planner.service.rooms.mailbox import Mailbox, MailboxClosed
 from argo_planner.service.rooms.messages import SelectTasks
 from argo_planner.service.web.access import AccessRole, Visitor
@@ -77,7 +78,12 @@ async def accept_socket(
     try:
         visitor.require(role)
         if getattr(socket.app.state, "sockets", 0) >= MAX_SOCKETS:
-            raise Unavailable(f"{MAX_SOCKETS} pages are open already: close some of them")
+            raise Unavailable(
+                Message(
+                    "{max_sockets} pages are open already: close some of them",
+                    max_sockets=MAX_SOCKETS,
+                )
+            )
         if required_plan is not None:
             await socket.app.state.service.rooms.open(required_plan)
     except ArgoError as error:
@@ -111,7 +117,11 @@ async def exchange_messages(
         await _finish_close(socket.close(code, str(closed)))
     except ValidationError as error:
         fault = error.errors(include_url=False, include_input=False)[0]
-        await _finish_close(socket.close(CLOSE_INVALID, f"invalid message: {fault['msg']}"[:100]))
+        await _finish_close(
+            socket.close(
+                CLOSE_INVALID, Message("invalid message: {fault}", fault=fault["msg"])[:100]
+            )
+        )
     finally:
         state.sockets -= 1
         for task in tasks:

@@ -13,6 +13,7 @@ from fastapi import Path, Query, Request, Response
 from pydantic import Field
 
 from argo_compiler.base.errors import NotFound
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError, has_errors
@@ -171,7 +172,8 @@ async def import_a_mission(
     service: Service,
     visitor: Planner,
     filename: Annotated[
-        str, Query(max_length=200, description="name of the file; its ending shows the format")
+        str,
+        Query(max_length=200, description="name of the file; its ending shows the format"),
     ],
     name: Annotated[str | None, Query(max_length=1_000)] = None,
     start_area: Annotated[int | None, Query(ge=-1000, le=1000)] = None,
@@ -294,7 +296,8 @@ async def export_a_mission(
     _: Viewer,
     id: PlanId,
     format: Annotated[
-        str, Path(max_length=40, description="`script`, `json`, or a format of `argo export`")
+        str,
+        Path(max_length=40, description="`script`, `json`, or a format of `argo export`"),
     ],
 ) -> Response:
     """Return the mission as `format` states: a script, JSON, or the format of another tool."""
@@ -324,8 +327,12 @@ async def list_revisions(
     revisions = plan.revisions_after(since)
     if revisions is None:
         raise NotFound(
-            f"the changes since revision {since} are not known: read the mission, which is at "
-            f"revision {plan.revision}"
+            Message(
+                "the changes since revision {since} are not known: read the mission, which "
+                "is at revision {revision}",
+                since=since,
+                revision=plan.revision,
+            )
         )
     return json_response(RevisionList.model_construct(revisions=revisions), revision=plan.revision)
 

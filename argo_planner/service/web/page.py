@@ -13,6 +13,7 @@ from fastapi import APIRouter, Request, Response
 from fastapi.responses import HTMLResponse
 
 from argo_compiler.base.errors import NotFound
+from argo_compiler.base.message import Message
 
 router = APIRouter(include_in_schema=False)
 
@@ -68,7 +69,9 @@ async def show_asset(request: Request, name: str) -> Response:
     """
     file = _load_files().get(f"assets/{name}")
     if file is None:
-        raise NotFound(f"the page has no file {name[:80]!r}: load the page again")
+        raise NotFound(
+            Message("the page has no file {name}: load the page again", name=repr(name[:80]))
+        )
     media = mimetypes.guess_type(name)[0] or "application/octet-stream"
     return file.response(request, media, _IMMUTABLE)
 

@@ -24,6 +24,7 @@ from argo_compiler.base.errors import (
     Unreachable,
 )
 from argo_compiler.base.extensions import package_failure
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_compiler.base.wording import Text, Wording, wording_field
 from argo_compiler.diagnostics import Diagnostic, DiagnosticError
@@ -152,7 +153,7 @@ def install_problem_handlers(app: FastAPI) -> None:
             _log.error("%s", failure, exc_info=error)
             return problem_response(problem_from_error(failure))
         _log.error("a defect of Argo", exc_info=error)
-        detail = (
+        detail = Message(
             "this is a defect of Argo: please report it with the traceback in the service's log"
         )
         return problem_response(plain_problem(HTTPStatus.INTERNAL_SERVER_ERROR, "defect", detail))
@@ -184,7 +185,7 @@ def _invalid(error: ValidationException) -> Problem:
     faults = error.errors()
     fault = faults[0]
     place = ".".join(str(part) for part in fault["loc"])[:200]
-    more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
+    more = Message(" (and {count} more)", count=len(faults) - 1) if len(faults) > 1 else ""
     detail = f"{place}: {fault['msg']}{more}"
     return plain_problem(HTTPStatus.UNPROCESSABLE_ENTITY, "invalid", detail)
 

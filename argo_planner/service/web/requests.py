@@ -15,6 +15,7 @@ from pydantic import Field
 
 from argo_compiler.base.errors import Invalid
 from argo_compiler.base.extensions import InstalledExtension
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_env.planning.opening import OpenedSite
 from argo_planner.service.drafts.drafts import Drafts
@@ -33,8 +34,8 @@ from argo_planner.service.world.obstacle_store import ObstacleStore
 JSON = "application/json"
 # A report is one file that contains its styles and pictures; it runs no script and loads nothing.
 REPORT_POLICY = {
-    "content-security-policy": "default-src 'none'; style-src 'unsafe-inline'; img-src data:; "
-    "frame-ancestors 'none'"
+    "content-security-policy": "default-src 'none'; style-src 'unsafe-inline'; "
+    "img-src data:; frame-ancestors 'none'"
 }
 T = TypeVar("T")
 
@@ -141,7 +142,12 @@ def _parse_if_match(
     if if_match.strip() == "*":
         return None
     if not (match := re.fullmatch(r'\s*"(\d{1,12})"\s*', if_match, re.ASCII)):
-        raise Invalid(f'`If-Match: {if_match[:40]}` is not a revision: write it as `"12"`')
+        raise Invalid(
+            Message(
+                '`If-Match: {if_match}` is not a revision: write it as `"12"`',
+                if_match=if_match[:40],
+            )
+        )
     return int(match[1])
 
 
@@ -176,7 +182,10 @@ def created_response(
 
 
 _LOCATION = {
-    "Location": {"description": "address of what was created", "schema": {"type": "string"}}
+    "Location": {
+        "description": "address of what was created",
+        "schema": {"type": "string"},
+    }
 }
 
 

@@ -7,6 +7,7 @@ from fastapi import APIRouter, Path, Query, Response, WebSocket
 from pydantic import Field
 
 from argo_compiler.base.errors import Invalid, NotFound
+from argo_compiler.base.message import Listing, Message
 from argo_compiler.base.model import Model
 from argo_compiler.il import Mission
 from argo_env.faults.kinds import AnyFault
@@ -211,7 +212,13 @@ async def read_run_report(
     """Return report.html, report.json or site.png of a run that has ended."""
     media = {PAGE: "text/html", RECORD: "application/json", "site.png": "image/png"}
     if file not in media:
-        raise NotFound(f"the report has no file {file!r}; it has: {', '.join(media)}")
+        raise NotFound(
+            Message(
+                "the report has no file {file}; it has: {media}",
+                file=repr(file),
+                media=Listing(media),
+            )
+        )
     content = await service.runs.read_report_file(run, file)
     headers = REPORT_POLICY if file == PAGE else None
     return Response(content, media_type=media[file], headers=headers)
@@ -235,7 +242,11 @@ async def read_picture(
         content = read_stored_bytes(path)
     except OSError:
         raise NotFound(
-            f"run {run} has no picture of checkpoint {checkpoint} at this time"
+            Message(
+                "run {run} has no picture of checkpoint {checkpoint} at this time",
+                run=run,
+                checkpoint=checkpoint,
+            )
         ) from None
     headers = {"cache-control": "private, max-age=31536000, immutable"}
     return Response(content, 200, headers, "image/png")
@@ -302,5 +313,10 @@ def _require_possible(run: RunAsked, mission: Mission, site: OpenedSite) -> None
 def _require_in(what: str, given: Iterable[object], known: Sequence[object]) -> None:
     if unknown := [f"`{one}`" for one in given if one not in known]:
         raise Invalid(
-            f"unknown {what} {', '.join(unknown)}: choose from {', '.join(map(str, known))}"
+            Message(
+                "unknown {what} {unknown}: choose from {names}",
+                what=what,
+                unknown=Listing(unknown),
+                names=Listing(map(str, known)),
+            )
         )

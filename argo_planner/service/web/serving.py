@@ -12,7 +12,8 @@ from pathlib import Path
 
 import uvicorn
 
-from argo_compiler.base.errors import Unavailable
+from argo_compiler.base.errors import Unavailable, reason_text
+from argo_compiler.base.message import Message
 from argo_env.planning.opening import OpenedSite
 from argo_planner.service.drafts.drafts import Drafts
 from argo_planner.service.evaluations.evaluations import Evaluations
@@ -124,8 +125,13 @@ def listen(host: str, port: int) -> socket.socket:
         return socket.create_server((host, port), family=family, backlog=1024)
     except OSError as error:
         raise Unavailable(
-            f"the service can't listen at {host}:{port}: {error.strerror}; choose another address "
-            "or port"
+            Message(
+                "the service can't listen at {host}:{port}: {reason}; choose another "
+                "address or port",
+                host=host,
+                port=port,
+                reason=reason_text(error),
+            )
         ) from None
 
 

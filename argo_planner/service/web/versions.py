@@ -4,6 +4,7 @@ from typing import Annotated
 
 from fastapi import Path, Response
 
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_planner.service.core.commands import CommandId, ReplaceFrom, ReplacePlan
 from argo_planner.service.core.document import PlanVersion
@@ -112,12 +113,14 @@ async def restore_version(
 ) -> Response:
     """Replace the present mission by a version, as a command that can be undone."""
     room = await service.rooms.open(id)
-    request = ReplaceFrom(id=command.id, kept_as=f"version {number}")
+    request = ReplaceFrom(id=command.id, kept_as=Message("version {number}", number=number))
     # This precedes the search for the version, which may have been deleted since.
     if (again := room.earlier_answer(request, visitor.author)) is not None:
         return json_response(again, revision=again.newest)
     version = room.document.version(number)
     replaced = ReplacePlan.model_construct(
-        id=command.id, mission=version.mission, about=f"version {version.name}"
+        id=command.id,
+        mission=version.mission,
+        about=Message("version {version}", version=version.name),
     )
     return await execute_command(room, replaced, visitor.author, made_on, request)

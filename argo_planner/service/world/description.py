@@ -6,7 +6,9 @@ from collections.abc import Sequence
 
 from argo_compiler.base.catalog import CheckpointKind, Interval
 from argo_compiler.base.errors import ArgoError
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model, Pose
+from argo_compiler.base.wording import Text, Worded, Wording, wording_field
 from argo_env.navigation import Navigator
 from argo_env.navigation.raster import CELL
 from argo_env.navigation.stencil import HEADINGS, heading_angle
@@ -41,7 +43,7 @@ class DescribedFloor(Model):
     """poses of a patrol of the floor, in their order"""
 
 
-class DescribedCheckpoint(Model):
+class DescribedCheckpoint(Worded):
     """Checkpoint, with the pose that it is read from."""
 
     id: int
@@ -59,8 +61,9 @@ class DescribedCheckpoint(Model):
     stands: Pose | None = None
     """pose from which the robot reads it, coming from the dock of the lowest number; it may take
     another one if it comes from elsewhere; None: the robot can't read it"""
-    problem: str | None = None
+    problem: Text | None = None
     """why the robot can't read it; None: it can"""
+    problem_wording: Wording | None = wording_field("problem")
 
 
 class DescribedDock(Model):
@@ -170,7 +173,7 @@ def _floor(floor: FloorSpec, storey: float, patrol: tuple[Pose, ...]) -> Describ
     x0, y0, x1, y1 = zip(*walkways, strict=True)
     return DescribedFloor(
         number=floor.number,
-        name=f"Floor {floor.number}",
+        name=Message("Floor {number}", number=floor.number),
         z=floor.z,
         storey=storey,
         bounds=(min(x0), min(y0), max(x1), max(y1)),

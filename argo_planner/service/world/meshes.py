@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.base.catalog import CheckpointKind
+from argo_compiler.base.message import Message
 from argo_env.files import resources
 from argo_env.planning.opening import OpenedSite
 from argo_env.robot.robot_model import Quaternion, RobotModel, Visual, read_model
@@ -67,7 +68,7 @@ def floor_mesh(site: OpenedSite, floor: int, detail: Detail = Detail.FULL) -> by
     name = f"mesh-{_FORMAT}-{floor}-{detail}"
 
     def make_mesh() -> dict[str, NDArray[np.uint8]]:
-        glb = _floor_glb(storeys(site.site)[floor], f"floor {floor}", detail)
+        glb = _floor_glb(storeys(site.site)[floor], Message("floor {floor}", floor=floor), detail)
         return {"glb": np.frombuffer(glb, np.uint8)}
 
     return site.parts.load_or_make(name, make_mesh)["glb"].tobytes()

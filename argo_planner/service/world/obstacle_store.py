@@ -5,7 +5,8 @@ from pathlib import Path
 
 from pydantic import Field
 
-from argo_compiler.base.errors import NotFound, Unavailable
+from argo_compiler.base.errors import NotFound, Unavailable, reason_text
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_compiler.base.operating_system import write_draft_and_replace
 from argo_env.files.checked_files import checked_json
@@ -14,7 +15,7 @@ from argo_planner.service.storage.stored_files import read_stored
 from argo_planner.service.world.obstacles import Obstacle
 
 _FILE = "obstacles.json"
-_REMEDY = (
+_REMEDY = Message(
     "restore the file from a copy, or delete it; if you have changed it, remove its `checksum`"
 )
 
@@ -56,6 +57,10 @@ class ObstacleStore:
         try:
             write_draft_and_replace(draft, self._path, content)
         except OSError as error:
-            raise Unavailable(f"{self._path} can't be written: {error.strerror}") from error
+            raise Unavailable(
+                Message(
+                    "{path} can't be written: {reason}", path=self._path, reason=reason_text(error)
+                )
+            ) from error
         self.present = changed
         return changed

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from pydantic import Field, field_validator
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model, Pose
 from argo_env.navigation import Blockage, Navigator
 from argo_env.navigation.closed_areas import LAYER
@@ -49,13 +50,13 @@ class Obstacle(Model):
     @classmethod
     def _check_text(cls, text: str) -> str:
         if text:
-            _raise_as_value_error(require_displayable_name, text, "the obstacle")
+            _raise_as_value_error(require_displayable_name, text, Message("the obstacle"))
         return text
 
     @field_validator("pose")
     @classmethod
     def _check_pose(cls, pose: Pose) -> Pose:
-        _raise_as_value_error(require_pose_within_limits, pose, "the obstacle")
+        _raise_as_value_error(require_pose_within_limits, pose, Message("the obstacle"))
         return pose
 
     def to_solid(self) -> Box:
@@ -79,11 +80,21 @@ def require_pose_within_limits(pose: Pose, what: str) -> None:
     """
     if max(abs(pose.x), abs(pose.y), abs(pose.z)) > MAX_COORDINATE:
         raise Invalid(
-            f"{what} is more than {MAX_COORDINATE:g} m from the origin of the site: give smaller "
-            "coordinates"
+            Message(
+                "{what} is more than {max_coordinate:g} m from the origin of the site: "
+                "give smaller coordinates",
+                what=what,
+                max_coordinate=MAX_COORDINATE,
+            )
         )
     if abs(pose.yaw) > MAX_YAW:
-        raise Invalid(f"{what} has a yaw of {pose.yaw:g} rad: give a yaw from -pi to pi")
+        raise Invalid(
+            Message(
+                "{what} has a yaw of {yaw:g} rad: give a yaw from -pi to pi",
+                what=what,
+                yaw=pose.yaw,
+            )
+        )
 
 
 def with_obstacles(site: OpenedSite, obstacles: Sequence[Obstacle]) -> OpenedSite:
@@ -97,18 +108,32 @@ def with_obstacles(site: OpenedSite, obstacles: Sequence[Obstacle]) -> OpenedSit
     """
     if len(obstacles) > MOST_OBSTACLES:
         raise Invalid(
-            f"{len(obstacles)} obstacles are too many: at most {MOST_OBSTACLES} are possible"
+            Message(
+                "{count} obstacles are too many: at most {most_obstacles} are possible",
+                count=len(obstacles),
+                most_obstacles=MOST_OBSTACLES,
+            )
         )
     ids = [obstacle.id for obstacle in obstacles]
     if duplicate := next((id for id in ids if ids.count(id) > 1), None):
-        raise Invalid(f"two obstacles have the id `{duplicate}`: give each an id of its own")
+        raise Invalid(
+            Message(
+                "two obstacles have the id `{duplicate}`: give each an id of its own",
+                duplicate=duplicate,
+            )
+        )
     return _with_obstacles(site, tuple(obstacles)) if obstacles else site
 
 
 @lru_cache(maxsize=4)  # each holds some 10 MB
 def _with_obstacles(site: OpenedSite, obstacles: tuple[Obstacle, ...]) -> OpenedSite:
     elements = [
-        Element(f"obstacle {obstacle.id}", Role.STRUCTURE, (obstacle.to_solid(),), "brick")
+        Element(
+            Message("obstacle {id}", id=obstacle.id),
+            Role.STRUCTURE,
+            (obstacle.to_solid(),),
+            "brick",
+        )
         for obstacle in obstacles
     ]
     navigator = site.navigator
@@ -128,7 +153,9 @@ def obstacle_blockages(obstacle: Obstacle, navigator: Navigator) -> list[Blockag
     rects = _covering_rects(obstacle)
     levels = _blocked_levels(obstacle, rects, navigator)
     name = obstacle.name or obstacle.id
-    return [Blockage(rect, z, f"obstacle `{name}`") for z in levels for rect in rects]
+    return [
+        Blockage(rect, z, Message("obstacle `{name}`", name=name)) for z in levels for rect in rects
+    ]
 
 
 def _blocked_levels(obstacle: Obstacle, rects: Sequence[Rect], navigator: Navigator) -> list[float]:

@@ -10,8 +10,10 @@ from itertools import pairwise
 from argo_compiler.analysis import Leg, NoPath
 from argo_compiler.base.catalog import Catalog
 from argo_compiler.base.errors import ArgoError, Invalid, NotFound
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model, Pose
 from argo_compiler.base.quantity_text import rounded_down
+from argo_compiler.base.wording import Text, Worded, Wording, wording_field
 from argo_compiler.checks import check
 from argo_compiler.diagnostics import DiagnosticError, has_errors
 from argo_compiler.il import Action, Mission, OnFailure, Task
@@ -33,7 +35,7 @@ MOST_WAYS = 20_000
 _DIGITS = 4  # decimal places of all numbers
 
 
-class PreviewedWay(Model):
+class PreviewedWay(Worded):
     """Path to a pose, and the action there."""
 
     points: tuple[tuple[float, float, float, float, float], ...] = ()
@@ -51,8 +53,9 @@ class PreviewedWay(Model):
     """energy for the path and the action, in Wh"""
     end: Pose | None = None
     """pose of the robot at the end; None: there is no path"""
-    problem: str | None = None
+    problem: Text | None = None
     """why there is no path; None: there is one"""
+    problem_wording: Wording | None = wording_field("problem")
 
 
 class WayKind(StrEnum):
@@ -93,10 +96,12 @@ class PreviewedMission(Model):
     """sum of all ascents of the default paths, in m"""
     energy: float = 0.0
     """energy for the default paths, their actions and waits, in Wh"""
-    at_least: tuple[str, ...] = ()
+    at_least: tuple[Text, ...] = ()
     """why the mission may take more than these totals; empty: it takes exactly these"""
-    problems: tuple[str, ...] = ()
+    at_least_wording: tuple[Wording | None, ...] = wording_field("at_least")
+    problems: tuple[Text, ...] = ()
     """why tasks can't be reached"""
+    problems_wording: tuple[Wording | None, ...] = wording_field("problems")
     complete: bool = True
     """whether `ways` has all paths; False: it has only the first MOST_WAYS"""
 
@@ -113,11 +118,11 @@ def preview_path(
         Invalid: A pose is too far away for any site, or the task is a START task.
         DiagnosticError: The task itself has an error.
     """
-    require_pose_within_limits(start, "the start")
+    require_pose_within_limits(start, Message("the start"))
     if isinstance(goal, Task):
         _require_sound(goal, site.catalog)
     else:
-        require_pose_within_limits(goal, "the goal")
+        require_pose_within_limits(goal, Message("the goal"))
     return _PathPreviewer(site, obstacles).preview_path(start, goal)
 
 
@@ -189,7 +194,7 @@ class _PathPreviewer:
             return PreviewedWay(time=0.0, points=(point,), end=start)
         try:
             if task.pose is not None:
-                require_pose_within_limits(task.pose, "its pose")
+                require_pose_within_limits(task.pose, Message("its pose"))
             leg = self.travel.leg_with_action(start, task, task.velocity)
             if isinstance(leg, NoPath):
                 return PreviewedWay(problem=_problem_text(goal, leg.reason))
@@ -227,18 +232,25 @@ def _require_sound(task: Task, catalog: Catalog) -> None:
     """
     if task.action is Action.START:
         raise Invalid(
-            f"task '{task.name}' only states where a mission begins: no path can lead there"
+            Message(
+                "task '{task}' only states where a mission begins: no path can lead there",
+                task=task.name,
+            )
         )
     if task.pose is not None:
-        require_pose_within_limits(task.pose, f"the pose of task '{task.name}'")
+        require_pose_within_limits(task.pose, Message("the pose of task '{task}'", task=task.name))
     no_successors = {"transitions": (), "on_failure": OnFailure.CONTINUE, "failure_target": None}
     alone = task.model_copy(update={**no_successors, "group": ""})
     if has_errors(diagnostics := check(Mission(tasks=(alone,)), catalog)):
-        raise DiagnosticError(f"task '{task.name}'", diagnostics)
+        raise DiagnosticError(Message("task '{task}'", task=task.name), diagnostics)
 
 
 def _problem_text(goal: Task | Pose, reason: str) -> str:
-    return reason if isinstance(goal, Pose) else f"task '{goal.name}': {reason}"
+    return (
+        reason
+        if isinstance(goal, Pose)
+        else Message("task '{goal}': {reason}", goal=goal.name, reason=reason)
+    )
 
 
 def _default_order(tasks: dict[str, Task], first: str) -> list[str]:
@@ -257,10 +269,15 @@ def _find_target(tasks: dict[str, Task], name: str) -> Task:
     Raises NotFound if there is none, Invalid for a START task.
     """
     if name not in tasks:
-        raise NotFound(f"the mission has no task '{name}', but another task leads to it")
+        raise NotFound(
+            Message("the mission has no task '{name}', but another task leads to it", name=name)
+        )
     if tasks[name].action is Action.START:
         raise Invalid(
-            f"task '{name}' only states where the mission begins, but another task leads to it"
+            Message(
+                "task '{name}' only states where the mission begins, but another task leads to it",
+                name=name,
+            )
         )
     return tasks[name]
 
@@ -313,13 +330,15 @@ def _uncertainties(
     """Yield the reasons why the mission may take more than the totals of its default paths."""
     for name in order:
         if waits[name] is None:
-            yield f"task '{name}' waits for something whose time is not known"
+            yield Message("task '{name}' waits for something whose time is not known", name=name)
         window = tasks[name].window
         if window is not None and window.earliest > 0:
             earliest = rounded_time_text(window.earliest, rounded_down)
-            yield f"task '{name}' may not begin before {earliest}"
+            yield Message(
+                "task '{name}' may not begin before {earliest}", name=name, earliest=earliest
+            )
     for path in paths:
         if path.way.problem:
-            yield f"there is no path to task '{path.target}'"
+            yield Message("there is no path to task '{target}'", target=path.target)
     if default_target(tasks[order[-1]]) is not None:
-        yield "the default path has no end: it returns to an earlier task"
+        yield Message("the default path has no end: it returns to an earlier task")

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.message import Message
 from argo_env.navigation import Navigator
 from argo_env.navigation.graphs import shortest_path_costs
 from argo_env.navigation.lattice import LEVEL, MARGIN, rise_front_over_rear
@@ -131,7 +132,9 @@ def read_standing_map(content: bytes) -> StandingMap:
             np.frombuffer(body, "<i2", count, count).reshape(shape),
         )
     except (ValueError, KeyError, TypeError, IndexError, zlib.error) as error:
-        raise Invalid(f"the content is not a map of where a robot can stand: {error}") from error
+        raise Invalid(
+            Message("the content is not a map of where a robot can stand: {error}", error=error)
+        ) from error
 
 
 def standing_map(
@@ -146,8 +149,12 @@ def standing_map(
     z = site.site.floor(floor).z
     if not 0 <= heading_index < HEADINGS:
         raise Invalid(
-            f"there is no heading {heading_index}: give a number from 0 (along the x axis) to "
-            f"{HEADINGS - 1}, counter-clockwise"
+            Message(
+                "there is no heading {heading_index}: give a number from 0 (along the x "
+                "axis) to {headings}, counter-clockwise",
+                heading_index=heading_index,
+                headings=HEADINGS - 1,
+            )
         )
     codes = _ground_codes(site, tuple(obstacles))
     surface = site.navigator.surface

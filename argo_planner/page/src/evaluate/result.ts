@@ -8,6 +8,7 @@ import { faultsByCase, givenFields } from "../model/faults";
 import { faultSummary } from "../run/fault-words";
 import { mayPlan } from "../state/session";
 import { t } from "../texts";
+import { said } from "../texts/messages";
 import { options, valueOf } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { dateAndTime, figure, percent, seconds } from "../ui/figures";
@@ -26,9 +27,6 @@ import {
 } from "./evaluation";
 
 const [WIDTH, HEIGHT] = [300, 110];
-/** The service's message about an evaluation that ended because the service ended. */
-const SERVICE_ENDED = "the service ended before the end of this evaluation was stored";
-
 @customElement("argo-evaluate-result")
 export class EvaluateResult extends PageElement {
   static override styles = css`
@@ -188,7 +186,7 @@ export class EvaluateResult extends PageElement {
     return html`<section aria-label=${texts.found} data-state=${job.state}>
       ${this.choice(job)}
       <h2 role="status">${texts.found}: ${texts.states[job.state]}</h2>
-      ${job.problem ? html`<p class="warn">${job.problem === SERVICE_ENDED ? texts.serviceEnded : job.problem}</p>` : nothing}
+      ${job.problem ? html`<p class="warn">${said(job.problem, job.problem_wording)}</p>` : nothing}
       ${evaluationIsStale.value ? html`<p class="small">${texts.stale}</p>` : nothing}
       ${job.state === "running" && standing === null ? html`<progress></progress>` : nothing}
       ${standing === null ? nothing : this.standing(job, standing)}
@@ -347,7 +345,7 @@ export class EvaluateResult extends PageElement {
     return html`<li>
       <button class="bare" data-key=${one.key} ?disabled=${replaying.value !== null} @click=${() => replayRun(job, one)}>
         <b>${texts.failed(one.seed, withFaults ? texts.faultsNamed(one.faults) : null)}</b>
-        <span class="reason">${again ? texts.replaying : one.verdict.length > 0 ? t().verdict.verdict(one.verdict) : one.reason}</span>
+        <span class="reason">${again ? texts.replaying : one.verdict.length > 0 ? t().verdict.verdict(one.verdict) : said(one.reason)}</span>
       </button>
     </li>`;
   }

@@ -4,6 +4,7 @@ import type { PlanSummary } from "../api/types";
 import { foldersOf, foundMissions, type ListedMission } from "../model/mission-search";
 import { mayPlan } from "../state/session";
 import { language, t } from "../texts";
+import { said } from "../texts/messages";
 import { iconButton, valueOf } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, query, state } from "../ui/element";
 import { dateAndTime, seconds, timeBounds } from "../ui/figures";
@@ -196,7 +197,7 @@ export class MissionList extends PageElement {
     return html`<tr @mouseenter=${point} @focusin=${point}>
       <td>
         ${one.problem
-          ? html`${one.name}<br /><span class="more">${one.problem}</span>`
+          ? html`${one.name}<br /><span class="more">${said(one.problem, one.problem_wording)}</span>`
           : html`<a href=${`#/missions/${one.id}`}>${one.name}</a>
               <div class="more">
                 ${t().list.count(one.tasks)}${withFolder && one.folder !== "" ? html` · ${icon("folder", 12)} ${one.folder}` : nothing}

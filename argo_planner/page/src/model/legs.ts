@@ -1,6 +1,6 @@
 /** The legs of the mission's path and their limits, as the strip shows them. */
 
-import type { AnalysisFound, Mission, PreviewedMission } from "../api/types";
+import type { AnalysisFound, Mission, PreviewedMission, Wording } from "../api/types";
 
 export interface Leg {
   /** index in `preview.ways` */
@@ -16,7 +16,13 @@ export interface Leg {
   /** Wh */
   readonly energy: number;
   /** why there is no path; null: there is one */
-  readonly problem: string | null;
+  readonly problem: Told | null;
+}
+
+/** A text of the service with its wording. */
+export interface Told {
+  readonly text: string;
+  readonly wording: Wording | null;
 }
 
 /** Return the legs that are driven if nothing goes wrong and no condition holds. */
@@ -30,10 +36,14 @@ export function legsOf(preview: PreviewedMission, mission: Mission): Leg[] {
     if (kind !== "default") return;
     const time = (way.time ?? 0) + (waits.get(target) ?? 0);
     const { distance, climb, energy } = way;
-    legs.push({ way: number, task: target, time, start, distance, climb, energy, problem: way.problem ?? null });
+    legs.push({ way: number, task: target, time, start, distance, climb, energy, problem: toldOf(way.problem, way.problem_wording) });
     start += time;
   });
   return legs;
+}
+
+function toldOf(text: string | null | undefined, wording: Wording | null | undefined): Told | null {
+  return text ? { text, wording: wording ?? null } : null;
 }
 
 /** Merge neighbouring legs until at most `most` remain; each has the name of its first leg. */

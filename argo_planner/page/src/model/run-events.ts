@@ -1,15 +1,15 @@
 /** The noteworthy events of a run, from its many entries. */
 
-import type { Entry, Trouble, VerdictPart } from "../api/types";
+import type { Entry, Trouble, VerdictPart, Wording } from "../api/types";
 
 export type RunEvent =
   | { readonly kind: "done" | "by hand"; readonly task: string }
-  | { readonly kind: "failed" | "stopped"; readonly task: string; readonly why: string }
+  | { readonly kind: "failed" | "stopped"; readonly task: string; readonly why: string; readonly wording?: Wording }
   | { readonly kind: "read" | "given"; readonly checkpoint: string; readonly value: number; readonly unit: string; readonly normal: boolean | null }
-  | { readonly kind: "found"; readonly event: string; readonly detail: string }
+  | { readonly kind: "found"; readonly event: string; readonly detail: string; readonly wording?: Wording }
   | { readonly kind: "steered"; readonly how: "pause" | "resume" | "take_over" | "give_back" | "cancel" }
   | { readonly kind: "fault"; readonly fault: string }
-  | { readonly kind: "mishap"; readonly trouble: Trouble; readonly detail: string }
+  | { readonly kind: "mishap"; readonly trouble: Trouble; readonly detail: string; readonly wording?: Wording }
   | { readonly kind: "contact"; readonly link: string; readonly element: string }
   | { readonly kind: "resumed" | "edited" }
   | { readonly kind: "ended"; readonly stopped: VerdictPart | null };
@@ -59,7 +59,7 @@ function* eventsOfEntry(entry: Entry, isLast: boolean): Generator<[RunEvent, Tim
   }
   for (const event of entry.events) {
     if (event.event && !(reading && event.event === "abnormal_reading"))
-      yield [{ kind: "found", event: event.event, detail: event.detail ?? "" }, isGoodEvent(event.event) ? "good" : "bad"];
+      yield [{ kind: "found", event: event.event, detail: event.detail ?? "", ...worded(event.detail_wording) }, isGoodEvent(event.event) ? "good" : "bad"];
     if (event.kind === "reading_given" && !reading)
       yield [
         { kind: "given", checkpoint: `#${event.object_id ?? ""}`, value: event.value ?? NaN, unit: "", normal: null },
@@ -68,19 +68,23 @@ function* eventsOfEntry(entry: Entry, isLast: boolean): Generator<[RunEvent, Tim
     if (isSteering(event.kind)) yield [{ kind: "steered", how: event.kind }, "warn"];
   }
   for (const mishap of entry.mishaps)
-    yield [{ kind: "mishap", trouble: mishap.trouble, detail: mishap.detail }, "bad"];
+    yield [{ kind: "mishap", trouble: mishap.trouble, detail: mishap.detail, ...worded(mishap.detail_wording) }, "bad"];
   for (const contact of entry.contacts)
     yield [{ kind: "contact", link: contact.link, element: contact.element }, "bad"];
   if (task) {
     const why = task.reason ?? "";
     if (task.outcome === "done")
       yield [{ kind: task.by_hand ? "by hand" : "done", task: task.task }, "good"];
-    else if (task.outcome === "failed") yield [{ kind: "failed", task: task.task, why }, "bad"];
-    else yield [{ kind: "stopped", task: task.task, why }, "warn"];
+    else if (task.outcome === "failed") yield [{ kind: "failed", task: task.task, why, ...worded(task.reason_wording) }, "bad"];
+    else yield [{ kind: "stopped", task: task.task, why, ...worded(task.reason_wording) }, "warn"];
   }
   // A run that continues after its end does so with an edited mission.
   if (entry.ended)
     yield isLast ? [{ kind: "ended", stopped: entry.stopped ?? null }, "plain"] : [{ kind: "edited" }, "warn"];
+}
+
+function worded(wording: Wording | null | undefined): { wording?: Wording } {
+  return wording ? { wording } : {};
 }
 
 type Steering = Extract<RunEvent, { kind: "steered" }>["how"];

@@ -10,6 +10,7 @@ import { select, tasksByName } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { taskLabel } from "../state/task-labels";
 import { t } from "../texts";
+import { said, saidAll, saidIfAny } from "../texts/messages";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { leastSeconds, percent, seconds } from "../ui/figures";
 import { icon } from "../ui/icons";
@@ -140,8 +141,8 @@ export class RouteResult extends PageElement {
         ? html`<button id="cancel" ?disabled=${!mayPlan()} @click=${cancelSearch}>${icon("stop")} ${texts.cancel}</button>`
         : nothing}
       ${now.state === "cancelled" ? html`<p class="dim">${texts.cancelled}</p>` : nothing}
-      ${now.state === "failed" ? html`<p class="warn">${texts.noneFound}: ${now.problem}</p>` : nothing}
-      ${now.state === "done" && now.problem ? html`<p class="warn">${now.problem}</p>` : nothing}
+      ${now.state === "failed" ? html`<p class="warn">${texts.noneFound}: ${saidIfAny(now.problem, now.problem_wording)}</p>` : nothing}
+      ${now.state === "done" && now.problem ? html`<p class="warn">${said(now.problem, now.problem_wording)}</p>` : nothing}
       ${now.state === "done" ? this.done(now) : nothing}
     </section>`;
   }
@@ -173,8 +174,8 @@ export class RouteResult extends PageElement {
     if (!found) return nothing;
     const order = found.reordering;
     if (!order)
-      return html`<p class="warn">${texts.noneFound}${found.why_none ? `: ${found.why_none}` : ""}</p>
-        ${this.reasons(found.reasons)}`;
+      return html`<p class="warn">${texts.noneFound}${found.why_none ? `: ${said(found.why_none, found.why_none_wording)}` : ""}</p>
+        ${this.reasons(saidAll(found.reasons, found.reasons_wording))}`;
     const out = new Set(found.left_out);
     const lists = compareOrders(order.written, order.order);
     const same = found.left_out.length === 0 && lists.after.every((one) => !one.moved);
@@ -201,7 +202,7 @@ export class RouteResult extends PageElement {
       ${found.left_out.length > 0
         ? html`<p class="warn">${texts.leftOut}: ${found.left_out.map(taskLabel).join(", ")}</p>`
         : nothing}
-      ${found.warning ? html`<p class="warn">${found.warning}</p>` : nothing} ${this.reasons(found.reasons)}
+      ${found.warning ? html`<p class="warn">${said(found.warning, found.warning_wording)}</p>` : nothing} ${this.reasons(saidAll(found.reasons, found.reasons_wording))}
       ${jobIsStale.value ? html`<p class="warn" role="alert">${texts.stale}</p>` : nothing}
       <div class="decide">
         <button class="main" id="accept" ?disabled=${!mayPlan() || jobIsStale.value || same} @click=${acceptOrder}>

@@ -5,6 +5,7 @@ import { shownMode, type ShownMode } from "../model/run-mode";
 import { mission, planId, revision } from "../state/plan";
 import { presentMode, shownRun, shownRunState, shownTime } from "../state/run";
 import { t } from "../texts";
+import { said } from "../texts/messages";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
 import { styled } from "../ui/styled";
@@ -145,7 +146,7 @@ export class RunBand extends PageElement {
           <p class="what">${this.doing()}</p>
         </div>
       </div>
-      ${run.problem && !past ? html`<p class="problem">${run.problem}</p>` : nothing}
+      ${run.problem && !past ? html`<p class="problem">${said(run.problem, run.problem_wording)}</p>` : nothing}
       ${typeof run.silent_since === "number" && !past
         ? html`<p class="problem">${texts.silent(t().words.seconds(run.silent_since))}</p>`
         : nothing}

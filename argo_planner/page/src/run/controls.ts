@@ -9,6 +9,7 @@ import { chooseFollowing, followChoices } from "../scene/following";
 import { mayOperate } from "../state/session";
 import { following } from "../state/view";
 import { t } from "../texts";
+import { said } from "../texts/messages";
 import { options, valueOf } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
@@ -178,7 +179,7 @@ export class RunControls extends PageElement {
             <span class="grow">
               ${texts.requests[one.kind] ?? one.kind}
               <span class="dim">${texts.byWhom(one.by)}</span>
-              ${one.reason ? html`<br /><span>${one.reason}</span>` : nothing}
+              ${one.reason ? html`<br /><span>${said(one.reason, one.reason_wording)}</span>` : nothing}
             </span>
           </li>`,
       )}

@@ -6,6 +6,7 @@ import { runEvents, type RunEvent, type TimedEvent } from "../model/run-events";
 import { shownEntries, shownRun, shownTime } from "../state/run";
 import { t } from "../texts";
 import { faultText } from "../texts/fault-names";
+import { said, saidIfAny } from "../texts/messages";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
 import { figure, unitText } from "../ui/figures";
@@ -23,16 +24,16 @@ export function eventText(what: RunEvent): string {
     case "by hand":
       return texts.byHand(what.task);
     case "failed":
-      return texts.failed(what.task, what.why);
+      return texts.failed(what.task, saidIfAny(what.why, what.wording));
     case "stopped":
-      return texts.stopped(what.task, what.why);
+      return texts.stopped(what.task, saidIfAny(what.why, what.wording));
     case "read":
       return texts.read(what.checkpoint, `${figure(what.value)} ${unitText(what.unit)}`);
     case "given":
       return texts.given(what.checkpoint, figure(what.value));
     case "found": {
       const name = t().words.event[what.event as keyof ReturnType<typeof t>["words"]["event"]];
-      return what.detail === "" ? name : `${name}: ${what.detail}`;
+      return what.detail === "" ? name : `${name}: ${said(what.detail, what.wording)}`;
     }
     case "steered":
       return texts[what.how];
@@ -40,7 +41,7 @@ export function eventText(what: RunEvent): string {
       return texts.fault(faultText(what.fault));
     case "mishap": {
       const name = t().run.trouble[what.trouble];
-      return what.detail === "" ? name : `${name}: ${what.detail}`;
+      return what.detail === "" ? name : `${name}: ${said(what.detail, what.wording)}`;
     }
     case "contact":
       return texts.contact(what.link, what.element);

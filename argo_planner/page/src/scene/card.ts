@@ -9,6 +9,7 @@ import { look as lookSignal } from "../state/view";
 import { removeObstacle, world } from "../state/world";
 import { t } from "../texts";
 import { faultText } from "../texts/fault-names";
+import { said } from "../texts/messages";
 import { iconButton } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, property } from "../ui/element";
 import { bound, figure, unitText } from "../ui/figures";
@@ -99,7 +100,7 @@ export class SceneCard extends PageElement {
       <p>${texts.nominal(bound(nominal.low), bound(nominal.high), unitText(one.unit))}</p>
       ${mark.value === "" ? nothing : html`<p class=${mark.tone}>${texts.reading(mark.value)}</p>`}
       ${mark.numbers === "" ? nothing : html`<p class="dim">${texts.inMission(mark.numbers)}</p>`}
-      ${one.problem ? html`<p class="bad">${texts.cannotRead} ${one.problem}</p>` : nothing}
+      ${one.problem ? html`<p class="bad">${texts.cannotRead} ${said(one.problem, one.problem_wording)}</p>` : nothing}
       <div class="buttons">
         <button class="main" id="measure" ?disabled=${!mayPlan()} @click=${() => added(addMeasure(String(one.id)))}>
           ${icon("gauge", 16)} ${texts.measure}

@@ -21,6 +21,7 @@ import { applyChange } from "../model/change";
 import { renamesBetween } from "../model/renames";
 import { groupKey, isTaskKey, nameOfKey, reactionKey, taskKey } from "../model/outline";
 import { t } from "../texts";
+import { said } from "../texts/messages";
 import { followRenames, renamedKeys } from "./identity";
 import { showNotice, showNoticesOf } from "./notices";
 import { isMe } from "./session";
@@ -164,7 +165,7 @@ export function takePlanState(answer: PlanState | CommandDone): void {
       analysis.value = answer.analysis ?? null;
       versions.value = answer.versions;
       recent.length = 0;
-      if (answer.recovered) showNotice("warn", answer.recovered);
+      if (answer.recovered) showNotice("warn", said(answer.recovered, answer.recovered_wording));
       pruneSelection(null);
     } else takeRevision(answer.revision);
     if (!("newest" in answer) || answer.newest === revision.value) findings.value = answer.findings;

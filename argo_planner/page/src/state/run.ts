@@ -17,6 +17,7 @@ import { shownMode, type ShownMode } from "../model/run-mode";
 import { showNotice, showError } from "./notices";
 import { planId } from "./plan";
 import { isMe } from "./session";
+import { said } from "../texts/messages";
 
 export interface RobotPose {
   readonly t: number;
@@ -206,7 +207,7 @@ function takeRequest(id: string, request: RequestState): void {
     run.value = { ...now, requests: [...others, request] };
   }
   if (request.reason && request.progress !== "confirmed" && isMe(request.by) && !quietRequests.has(request.id))
-    showNotice("warn", request.reason);
+    showNotice("warn", said(request.reason, request.reason_wording));
 }
 
 function takeEntry(id: string, number: number, entry: Entry): void {

@@ -7,6 +7,7 @@ import { hoveredLeg, preview, previewRefused } from "../state/preview";
 import { numberOf, taskLabel } from "../state/task-labels";
 import { world } from "../state/world";
 import { t } from "../texts";
+import { said } from "../texts/messages";
 import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
 import { metres, seconds, share } from "../ui/figures";
 import { styled } from "../ui/styled";
@@ -154,7 +155,7 @@ export class StripPanel extends PageElement {
 /** Describe the leg under the pointer. */
 function pointedAt(legs: readonly Leg[]) {
   const leg = legs.find((one) => one.way === hoveredLeg.value);
-  return leg === undefined ? nothing : (leg.problem ?? legWords(leg));
+  return leg === undefined ? nothing : (leg.problem === null ? legWords(leg) : said(leg.problem.text, leg.problem.wording));
 }
 
 /** Render the legs as bars; their widths show the times. */
@@ -215,7 +216,7 @@ function legTable(legs: readonly Leg[], limit: number | null) {
           (leg) =>
             html`<tr
               class=${hoveredLeg.value === leg.way ? "hovered" : ""}
-              title=${leg.problem ?? nothing}
+              title=${leg.problem === null ? nothing : said(leg.problem.text, leg.problem.wording)}
               @pointerenter=${() => (hoveredLeg.value = leg.way)}
               @pointerleave=${() => (hoveredLeg.value = null)}
               @click=${() => select([taskKey(leg.task)])}

@@ -9,6 +9,7 @@ import { previewIsNew } from "../state/preview";
 import { groupLabel, taskLabel } from "../state/task-labels";
 import { world } from "../state/world";
 import { t } from "../texts";
+import { saidAll } from "../texts/messages";
 import { css, customElement, html, nothing, PageElement, property, state } from "../ui/element";
 import { leastSeconds, metres, mostSeconds, seconds, share } from "../ui/figures";
 import { icon } from "../ui/icons";
@@ -90,7 +91,7 @@ export class StripTotals extends PageElement {
               ${this.total("energy", energy, (wh) => share(wh, battery()))}`}
         <span>${texts.distance} <b id="total-distance">${metres(found.distance)}</b></span>
         <span>${texts.climb} <b id="total-climb">${metres(found.climb)}</b></span>
-        ${found.at_least.map((least) => html`<span class="dim">${icon("clock", 13)} ${least}</span>`)}
+        ${saidAll(found.at_least, found.at_least_wording).map((least) => html`<span class="dim">${icon("clock", 13)} ${least}</span>`)}
         ${old ? html`<span role="status">${missionHasErrors.value ? texts.before : texts.outdated}</span>` : nothing}
       </div>
       ${this.witness(bounds)}`;

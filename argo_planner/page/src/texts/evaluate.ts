@@ -72,7 +72,6 @@ export const evaluate = both(
         `(valid for any reason to stop; from the ${runs} runs of the first complete worlds)`,
     },
     count: (runs: string) => `${runs} of them count`,
-    serviceEnded: "The service ended before all runs were done.",
     enough: (done: string, planned: string) => `${done} of at most ${planned} runs: no more were needed`,
     required: requirementWriter(
       {
@@ -166,7 +165,6 @@ export const evaluate = both(
         `(gültig, warum auch immer beendet wurde; aus den ${runs} Fahrten der ersten vollständigen Welten)`,
     },
     count: (runs: string) => `${runs} davon zählen`,
-    serviceEnded: "Der Dienst wurde beendet, bevor alle Fahrten fertig waren.",
     enough: (done: string, planned: string) => `${done} von höchstens ${planned} Fahrten: Mehr waren nicht nötig`,
     required: requirementWriter(
       {

@@ -27,7 +27,7 @@ test("the legs are those of the default path, including waits", () => {
     [1, "w", 10, 30],
     [3, "b", 40, 0],
   ]);
-  expect(legs[2]?.problem).toBe("no way");
+  expect(legs[2]?.problem?.text).toBe("no way");
   expect(legs.map((leg) => isTooLate(leg, 35))).toEqual([false, true, true]);
   expect(isTooLate(legs[2] as Leg, null)).toBe(false);
 });
@@ -56,9 +56,9 @@ test("bounds over all executions, with the execution of the highest value", () =
 });
 
 test("many legs are merged without loss", () => {
-  const legs = Array.from({ length: 10 }, (_, at) => ({ way: at, task: `t${at}`, time: 1, start: at, distance: 1, climb: 0, energy: 2, problem: at === 3 ? "no way" : null }));
+  const legs = Array.from({ length: 10 }, (_, at) => ({ way: at, task: `t${at}`, time: 1, start: at, distance: 1, climb: 0, energy: 2, problem: at === 3 ? { text: "no way", wording: null } : null }));
   expect(mergedLegs(legs, 10)).toEqual(legs);
   const few = mergedLegs(legs, 4);
   expect(few.map((leg) => [leg.task, leg.time, leg.energy])).toEqual([["t0", 3, 6], ["t3", 3, 6], ["t6", 3, 6], ["t9", 1, 2]]);
-  expect(few[1]?.problem).toBe("no way");
+  expect(few[1]?.problem?.text).toBe("no way");
 });

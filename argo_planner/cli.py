@@ -12,6 +12,7 @@ from argo_compiler.base.errors import INCOMPLETE, ArgoError
 from argo_compiler.base.garbage_collector import enable_garbage_collector
 from argo_compiler.base.version import __version__
 from argo_planner.lazy_group import LazyCommand, LazyGroup
+from argo_planner.terminal.language import VARIABLE, Language, set_language
 from argo_planner.terminal.output import EXIT_INCOMPLETE, guard_stdout_and_stderr
 from argo_planner.terminal.signals import SignalWatch, ignore_signals, raise_on_signals
 from argo_planner.terminal.verbosity import set_verbosity
@@ -148,12 +149,17 @@ def argo(
     quiet: Annotated[
         bool, typer.Option("-q", "--quiet", help="show results and errors only")
     ] = False,
+    language: Annotated[
+        Language | None,
+        typer.Option(help="language of errors and diagnostics", envvar=VARIABLE, show_envvar=True),
+    ] = None,
 ) -> None:
     """Turn a written inspection mission into a checked plan and drive it through a site."""
     from argo_planner.terminal.stage_display import show_stages  # `argo --help` needs no stages
 
     enable_garbage_collector(seldom=context.invoked_subcommand in _SHORT)
     set_verbosity(verbose, quiet)
+    set_language(language)
     context.with_resource(show_stages())
 
 

@@ -67,6 +67,7 @@ ERRORS = frozenset(
         *("LimitExceeded", "RevisionMissing", "AccessDenied", "TokenMissing", "TooLarge"),
         *("StaleRevision", "CommandIdTaken", "NothingToUndo", "ChangedSince", "EditRefused"),
         *("PlanTooLarge", "IncompleteDraft", "PoorViewError"),
+        *("MissingFile", "UnreadableFile"),
     ]
 )
 """classes of errors whose argument is a message"""

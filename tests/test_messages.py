@@ -14,6 +14,7 @@ from pydantic import BaseModel
 import argo_compiler.il as il
 from argo_compiler.base.message import Listing, Message
 from argo_compiler.base.translation import german_catalogue, in_german
+from argo_compiler.diagnostics import Severity
 from argo_compiler.hfsm.kinds import Outcome
 from argo_compiler.il import EventKind
 from argo_compiler.il.events import event_text
@@ -33,6 +34,8 @@ TRANSLATED = (
     "argo_compiler/analysis",
     "argo_compiler/base",
     "argo_compiler/checks",
+    "argo_compiler/diagnostics/diagnostic.py",
+    "argo_compiler/diagnostics/text.py",
     "argo_compiler/editing",
     "argo_compiler/files",
     "argo_compiler/hfsm",
@@ -70,6 +73,8 @@ EXTENSIONS = frozenset(
     ["route solver", "format", "response", "fault", "policy", "drive", "sensor", "report"]
 )
 """what extension points call their objects"""
+FILES = frozenset(["script", "bag", "site", "evaluation", "mission"])
+"""kinds of files"""
 
 
 def _files() -> Iterator[Path]:
@@ -90,11 +95,11 @@ def _found() -> dict[str, list[Template]]:
 @cache
 def _identifiers() -> frozenset[str]:
     """Return the identifiers that messages may name: members of enumerations, and fields."""
-    parts = [Outcome, *(part for part in vars(il).values() if isinstance(part, type))]
+    parts = [Outcome, Severity, *(part for part in vars(il).values() if isinstance(part, type))]
     values = {str(v) for part in parts if hasattr(part, "__members__") for v in part}  # type: ignore[attr-defined]
     models = (part for part in parts if issubclass(part, BaseModel))
     fields = {name for model in models for name in model.model_fields}
-    return frozenset(values | fields | set(map(event_text, EventKind)) | EXTENSIONS)
+    return frozenset(values | fields | set(map(event_text, EventKind)) | EXTENSIONS | FILES)
 
 
 def test_each_template_is_in_the_catalogue() -> None:

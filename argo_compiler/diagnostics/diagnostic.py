@@ -6,8 +6,9 @@ from pydantic import BaseModel, Field
 from pydantic.json_schema import SkipJsonSchema
 
 from argo_compiler.base.errors import Remedy, RemedyChoice
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
-from argo_compiler.base.wording import Text, Wording, wording_field
+from argo_compiler.base.wording import Text, Worded, Wording, wording_field
 from argo_compiler.diagnostics.codes import CODES
 from argo_compiler.diagnostics.codes.code import Severity
 
@@ -45,7 +46,7 @@ def span_at(line: int, column: int, length: int) -> Span:
     return new
 
 
-class Diagnostic(Model):
+class Diagnostic(Worded):
     """Diagnostic of a mission or script. `docs/diagnostics.md` explains the stable codes."""
 
     code: str
@@ -143,12 +144,19 @@ def count(diagnostics: Iterable[Diagnostic], severity: Severity) -> int:
     return sum(diagnostic.severity is severity for diagnostic in diagnostics)
 
 
-def severity_counts_text(diagnostics: Iterable[Diagnostic]) -> str:
+def severity_counts_text(diagnostics: Iterable[Diagnostic]) -> Message:
     """Return the numbers of diagnostics by severity as text, such as `2 errors, 5 warnings`.
 
     Severities without diagnostics are left out; without any, the text is `no findings`.
     """
     diagnostics = tuple(diagnostics)
-    counts = ((count(diagnostics, severity), severity) for severity in Severity)
-    parts = (f"{number} {severity}{'' if number == 1 else 's'}" for number, severity in counts)
-    return ", ".join(part for part in parts if not part.startswith("0 ")) or "no findings"
+    errors, warnings, notes = (count(diagnostics, severity) for severity in Severity)
+    parts = [
+        *([Message("1 error")] if errors == 1 else []),
+        *([Message("{errors} errors", errors=errors)] if errors > 1 else []),
+        *([Message("1 warning")] if warnings == 1 else []),
+        *([Message("{warnings} warnings", warnings=warnings)] if warnings > 1 else []),
+        *([Message("1 note")] if notes == 1 else []),
+        *([Message("{notes} notes", notes=notes)] if notes > 1 else []),
+    ]
+    return Message("{parts}", parts=parts) if parts else Message("no findings")

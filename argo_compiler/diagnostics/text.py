@@ -1,33 +1,37 @@
 """Diagnostics as text for a terminal."""
 
 import unicodedata
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
+from argo_compiler.base.message import Message, identifier
+from argo_compiler.base.wording import worded
 from argo_compiler.diagnostics.codes.code import Severity
 from argo_compiler.diagnostics.diagnostic import Diagnostic, has_errors, severity_counts_text
 
 _INDENT = "    "
 
 
-def to_text(diagnostics: Sequence[Diagnostic], source_name: str) -> str:
+def to_text(
+    diagnostics: Sequence[Diagnostic], source_name: str, say: Callable[[str], str] = str
+) -> str:
     """Return all diagnostics as text with marked source lines, and their numbers by severity.
 
     If there are errors, a warning takes only one line, so that the errors are seen first. A note
-    always takes one line.
+    always takes one line. `say` puts a message into the language of the reader.
     """
     brief = has_errors(diagnostics)
     lines = []
     for diagnostic in diagnostics:
-        lines.append(_headline(diagnostic, source_name))
+        lines.append(_headline(diagnostic, source_name, say))
         severity = diagnostic.severity
         if severity is Severity.ERROR or (severity is Severity.WARNING and not brief):
-            lines += _details(diagnostic)
+            lines += _details(diagnostic, say)
     if len(diagnostics) > 1:
-        lines.append(f"{_printable(source_name)}: {severity_counts_text(diagnostics)}")
+        lines.append(f"{_printable(source_name)}: {say(severity_counts_text(diagnostics))}")
     return "\n".join(lines)
 
 
-def _headline(diagnostic: Diagnostic, source_name: str) -> str:
+def _headline(diagnostic: Diagnostic, source_name: str, say: Callable[[str], str]) -> str:
     span = diagnostic.span
     location = f"{source_name}:{span.line}:{span.column}" if span else source_name
     if diagnostic.place:
@@ -35,12 +39,12 @@ def _headline(diagnostic: Diagnostic, source_name: str) -> str:
     subject = (
         "" if span or diagnostic.place or not diagnostic.subject else f"{diagnostic.subject}: "
     )
-    return _printable(
-        f"{location}: {diagnostic.severity}: {subject}{diagnostic.message} [{diagnostic.code}]"
-    )
+    message = say(worded(diagnostic.message, diagnostic.message_wording))
+    severity = say(identifier(diagnostic.severity))
+    return _printable(f"{location}: {severity}: {subject}{message} [{diagnostic.code}]")
 
 
-def _details(diagnostic: Diagnostic) -> list[str]:
+def _details(diagnostic: Diagnostic, say: Callable[[str], str]) -> list[str]:
     lines = []
     if diagnostic.span and diagnostic.excerpt:
         excerpt = _printable(diagnostic.excerpt.replace("\t", " "))
@@ -52,7 +56,8 @@ def _details(diagnostic: Diagnostic) -> list[str]:
             caret = "^" * max(1, _width(marked))
             lines.append(_INDENT + " " * _width(excerpt[:start]) + caret)
     if diagnostic.hint:
-        lines.append(f"{_INDENT}hint: {_printable(diagnostic.hint)}")
+        hint = say(worded(diagnostic.hint, diagnostic.hint_wording))
+        lines.append(f"{_INDENT}{say(Message('hint'))}: {_printable(hint)}")
     return lines
 
 

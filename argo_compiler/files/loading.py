@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from argo_compiler.base.errors import ArgoError, Invalid, NotFound, reason_text
-from argo_compiler.base.message import Message
+from argo_compiler.base.message import Message, as_message
 from argo_compiler.base.quantity_text import with_article
 from argo_compiler.files.atomic_write import OPEN_FILES
 from argo_compiler.files.encodings import detect_encoding
@@ -39,10 +39,12 @@ class FileError(ArgoError):
     """
 
     def __init__(self, name: object, problem: FileProblem, message: str, hint: str) -> None:
-        super().__init__(f"{name} {message}; {hint}")
+        self.message = as_message(message)
+        self.hint = as_message(hint)
+        super().__init__(
+            Message("{name} {message}; {hint}", name=name, message=self.message, hint=self.hint)
+        )
         self.problem = problem
-        self.message = message
-        self.hint = hint
 
     def __reduce__(self) -> tuple[object, ...]:
         name = str(self).removesuffix(f" {self.message}; {self.hint}")
@@ -92,7 +94,10 @@ def open_file(path: Path, kind: str) -> Iterator[BinaryIO]:
         if os.path.isdir(path):
             message = Message("can't be read: it is a directory")
             raise UnreadableFile(
-                path, FileProblem.DIRECTORY, message, Message("name the {kind} in it", kind=kind)
+                path,
+                FileProblem.DIRECTORY,
+                message,
+                Message("name the {kind} in it", kind=as_message(kind)),
             )
         with path.open("rb") as file:
             yield file
@@ -101,7 +106,7 @@ def open_file(path: Path, kind: str) -> Iterator[BinaryIO]:
             path,
             FileProblem.MISSING,
             "can't be read: it does not exist (no such file)",
-            Message("check the name of the {kind}", kind=kind),
+            Message("check the name of the {kind}", kind=as_message(kind)),
         ) from None
     except OSError as error:
         message = Message("can't be read: {reason}", reason=reason_text(error))
@@ -191,7 +196,10 @@ def decode_text(content: bytes, name: object, kind: str) -> str:
             else Message("is damaged {upper}", upper=error.encoding.upper())
         )
         raise UnreadableFile(
-            name, FileProblem.NOT_TEXT, f"{problem} {position}", "save it as UTF-8"
+            name,
+            FileProblem.NOT_TEXT,
+            Message("{problem} {position}", problem=problem, position=position),
+            "save it as UTF-8",
         ) from error
     if "\0" in text:
         raise UnreadableFile(

@@ -15,6 +15,7 @@ from argo_compiler.diagnostics import (
 from argo_compiler.diagnostics.codes.code import Severity
 from argo_env.planning.opening import open_site
 from argo_planner.terminal.files import STANDARD_OUTPUT, check_outputs, read_upload, write_content
+from argo_planner.terminal.language import in_chosen_language
 from argo_planner.terminal.options import EndArea, Force, SiteOption, Source, StartArea, Strict
 from argo_planner.terminal.output import EXIT_INCOMPLETE
 from argo_planner.terminal.words import add_options_to_hints
@@ -52,14 +53,14 @@ def check_command(
         found, draft = error.diagnostics, error.draft  # type: ignore[attr-defined]
     diagnostics = add_options_to_hints(found, str(source))
     left = None if draft is None else draft.left
-    written = format_diagnostics(diagnostics, str(source), format, left)
+    written = format_diagnostics(diagnostics, str(source), format, left, in_chosen_language)
     if draft is not None and format is Format.TEXT:
         from argo_planner.terminal.draft_display import left_text
 
         written += f"\n{left_text(draft)}"
     if output and output != STANDARD_OUTPUT:
         write_content(output, written + "\n")
-        print(f"{source}: {severity_counts_text(diagnostics)}")
+        print(f"{source}: {in_chosen_language(severity_counts_text(diagnostics))}")
     else:
         print(written)
     if draft is not None:

@@ -2,7 +2,7 @@
 
 import sys
 
-from argo_compiler.diagnostics import DiagnosticError, to_text
+from argo_compiler.diagnostics import DiagnosticError
 from argo_env.planning.opening import OpenedSite
 from argo_planner.terminal.verbosity import is_quiet
 from argo_planner.terminal.words import diagnostics_text
@@ -25,4 +25,4 @@ def show_explanation(imported: ImportedMission, site: OpenedSite) -> None:
     try:
         print(format_explanation(explain_mission(imported, site)), end="")
     except DiagnosticError as error:
-        print(to_text(error.diagnostics, imported.source_name), file=sys.stderr)
+        print(diagnostics_text(error.diagnostics, imported.source_name), file=sys.stderr)

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 from argo_compiler.base.errors import ArgoError, Remedy
 from argo_compiler.base.listing import listed
+from argo_compiler.base.message import as_message
+from argo_planner.terminal.language import in_chosen_language
 
 if TYPE_CHECKING:
     from argo_compiler.diagnostics import Diagnostic
@@ -43,14 +45,15 @@ def error_text(error: ArgoError, prefix: str = "") -> str:
     if isinstance(error, DiagnosticError):
         return diagnostics_text(error.diagnostics, error.source_name)
     remedies = _remedies_text(error.remedies, error.about)
-    return f"{prefix}{error} ({remedies})" if remedies else f"{prefix}{error}"
+    message = in_chosen_language(str(error))
+    return f"{prefix}{message} ({remedies})" if remedies else f"{prefix}{message}"
 
 
 def diagnostics_text(diagnostics: Iterable["Diagnostic"], source: str) -> str:
     """Return the text of the diagnostics of a file, with the options that are the remedies."""
     from argo_compiler.diagnostics import to_text
 
-    return to_text(add_options_to_hints(diagnostics, source), source)
+    return to_text(add_options_to_hints(diagnostics, source), source, in_chosen_language)
 
 
 def error_text_with_route_commands(error: ArgoError, source: str) -> str:
@@ -85,10 +88,10 @@ def add_options_to_hints(
 
 
 def _hint(diagnostic: "Diagnostic", source: str) -> str:
-    hint, choice = diagnostic.hint or "", diagnostic.choice
+    hint, choice = as_message(diagnostic.hint or ""), diagnostic.choice
     if choice is None or not choice.values:
         remedies = _remedies_text(diagnostic.remedies, source)
-        return f"{hint} ({remedies})" if hint else remedies
+        return hint + f" ({remedies})" if hint else remedies
     option = _REMEDY_TEXTS[choice.remedy]
     chosen = listed([f"{option} {value}" for value in choice.values], "or")
     it = "it " if choice.remedy is Remedy.CHOOSE_SITE else ""

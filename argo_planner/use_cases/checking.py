@@ -1,6 +1,6 @@
 """Check of a mission without running it."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
@@ -132,10 +132,12 @@ def format_diagnostics(
     source_name: str,
     format: Format,
     left: "Sequence[DraftLine] | None" = None,
+    say: Callable[[str], str] = str,
 ) -> str:
     """Return the diagnostics as text for people, or as JSON or SARIF.
 
-    JSON has the lines of an incomplete draft that are `left` to decide on as well.
+    JSON has the lines of an incomplete draft that are `left` to decide on as well. `say` puts the
+    messages of the text for people into their language.
     """
     match format:
         case Format.JSON:
@@ -143,8 +145,8 @@ def format_diagnostics(
         case Format.SARIF:
             return to_sarif(diagnostics, source_name)
         case Format.TEXT:
-            text = to_text(diagnostics, source_name)
+            text = to_text(diagnostics, source_name, say)
             # The text of several diagnostics ends with their number.
             if len(diagnostics) > 1:
                 return text
-            return f"{text}\n{source_name}: {severity_counts_text(diagnostics)}".lstrip()
+            return f"{text}\n{source_name}: {say(severity_counts_text(diagnostics))}".lstrip()

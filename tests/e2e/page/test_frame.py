@@ -1,6 +1,7 @@
 """The frame of the page: list of missions, import, names, deletion, rights, languages, focus."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -94,6 +95,46 @@ def test_the_page_is_german_in_a_german_browser(browsers, address) -> None:
     otto = browsers.person(address, "otto", locale="de-DE")
     otto.open()
     expect(otto.button("Neue Mission")).to_be_visible()
+
+
+FAULTY = {
+    "version": 4,
+    "site": "umad",
+    "max_duration": 5.0,
+    "tasks": [
+        {
+            "name": "A",
+            "action": "MEASURE",
+            "object_id": "4",
+            "retries": 200,
+            "transitions": [{"target": "B"}],
+        },
+        {"name": "B", "action": "WAIT", "wait": {"event": "all_clear"}, "velocity": 0.3},
+    ],
+    "groups": [{"name": "G", "start": "B", "end": "B", "max_repeat_count": 1, "every": 60.0}],
+    "reactions": [
+        {"event": "gas_leak", "response": "safe_area", "pose": {"x": 3.05, "y": 1.55, "z": 0.0},
+         "until": "all_clear"},
+    ],
+}  # fmt: skip
+ENGLISH = re.compile(
+    r"\b(the|has|have|is|are|of|not|leads?|give|remove|choose|without|which|its?|gas_leak|MEASURE"
+    r"|WAIT|START|[a-z]+_[a-z_]+)\b"
+)
+"""words of English messages, and identifiers"""
+
+
+def test_problems_of_a_mission_are_german_on_the_german_page(browsers, address, service) -> None:
+    answer = service.client.post("/api/missions", json={"name": "Runde", "mission": FAULTY})
+    assert answer.status_code == 201, answer.text
+    otto = browsers.person(address, "otto", locale="de-DE")
+    otto.open(f"/missions/{answer.json()['id']}")
+    problems = otto.page.locator("argo-problems li")
+    expect(problems.filter(has_text="Gasleck").first).to_be_attached()
+    expect(problems.filter(has_text="Höchstdauer von 5 s").first).to_be_attached()
+    texts = problems.all_text_contents()
+    assert len(texts) > 5
+    assert [text for text in texts if ENGLISH.search(text)] == []
 
 
 WIDTHS = (360, 800, 1100, 1400, 1900)

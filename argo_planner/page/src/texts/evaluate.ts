@@ -39,7 +39,7 @@ export const evaluate = both(
     ideal: "Also without faults",
     require: "Required success rate (%)",
     requireHint: "The evaluation stops as soon as this is decided.",
-    width: "Or stop when the interval is at most this wide (%)",
+    width: "Or stop when the 95 % range is at most this wide (%)",
     vary: "Differences between worlds",
     ranges: {
       charge: "Charge at the start (%)",
@@ -61,7 +61,7 @@ export const evaluate = both(
     success: "successful",
     runsOf: (done: string, most: string) => `${done} of ${most} runs`,
     left: (time: string) => `at most ${time} left`,
-    interval: (low: string, high: string) => `95 % interval: ${low} to ${high}`,
+    interval: (low: string, high: string) => `95 % range: ${low} to ${high}`,
     kinds: {
       while: "(preliminary until all runs are done)",
       whileMixed: "(preliminary, over all runs; in the end each world counts once)",
@@ -91,7 +91,7 @@ export const evaluate = both(
     which: "Evaluation shown",
     begun: (when: string, state: string) => `${when}: ${state}`,
     forget: "Delete this evaluation",
-    chart: "Success rate and its interval, run by run",
+    chart: "Success rate and its 95 % range, run by run",
     cancel: "Stop the evaluation",
     goOn: "Continue",
     stale: "The mission was changed after this evaluation began.",
@@ -132,7 +132,7 @@ export const evaluate = both(
     ideal: "Auch ohne Störungen",
     require: "Geforderte Erfolgsquote (%)",
     requireHint: "Die Bewertung endet, sobald dies entschieden ist.",
-    width: "Oder Ende, wenn das Intervall höchstens so breit ist (%)",
+    width: "Oder Ende, wenn der 95-%-Bereich höchstens so breit ist (%)",
     vary: "Unterschiede zwischen den Welten",
     ranges: {
       charge: "Ladestand zu Beginn (%)",
@@ -154,7 +154,7 @@ export const evaluate = both(
     success: "erfolgreich",
     runsOf: (done: string, most: string) => `${done} von ${most} Fahrten`,
     left: (time: string) => `noch höchstens ${time}`,
-    interval: (low: string, high: string) => `95-%-Intervall: ${low} bis ${high}`,
+    interval: (low: string, high: string) => `95-%-Bereich: ${low} bis ${high}`,
     kinds: {
       while: "(vorläufig, bis alle Fahrten fertig sind)",
       whileMixed: "(vorläufig, über alle Fahrten; am Ende zählt jede Welt einmal)",
@@ -185,7 +185,7 @@ export const evaluate = both(
     which: "Gezeigte Bewertung",
     begun: (when: string, state: string) => `${when}: ${state}`,
     forget: "Diese Bewertung löschen",
-    chart: "Erfolgsquote und ihr Intervall, Fahrt für Fahrt",
+    chart: "Erfolgsquote und ihr 95-%-Bereich, Fahrt für Fahrt",
     cancel: "Bewertung beenden",
     goOn: "Fortsetzen",
     stale: "Die Mission wurde nach Beginn dieser Bewertung geändert.",

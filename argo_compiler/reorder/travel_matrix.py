@@ -49,7 +49,7 @@ class TravelMatrix:
                 Message(
                     "times, energies and work of {columns} destinations must be {shape}",
                     columns=columns,
-                    shape=shape,
+                    shape=str(shape),
                 )
             )
         if self.chargers and (self.battery is None or self.charging <= 0.0):

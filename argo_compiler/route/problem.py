@@ -226,8 +226,8 @@ def _matrix_flaws(matrix: NDArray[np.int64], quantity: str, side: int) -> Iterat
         yield Message(
             "its {quantity} have the shape {shape}, not {value}",
             quantity=quantity,
-            shape=matrix.shape,
-            value=(side, side),
+            shape=str(matrix.shape),
+            value=str((side, side)),
         )
     elif matrix.dtype != np.int64:
         yield Message(

@@ -7,6 +7,7 @@ from fastapi import Path, Response
 from pydantic import Field
 
 from argo_compiler.base.errors import NotFound
+from argo_compiler.base.message import Listing, Message
 from argo_compiler.base.model import Model
 from argo_planner.service.storage.outline import PlanSummary
 from argo_planner.service.web.bodies import JsonBody
@@ -69,8 +70,13 @@ async def create_mission_from_example(
     """Create a mission from an example, as an import of its file does."""
     found = list_missions_on_site(service.site.name)
     if example not in found:
-        known = ", ".join(found) or "none"
-        raise NotFound(f"there is no example {example!r} on this site; there are: {known}")
+        raise NotFound(
+            Message(
+                "there is no example `{example}` on this site; there are: {known}",
+                example=example,
+                known=Listing(found) or Message("none"),
+            )
+        )
     file, content = next(iter(example_files(example).items()))
 
     async def parts() -> AsyncIterator[bytes]:

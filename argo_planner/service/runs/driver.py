@@ -22,6 +22,7 @@ from argo_planner.service.runs.requests import (
     RequestProgress,
     RequestState,
     RunRequest,
+    request_subject,
 )
 from argo_planner.service.runs.state import (
     EntryTold,
@@ -297,7 +298,7 @@ class RunDriver:
             self.handle_request(request, by)
             return
         count = self._reporter.count
-        self._set_progress(request.id, request.kind, by, RequestProgress.UNDER_WAY)
+        self._set_progress(request, by, RequestProgress.UNDER_WAY)
         self._effects[request.id] = lambda: self._reporter.count > count or self.over
         self._settle_requests()
 
@@ -309,9 +310,9 @@ class RunDriver:
         try:
             has_effect = self._begin(request)
         except ArgoError as error:
-            self._set_progress(request.id, request.kind, by, RequestProgress.REFUSED, str(error))
+            self._set_progress(request, by, RequestProgress.REFUSED, str(error))
         else:
-            self._set_progress(request.id, request.kind, by, RequestProgress.UNDER_WAY)
+            self._set_progress(request, by, RequestProgress.UNDER_WAY)
             self._effects[request.id] = has_effect
         self._settle_requests()
         self.send_state()
@@ -474,11 +475,18 @@ class RunDriver:
             self._send(RequestTold(run=self._state.id, request=request))
 
     def _set_progress(
-        self, id: str, kind: str, by: str, progress: RequestProgress, reason: str | None = None
+        self, request: RunRequest, by: str, progress: RequestProgress, reason: str | None = None
     ) -> None:
-        request = RequestState(id=id, kind=kind, by=by, progress=progress, reason=reason)
-        self._book.update(request)
-        self._send(RequestTold(run=self._state.id, request=request))
+        state = RequestState(
+            id=request.id,
+            kind=request.kind,
+            by=by,
+            subject=request_subject(request),
+            progress=progress,
+            reason=reason,
+        )
+        self._book.update(state)
+        self._send(RequestTold(run=self._state.id, request=state))
 
     # ---- messages
 

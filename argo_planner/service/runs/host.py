@@ -25,6 +25,7 @@ from argo_planner.service.runs.requests import (
     RequestState,
     RunOrder,
     RunRequest,
+    request_subject,
 )
 from argo_planner.service.runs.state import (
     EntryList,
@@ -240,7 +241,11 @@ class RunHost:
                     )
                 )
             accepted = RequestState(
-                id=request.id, kind=request.kind, by=by, progress=RequestProgress.ACCEPTED
+                id=request.id,
+                kind=request.kind,
+                by=by,
+                subject=request_subject(request),
+                progress=RequestProgress.ACCEPTED,
             )
             await self._current.accept_request(accepted)
             if interrupted:

@@ -69,6 +69,8 @@ class RequestState(Worded):
     kind: str
     by: str
     """author of the request"""
+    subject: str = ""
+    """task, checkpoint, event or kind of fault that the request names; empty: none"""
     progress: RequestProgress
     reason: Text | None = None
     """why the request was refused or has failed, or why a run that was to stop ended otherwise"""
@@ -226,6 +228,20 @@ ClientRequest = Annotated[
 
 RunRequest = ClientRequest | GoOnEdited
 """any request to a run"""
+
+
+def request_subject(request: RunRequest) -> str:
+    """Return the task, checkpoint, event or kind of fault that a request names; empty: none."""
+    match request:
+        case DoTask() | SkipTask():
+            return request.task
+        case MeasureAt() | TellReading():
+            return request.checkpoint
+        case TellEvent():
+            return request.event
+        case BeginFault():
+            return str(request.fault.kind)
+    return ""
 
 
 class RequestBook:

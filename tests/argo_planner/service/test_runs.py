@@ -66,6 +66,7 @@ def test_a_run_is_started_followed_controlled_and_reported(service: Served, id: 
     wrong = ask(service, run, "measure", checkpoint="99")
     assert wrong["progress"] == "refused"
     assert "99" in wrong["reason"]
+    assert wrong["subject"] == "99"
     assert ask(service, run, "give_back")["progress"] == "confirmed"
     assert ask(service, run, "speed", speed=None)["progress"] == "confirmed"
     ended = wait_for(service, run, status="ended")

@@ -265,6 +265,29 @@ def test_a_form_refuses_text_that_is_no_duration(ann, service, plan) -> None:
     assert service.mission(plan)["max_duration"] == before
 
 
+@pytest.mark.long
+def test_all_checkpoints_of_a_floor_are_added_at_once(ann, service, plan) -> None:
+    ann.focus(ann.page.get_by_role("tree"))
+    ann.key("End", "m")
+    ann.type("floor 2")
+    ann.key("Enter", "Escape")
+    on_floor = [
+        one for one in service.client.get("/api/world").json()["checkpoints"] if one["floor"] == 2
+    ]
+    assert len(on_floor) > 1
+    expect(ann.page.get_by_role("treeitem")).to_have_count(4 + len(on_floor))
+    measured = [task["object_id"] for task in service.mission(plan)["tasks"][4:]]
+    assert sorted(measured, key=int) == [str(one["id"]) for one in on_floor]
+    speed = ann.page.get_by_label("Speed on the way there")
+    speed.fill("0.2")
+    speed.press("Enter")
+    ann.wait_until(
+        lambda: [task["velocity"] for task in service.mission(plan)["tasks"][4:]]
+        == [0.2] * len(on_floor),
+        "all of them have the speed",
+    )
+
+
 ROUND = """Mission Protocol
 
 1. Set the starting point in starting area 1.

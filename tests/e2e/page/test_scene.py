@@ -99,6 +99,28 @@ def test_a_chosen_floor_fits_the_view(ann, service) -> None:
 
 
 @pytest.mark.long
+def test_a_frame_selects_tasks(ann, service) -> None:
+    show_floor(ann, 1)
+    points = [ann.project(*checkpoint(service, id)["position"]) for id in (1, 2, 4)]
+    (left, top), (right, bottom) = (
+        [pick(axis) for axis in zip(*points, strict=True)] for pick in (min, max)
+    )
+    mouse = ann.page.mouse
+    seen = ann.evaluate("() => window.argo.camera()")
+    mouse.move(left - 6, top - 6)
+    ann.page.keyboard.down("Shift")
+    mouse.down()
+    mouse.move(right, bottom)
+    expect(ann.page.locator("argo-scene #frame")).to_be_visible()
+    mouse.move(right + 6, bottom + 6)
+    mouse.up()
+    ann.page.keyboard.up("Shift")
+    for name in ("A1", "B2", "C4"):
+        expect(row(ann, name)).to_have_attribute("aria-selected", "true")
+    assert ann.evaluate("() => window.argo.camera()") == seen
+
+
+@pytest.mark.long
 def test_railings_can_be_hidden(ann) -> None:
     def triangles() -> int:
         ann.wait_for_scene()

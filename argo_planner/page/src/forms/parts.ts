@@ -163,8 +163,8 @@ export function poseFields(
           texts.heading,
           round((pose.yaw * 180) / Math.PI, 1),
           (degrees) =>
-            degrees === null
-              ? texts.noNumber
+            degrees === null || Math.abs(degrees) > 360
+              ? texts.noHeading
               : commit((was) => was && { ...was, yaw: (degrees * Math.PI) / 180 }),
           { note: "°" },
         )}

@@ -10,8 +10,8 @@ import { t } from "../texts";
 import { valueOf } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, query, state } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
-import { addMeasure, addPlace, addReaction, addStart, addTask, addWait, isEmpty, lacksStart } from "./adding";
-import { type Choice, checkpointChoices, matchingChoices, poseChoices, typedPose } from "./choices";
+import { addMeasures, addPlace, addReaction, addStart, addTask, addWait, isEmpty, lacksStart } from "./adding";
+import { type Choice, checkpointChoices, floorChoices, matchingChoices, poseChoices, typedPose } from "./choices";
 
 /** The number of choices that are shown; typing finds the others. */
 const MOST = 60;
@@ -121,7 +121,7 @@ export class AddTasks extends PageElement {
   private allChoices(): readonly Choice[] {
     const site = world.value;
     if (site === null) return [];
-    if (this.open === "measure") return matchingChoices(checkpointChoices(site), this.text);
+    if (this.open === "measure") return matchingChoices([...checkpointChoices(site), ...floorChoices(site)], this.text);
     const typed = typedPose(site, this.text, shownFloor.value);
     const planned = (mission.value?.tasks ?? []).flatMap((task) => task.pose ?? []);
     return [...(typed ? [typed] : []), ...matchingChoices(poseChoices(site, [...planned, ...this.placed]), this.text)];
@@ -240,7 +240,8 @@ export class AddTasks extends PageElement {
     this.text = "";
     this.at = 0;
     this.field?.focus();
-    if (choice.checkpoint !== undefined) void addMeasure(choice.checkpoint);
+    if (choice.checkpoint !== undefined) void addMeasures([choice.checkpoint]);
+    else if (choice.checkpoints !== undefined) void addMeasures(choice.checkpoints);
     else if (choice.pose) {
       this.placed.push(choice.pose);
       void addPlace(choice.pose, isEmpty, choice.name);

@@ -57,9 +57,32 @@ function addNewTask(find: (open: Mission) => NewTask, further: readonly LooseEdi
   });
 }
 
-/** Add a task that measures a checkpoint. */
-export function addMeasure(id: string): Promise<boolean> {
-  return addTask("MEASURE", `MEASURE ${id}`, { object_id: id });
+/** Add tasks that measure checkpoints, one after the other, and select them. Returns whether they were added. */
+export function addMeasures(ids: readonly string[]): Promise<boolean> {
+  return editInTurn(async (make) => {
+    const open = mission.value;
+    if (open === null || ids.length === 0) return false;
+    const { edits, names } = measureEdits(open, selection.value, ids);
+    const done = await make(...edits);
+    if (done) select(names.map(taskKey));
+    return done;
+  });
+}
+
+/** Return the edits that add tasks which measure checkpoints after the selection, and the names of the tasks. */
+export function measureEdits(open: Mission, selected: readonly string[], ids: readonly string[]) {
+  const taken = taskNames(open);
+  const names: string[] = [];
+  const edits: LooseEdit[] = [];
+  let where = positionForNew(outline(open), selected);
+  for (const id of ids) {
+    const name = freeName(`MEASURE ${id}`, taken);
+    taken.add(name);
+    names.push(name);
+    edits.push({ kind: "add_task", task: { name, action: "MEASURE", object_id: id }, ...where });
+    where = where.into === undefined ? { after: name } : { after: name, into: where.into };
+  }
+  return { edits, names };
 }
 
 export function addWait(): Promise<boolean> {

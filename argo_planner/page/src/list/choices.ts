@@ -12,6 +12,8 @@ export interface Choice {
   readonly detail: string;
   /** Id of a checkpoint. */
   readonly checkpoint?: string;
+  /** Ids of all checkpoints of a floor. */
+  readonly checkpoints?: readonly string[];
   readonly pose?: Pose;
   /** The name that a task there gets. */
   readonly name?: string;
@@ -23,6 +25,16 @@ export function checkpointChoices(site: World): Choice[] {
     detail: t().list.onFloor(t().words.checkpoint[one.kind], one.floor),
     checkpoint: String(one.id),
   }));
+}
+
+/** Return the floors with the checkpoints on them that can be read. */
+export function floorChoices(site: World): Choice[] {
+  return site.floors.flatMap((floor) => {
+    const there = site.checkpoints.filter((one) => one.floor === floor.number && !one.problem);
+    if (there.length === 0) return [];
+    const detail = t().list.allCheckpoints(there.length);
+    return [{ label: t().scene.floor(floor.number), detail, checkpoints: there.map((one) => String(one.id)) }];
+  });
 }
 
 /** Return docks, locations and corners of the floors by name; poses that are already planned come last. */

@@ -10,6 +10,7 @@ import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
 import { styled } from "../ui/styled";
 import { percent, seconds } from "../ui/figures";
+import { runTaskLabel } from "./labels";
 import { knownModeWords, modeWords } from "./mode-words";
 import { parts } from "./parts";
 
@@ -168,7 +169,7 @@ export class RunBand extends PageElement {
     if (run.reaction && now?.live) text.push(texts.reactsTo(t().words.event[run.reaction]));
     const task = now?.task ?? null;
     if (task === null) text.push(run.status === "running" ? texts.standing : "");
-    else text.push(run.by_hand && now?.live ? texts.byHandAt(task) : texts.at(task));
+    else text.push(run.by_hand && now?.live ? texts.byHandAt(runTaskLabel(task)) : texts.at(runTaskLabel(task)));
     if (now?.live)
       for (const [group, round] of Object.entries(run.rounds ?? {})) text.push(texts.round(group, round));
     return text.filter(Boolean).join(" · ");

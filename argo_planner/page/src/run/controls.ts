@@ -13,6 +13,7 @@ import { said } from "../texts/messages";
 import { options, valueOf } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
+import { requestText } from "./labels";
 import { parts, readSpeed, SPEEDS, speedName } from "./parts";
 
 const PAST_REQUESTS = 3;
@@ -177,7 +178,7 @@ export class RunControls extends PageElement {
               ${texts.progress[one.progress]}
             </span>
             <span class="grow">
-              ${texts.requests[one.kind] ?? one.kind}
+              ${requestText(one)}
               <span class="dim">${texts.byWhom(one.by)}</span>
               ${one.reason ? html`<br /><span>${said(one.reason, one.reason_wording)}</span>` : nothing}
             </span>

@@ -10,6 +10,7 @@ import { said, saidIfAny } from "../texts/messages";
 import { css, customElement, html, nothing, PageElement } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
 import { figure, unitText } from "../ui/figures";
+import { runTaskLabel } from "./labels";
 import { parts } from "./parts";
 
 const MOST = 100;
@@ -20,13 +21,13 @@ export function eventText(what: RunEvent): string {
   const texts = t().run.happened;
   switch (what.kind) {
     case "done":
-      return texts.done(what.task);
+      return texts.done(runTaskLabel(what.task));
     case "by hand":
-      return texts.byHand(what.task);
+      return texts.byHand(runTaskLabel(what.task));
     case "failed":
-      return texts.failed(what.task, saidIfAny(what.why, what.wording));
+      return texts.failed(runTaskLabel(what.task), saidIfAny(what.why, what.wording));
     case "stopped":
-      return texts.stopped(what.task, saidIfAny(what.why, what.wording));
+      return texts.stopped(runTaskLabel(what.task), saidIfAny(what.why, what.wording));
     case "read":
       return texts.read(what.checkpoint, `${figure(what.value)} ${unitText(what.unit)}`);
     case "given":

@@ -8,12 +8,14 @@ import { selectedTask, tasksAfterStart, planId } from "../state/plan";
 import { sendRequest } from "../state/requests";
 import { run } from "../state/run";
 import { mayOperate } from "../state/session";
+import { taskLabel } from "../state/task-labels";
 import { world } from "../state/world";
 import { t } from "../texts";
 import { options, valueOf } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, state } from "../ui/element";
 import { icon, type Icon } from "../ui/icons";
 import { blocked, drive, wantedDirection } from "./hand-driver";
+import { runTaskLabel } from "./labels";
 import { checkpointList, parts } from "./parts";
 
 const PAD: readonly (readonly [Direction, Icon, string])[] = [
@@ -139,7 +141,7 @@ export class RunHand extends PageElement {
         <button id="measure" ?disabled=${busy}>${icon("gauge", 16)} ${texts.measureHere}</button>
       </form>
       ${state.plan === planId.value ? this.ofTasks(off, busy) : nothing}
-      ${state.skipped.length > 0 ? html`<p>${texts.skipped(state.skipped)}</p>` : nothing}
+      ${state.skipped.length > 0 ? html`<p>${texts.skipped(state.skipped.map(runTaskLabel))}</p>` : nothing}
       <p class="reason">${texts.edited}</p>
     </section>`;
   }
@@ -151,7 +153,7 @@ export class RunHand extends PageElement {
     const chosen = tasks.includes(this.task) ? this.task : (tasks[0] ?? "");
     return html`<div class="line tasks">
       <select id="task" aria-label=${texts.whichTask} @change=${(event: Event) => (this.task = valueOf(event))}>
-        ${options(tasks.map((name) => [name, name]), chosen)}
+        ${options(tasks.map((name) => [name, taskLabel(name)]), chosen)}
       </select>
       <button id="do" ?disabled=${busy || chosen === ""} @click=${() => sendRequest({ kind: "do_task", task: chosen })}>
         ${texts.doTask}

@@ -1,7 +1,7 @@
 /** A card beside the clicked object, with the actions that it offers. */
 
 import type { Obstacle, Pose, WorldCheckpoint } from "../api/types";
-import { addMeasure, addStart, addTask } from "../list/adding";
+import { addMeasures, addStart, addTask } from "../list/adding";
 import { faultSummary } from "../run/fault-words";
 import { faultsOf, openedFault, removeFault, type FaultList } from "../state/faults";
 import { mayPlan } from "../state/session";
@@ -102,7 +102,7 @@ export class SceneCard extends PageElement {
       ${mark.numbers === "" ? nothing : html`<p class="dim">${texts.inMission(mark.numbers)}</p>`}
       ${one.problem ? html`<p class="bad">${texts.cannotRead} ${said(one.problem, one.problem_wording)}</p>` : nothing}
       <div class="buttons">
-        <button class="main" id="measure" ?disabled=${!mayPlan()} @click=${() => added(addMeasure(String(one.id)))}>
+        <button class="main" id="measure" ?disabled=${!mayPlan()} @click=${() => added(addMeasures([String(one.id)]))}>
           ${icon("gauge", 16)} ${texts.measure}
         </button>
         ${stands ? this.stands(texts.driveHere, stands, "WAYPOINT") : nothing}

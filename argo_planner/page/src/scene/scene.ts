@@ -5,7 +5,7 @@ import { effect, signal } from "@preact/signals-core";
 import { isTyping } from "../frame/keys";
 import { nameOfKey } from "../model/outline";
 import { showNotice } from "../state/notices";
-import { selection } from "../state/plan";
+import { select, selection } from "../state/plan";
 import { hoveredLeg } from "../state/preview";
 import { mayPlan } from "../state/session";
 import { placingForm } from "../state/faults";
@@ -13,6 +13,7 @@ import { shownFloor, tool } from "../state/view";
 import { world } from "../state/world";
 import { t } from "../texts";
 import { customElement, html, nothing, PageElement, query } from "../ui/element";
+import { styled } from "../ui/styled";
 import "./bar";
 import { placeRobotText, placeGhostText } from "./overlay-texts";
 import "./card";
@@ -26,7 +27,7 @@ import { type Keyed, onSceneKey } from "./keys";
 import { ghost, ghostWords, hideGhost, moveGhostToRay, placeGhost, setsStart, activateNavigation, turnGhost, verdictWords } from "./navigate";
 import { clickCorner, corners, hideCorners, pointCorner, spannedBox } from "./obstacle-tool";
 import "./obstacle-form";
-import { PointerWatch } from "./pointer";
+import { type Frame, PointerWatch } from "./pointer";
 import { edgesMove } from "./settings";
 import { dispose } from "./stage";
 import { sceneStyle } from "./style";
@@ -53,6 +54,8 @@ export class ScenePanel extends PageElement {
 
   private readonly view = signal<SceneView | null>(null);
   private readonly broken = signal(false);
+  /** The frame that is being drawn. */
+  private readonly frame = signal<Frame | null>(null);
   private readonly announcement = signal("");
   private parts: { dispose(): void }[] = [];
   private stops: (() => void)[] = [];
@@ -176,6 +179,11 @@ export class ScenePanel extends PageElement {
           else selectTaskOfPath(way, add);
         }
       },
+      mayFrame: () => tool.value === "select",
+      framed: (frame: Frame, done: boolean) => {
+        this.frame.value = done ? null : frame;
+        if (done) select(view.tasksIn(frame));
+      },
       clickedRight: () => (tool.value = "select"),
       wheeled: (steps: number) => {
         if (tool.value !== "navigate") return false;
@@ -251,6 +259,14 @@ export class ScenePanel extends PageElement {
     this.saying = setTimeout(() => (this.announcement.value = words), SAID_AFTER_MS);
   }
 
+  private frameView() {
+    const frame = this.frame.value;
+    if (frame === null) return nothing;
+    const { left, top, right, bottom } = frame;
+    const place = { left: `${left}px`, top: `${top}px`, width: `${right - left}px`, height: `${bottom - top}px` };
+    return html`<div id="frame" aria-hidden="true" ${styled(place)}></div>`;
+  }
+
   override render() {
     const texts = t().scene;
     const view = this.view.value;
@@ -270,6 +286,7 @@ export class ScenePanel extends PageElement {
       >
         <canvas class=${tool.value}></canvas>
         <div id="labels" aria-hidden="true"></div>
+        ${this.frameView()}
         <div id="robot" aria-hidden="true" hidden></div>
         <div id="verdict" aria-hidden="true" hidden></div>
       </div>

@@ -123,6 +123,12 @@ export const sceneStyle = css`
   .label.behind {
     opacity: 0.62;
   }
+  #frame {
+    position: absolute;
+    border: 2px dashed var(--accent);
+    background: color-mix(in srgb, var(--accent) 12%, transparent);
+    pointer-events: none;
+  }
   #verdict,
   #robot {
     position: absolute;

@@ -8,7 +8,8 @@ import type { World } from "../api/types";
 import { publishTestInterface, removeTestInterface, type ArgoTestInterface } from "../frame/test-interface";
 import { floorOf } from "../model/standing-map";
 import { showError } from "../state/notices";
-import { planId, select, selection } from "../state/plan";
+import { taskKey } from "../model/outline";
+import { mission, planId, select, selection } from "../state/plan";
 import { look, shownFloor } from "../state/view";
 import { world } from "../state/world";
 import { SiteCamera } from "./camera";
@@ -19,6 +20,7 @@ import { GroundMarks, toneColour } from "./ground-marks";
 import { dependOn } from "../state/depend-on";
 import { Labels } from "./labels";
 import { type Mark, marks, openMark } from "./marks";
+import type { Frame } from "./pointer";
 import { labelsShown, hidden } from "./settings";
 import { Site } from "./site";
 import { Stage } from "./stage";
@@ -119,6 +121,17 @@ export class SceneView {
 
   markOf(key: string | null): Mark | null {
     return this.shown.find((mark) => mark.key === key) ?? null;
+  }
+
+  /** Return the keys of the tasks whose marks are in a frame, in the order of the list. */
+  tasksIn({ left, top, right, bottom }: Frame): string[] {
+    const found = new Set<string>();
+    for (const mark of this.shown) {
+      const seen = mark.tasks.length === 0 ? null : this.stage.project(mark.at);
+      if (seen !== null && seen.x >= left && seen.x <= right && seen.y >= top && seen.y <= bottom)
+        for (const key of mark.tasks) found.add(key);
+    }
+    return (mission.peek()?.tasks ?? []).map((task) => taskKey(task.name)).filter((key) => found.has(key));
   }
 
   /** Select the clicked mark. */

@@ -6,7 +6,7 @@ interface Sheet {
   readonly title: string;
   readonly keys: readonly (readonly [key: string, what: string])[];
 }
-type Sheets = Readonly<Record<"everywhere" | "list" | "adding" | "scene" | "script" | "draft" | "byHand", Sheet>>;
+type Sheets = Readonly<Record<"everywhere" | "mouse" | "list" | "adding" | "scene" | "script" | "draft" | "byHand", Sheet>>;
 
 export const keys = both<Sheets>(
   {
@@ -20,6 +20,19 @@ export const keys = both<Sheets>(
         ["F8", "start, watch and control the run"],
         ["F9", "take over the robot"],
         ["Esc", "leave the tool, close a message, clear the selection"],
+      ],
+    },
+    mouse: {
+      title: "Mouse",
+      keys: [
+        ["Click", "select a task, a checkpoint or a path"],
+        ["Ctrl+Click", "add it to the selection"],
+        ["Shift+Drag", "select the tasks in a frame of the site"],
+        ["Drag", "turn the site; move rows of the list"],
+        ["Right drag", "move the site"],
+        ["Wheel", "zoom; turn the ghost of the navigation tool"],
+        ["Right click", "leave the tool"],
+        ["Double click", "rename a row"],
       ],
     },
     list: {
@@ -98,6 +111,19 @@ export const keys = both<Sheets>(
         ["F8", "Fahrt starten, verfolgen und steuern"],
         ["F9", "den Roboter übernehmen"],
         ["Esc", "Werkzeug verlassen, Meldung schließen, Auswahl aufheben"],
+      ],
+    },
+    mouse: {
+      title: "Maus",
+      keys: [
+        ["Klick", "eine Aufgabe, einen Prüfpunkt oder einen Weg auswählen"],
+        ["Strg+Klick", "zur Auswahl hinzufügen"],
+        ["Umschalt+Ziehen", "die Aufgaben in einem Rahmen der Anlage auswählen"],
+        ["Ziehen", "die Anlage drehen; Zeilen der Liste verschieben"],
+        ["Rechts ziehen", "die Anlage verschieben"],
+        ["Rad", "vergrößern; den Geist des Navigationswerkzeugs drehen"],
+        ["Rechtsklick", "das Werkzeug verlassen"],
+        ["Doppelklick", "eine Zeile umbenennen"],
       ],
     },
     list: {

@@ -3,13 +3,14 @@
 import argparse
 import tempfile
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from http.client import HTTPConnection
 from itertools import pairwise
 from multiprocessing import Process
 from pathlib import Path
+from statistics import quantiles
 from threading import Barrier
 from typing import Any
 
@@ -165,14 +166,89 @@ def measure_hover(browsers: Browsers, service: Served, site: str, moves: int) ->
     browsers.close_windows()
 
 
+# Returns a promise of the ms from the next key or click until a condition holds. The list is asked
+# again and again between other work, so that what delays the page counts.
+LAP = """(condition) => {
+    const app = document.querySelector("argo-app").shadowRoot;
+    const list = app.querySelector("argo-list").shadowRoot;
+    const row = (name) => list.querySelector(`[role=treeitem][data-name="${name}"]`);
+    const holds = new Function("row", `return ${condition}`);
+    const channel = new MessageChannel();
+    let begun = null;
+    const begin = (event) => (begun ??= event.timeStamp);
+    for (const kind of ["keydown", "pointerdown"])
+        addEventListener(kind, begin, { capture: true, once: true });
+    window.lap = new Promise((done) => {
+        channel.port1.onmessage = () => {
+            if (begun !== null && holds(row)) done(performance.now() - begun);
+            else channel.port2.postMessage(null);
+        };
+        channel.port2.postMessage(null);
+    });
+}"""
+REPEATS = 15
+
+
+def measure_edits(browsers: Browsers, service: Served, counts: Sequence[int]) -> None:
+    """Print the ms that edits take until the list shows them, for missions of several sizes."""
+    people = {}
+    for count in counts:
+        id = service.create(f"Edits of {count}", mission(count, "umad"))
+        person = people[count] = browsers.person(f"http://{service.address}/?token={ALL}")
+        person.open(f"/missions/{id}")
+        wait_for_rows(person)
+        person.wait_for_scene()
+    laps: dict[tuple[str, int], list[float]] = {}
+    for repeat in range(REPEATS):
+        for count, person in people.items():
+            for act, took in _edit_laps(person, f"new {repeat}"):
+                laps.setdefault((act, count), []).append(took)
+    print("ms: median and p95, by number of tasks")
+    for act in dict.fromkeys(act for act, _ in laps):
+        took = {count: quantiles(laps[act, count], n=20) for count in counts}
+        parts = [f"{count:5}: {took[count][9]:6.0f} {took[count][18]:6.0f}" for count in counts]
+        ratio = took[counts[-1]][9] / took[counts[0]][9]
+        print(f"{act:10} {'   '.join(parts)}   ratio {ratio:.2f}")
+    browsers.close_windows()
+
+
+def _edit_laps(person: Person, name: str) -> Iterator[tuple[str, float]]:
+    """Yield the ms of some edits, each of which is undone."""
+    rows = person.page.locator("argo-list [role=treeitem]")
+
+    def lap(condition: str, act: Callable[[], object]) -> float:
+        person.evaluate(LAP, condition)
+        act()
+        took = float(person.evaluate("() => window.lap"))
+        expect(person.save_status).to_have_text("Saved")
+        person.page.wait_for_timeout(1500)  # until what follows an edit later has ended
+        return took
+
+    rows.nth(0).click()
+    yield "select", lap("row('T2').ariaSelected === 'true'", lambda: rows.nth(2).click())
+    person.key("F2")
+    person.type(name)
+    yield "rename", lap(f"row('{name}') !== null", lambda: person.key("Enter"))
+    yield "undo", lap("row('T2') !== null", lambda: person.key("Control+z"))
+    first = "row('T1').dataset.index > row('T2').dataset.index"
+    yield "move", lap(first, lambda: person.key("Alt+ArrowUp"))
+    yield "undo move", lap(f"!({first})", lambda: person.key("Control+z"))
+
+
 def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition(":")[0])
     parser.add_argument("--large", default="generated:floors=6,seed=7", metavar="SITE")
     parser.add_argument("--moves", type=int, default=200, help="moves of the pointer")
     parser.add_argument("--tasks", type=int, nargs="+", default=(200, 2_000))
     parser.add_argument("--pages", type=int, default=50, help="pages of the first mission")
+    parser.add_argument("--edits", type=int, nargs="+", metavar="TASKS", help="time edits only")
     given = parser.parse_args(arguments)
-    browsers = Browsers()
+    browsers = Browsers(scale=0.5, scene=0.1)
+    if given.edits:
+        with serving("umad") as service:
+            measure_edits(browsers, service, given.edits)
+        browsers.close()
+        return
     with serving(given.large) as service:
         measure_hover(browsers, service, given.large, given.moves)
     with serving("umad") as service:

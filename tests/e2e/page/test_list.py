@@ -282,10 +282,29 @@ def test_all_checkpoints_of_a_floor_are_added_at_once(ann, service, plan) -> Non
     speed.fill("0.2")
     speed.press("Enter")
     ann.wait_until(
-        lambda: [task["velocity"] for task in service.mission(plan)["tasks"][4:]]
-        == [0.2] * len(on_floor),
+        lambda: (
+            [task["velocity"] for task in service.mission(plan)["tasks"][4:]]
+            == [0.2] * len(on_floor)
+        ),
         "all of them have the speed",
     )
+
+
+@pytest.mark.long
+def test_the_list_is_filtered(ann, service, plan) -> None:
+    many = [{"name": f"T{n}", "action": "MEASURE", "object_id": "1"} for n in range(40)]
+    edits = [{"kind": "add_task", "task": task} for task in many]
+    assert service.command(plan, "*", *edits).status_code == 200
+    expect(ann.page.get_by_role("treeitem").nth(20)).to_be_attached()
+    ann.focus(ann.page.get_by_role("tree"))
+    ann.key("/")
+    ann.type("#1 t3")
+    expect_order(ann, "T3", *(f"T{n}" for n in range(30, 40)))
+    expect(ann.page.locator("argo-list .filter [role=status]")).to_have_text("11 of 44")
+    ann.key("ArrowDown", "ArrowDown")
+    expect(row(ann, "T30")).to_have_attribute("aria-selected", "true")
+    ann.click(ann.button("Show all tasks"))
+    expect(row(ann, "B2")).to_have_count(1)
 
 
 ROUND = """Mission Protocol

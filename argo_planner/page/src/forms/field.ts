@@ -20,6 +20,8 @@ export interface Question {
 /** Saves the typed or chosen value. Returns the reason of a refusal, a question, or null if it was saved. */
 export type Commit = (value: string) => Promise<string | Question | null> | string | Question | null;
 
+/** A longer choice gets its options when it may be opened. */
+const MOST_OPTIONS = 40;
 let count = 0;
 
 @customElement("argo-field")
@@ -94,6 +96,8 @@ export class FormField extends PageElement {
   @state() private typed: string | null = null;
   @state() private wrong: string | Question | null = null;
   @state() private overtaken = false;
+  /** Whether all options of a long choice are in the page; until it may be opened, the chosen one suffices. */
+  @state() private complete = false;
   /** The saving of the typed value that goes on. */
   private saving: Promise<void> | null = null;
   private readonly id_ = `field-${++count}`;
@@ -131,8 +135,11 @@ export class FormField extends PageElement {
         aria-describedby=${described}
         ?disabled=${this.disabled}
         @change=${this.onChange}
+        @pointerenter=${this.fill}
+        @pointerdown=${this.fill}
+        @focus=${this.fill}
       >
-        ${options(this.options.map(({ value, label }) => [value, label]), shown)}
+        ${options(this.shownOptions(shown), shown)}
       </select>`;
     else if (this.kind === "long")
       field = html`<textarea
@@ -165,6 +172,16 @@ export class FormField extends PageElement {
       ${this.wrong !== null || this.overtaken
         ? html`<div class="wrong" role="alert" id=${`${this.id_}-wrong`}>${this.complaint()}</div>`
         : nothing}`;
+  }
+
+  private readonly fill = (): void => {
+    this.complete = true;
+  };
+
+  private shownOptions(shown: string) {
+    const long = this.options.length > MOST_OPTIONS && !this.complete;
+    const all = long ? this.options.filter(({ value }) => value === shown) : this.options;
+    return all.map(({ value, label }) => [value, label] as const);
   }
 
   private complaint() {

@@ -2,9 +2,9 @@
 
 import type { Task, TimeWindow, Transition, WaitRule } from "../api/types";
 import { edit, editFromForm } from "../state/commands";
-import { tasksAfterStart, tasksByName } from "../state/plan";
+import { tasksByName } from "../state/plan";
 import { mayPlan } from "../state/session";
-import { taskLabel } from "../state/task-labels";
+import { laterTaskOptions, taskLabel } from "../state/task-labels";
 import { lookAt } from "../state/view";
 import { checkpointsById } from "../state/world";
 import { t } from "../texts";
@@ -247,5 +247,5 @@ function currentTask(task: Task): Task {
 
 /** Return the tasks that may follow. */
 function possibleFollowers(task: Task) {
-  return tasksAfterStart.value.filter((name) => name !== task.name).map((name) => ({ value: name, label: taskLabel(name) }));
+  return laterTaskOptions.value.filter(({ value }) => value !== task.name);
 }

@@ -11,7 +11,7 @@ import { planId, select, selection, tasksByName } from "../state/plan";
 import { mayPlan } from "../state/session";
 import { listShown, lookAt, pointedName, tool } from "../state/view";
 import { t } from "../texts";
-import { iconButton } from "../ui/controls";
+import { iconButton, valueOf } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, query, state } from "../ui/element";
 import { styled } from "../ui/styled";
 import { copySelection, deleteSelection, groupSelection, pasteTasks, renameRow } from "./actions";
@@ -24,7 +24,7 @@ import { marksOf } from "./marks";
 import "./problems";
 import "./reactions";
 import { nameOf, rowView, ROW_HEIGHT, rowStyles } from "./row";
-import { chooseRow, setFolded, folded, rowOf, shownRows, unfoldAround } from "./rows";
+import { allRows, chooseRow, filter, setFolded, folded, rowOf, shownRows, unfoldAround } from "./rows";
 
 const BEYOND = 12;
 
@@ -36,15 +36,35 @@ export class MissionList extends PageElement {
     css`
       :host {
         display: grid;
-        grid-template-rows: auto auto minmax(0, 1fr) auto;
+        grid-template-rows: auto auto auto minmax(0, 1fr) auto;
       }
       .tools {
+        grid-row: 1;
         display: flex;
         gap: 2px;
         padding: 6px;
         border-bottom: 1px solid var(--line);
       }
+      .filter {
+        display: flex;
+        align-items: center;
+        gap: 6px;
+        grid-row: 2;
+        padding: 4px 6px;
+        border-bottom: 1px solid var(--line);
+      }
+      .filter input {
+        flex: 1;
+        min-width: 0;
+      }
+      argo-problems {
+        grid-row: 3;
+      }
+      argo-reactions {
+        grid-row: 5;
+      }
       .tree {
+        grid-row: 4;
         position: relative;
         container-type: inline-size;
         overflow: auto;
@@ -75,6 +95,8 @@ export class MissionList extends PageElement {
 
   @query(".tree") private readonly tree!: HTMLElement;
   @query("argo-add") private readonly adding!: AddTasks;
+  /** Whether the field for the filter is open. */
+  @state() private filtering = false;
   @state() private top = 0;
   @state() private height = 800;
   /** What is being renamed, and the initial text of the field in its row. */
@@ -125,6 +147,10 @@ export class MissionList extends PageElement {
       <div class="tools" role="toolbar" aria-label=${texts.tasks}>
         <argo-add @focus-list=${this.focusTree}></argo-add>
         <span class="grow"></span>
+        ${iconButton("search", texts.filter, this.openFilter, {
+          title: `${texts.filter} (/)`,
+          expanded: this.filtering,
+        })}
         ${iconButton("group", texts.group, groupSelection, {
           title: `${texts.group} (g)`,
           disabled: !may || chosen.size === 0,
@@ -134,6 +160,7 @@ export class MissionList extends PageElement {
           disabled: !may || chosen.size === 0,
         })}
       </div>
+      ${this.filtering ? this.filterField() : nothing}
       <argo-problems></argo-problems>
       <div
         class="tree"
@@ -154,7 +181,9 @@ export class MissionList extends PageElement {
         @dragend=${this.drag.end}
         @drop=${this.drag.drop}
       >
-        ${shown.length === 0 ? html`<p class="empty dim">${texts.empty}</p>` : nothing}
+        ${shown.length === 0
+          ? html`<p class="empty dim">${filter.value.trim() === "" ? texts.empty : texts.noneMatches}</p>`
+          : nothing}
         <div
           class="all"
           role="presentation"
@@ -197,6 +226,47 @@ export class MissionList extends PageElement {
     });
   }
 
+  private readonly openFilter = (): void => {
+    this.filtering = true;
+    void this.updateComplete.then(() => this.renderRoot.querySelector<HTMLInputElement>("#filter")?.select());
+  };
+
+  private filterField() {
+    const texts = t().list;
+    const [shown, all] = [shownRows.value.length, allRows.value.length];
+    return html`<div class="filter">
+      <input
+        id="filter"
+        type="search"
+        aria-label=${texts.filter}
+        placeholder=${texts.filterHint}
+        autocomplete="off"
+        .value=${filter.value}
+        @input=${(event: Event) => (filter.value = valueOf(event))}
+        @keydown=${this.onFilterKey}
+      />
+      <span class="dim" role="status">${filter.value.trim() === "" ? nothing : texts.matching(shown, all)}</span>
+      ${iconButton("close", texts.endFilter, this.endFilter, { size: 14 })}
+    </div>`;
+  }
+
+  private onFilterKey(event: KeyboardEvent): void {
+    if (event.key === "Escape") this.endFilter();
+    else if (event.key === "Enter" || event.key === "ArrowDown") {
+      const [first] = shownRows.value;
+      if (first) chooseRow(first, false, false);
+      this.tree.focus();
+    } else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+
+  private readonly endFilter = (): void => {
+    filter.value = "";
+    this.filtering = false;
+    this.tree.focus();
+  };
+
   private onClick(event: MouseEvent): void {
     const row = rowAt(event);
     if (!row) {
@@ -222,8 +292,12 @@ export class MissionList extends PageElement {
   private readonly onGlobalKey = (event: KeyboardEvent): void => {
     if (event.defaultPrevented || isTyping(event) || planId.value === null) return;
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (!mayPlan() && event.key !== "v") return;
+    if (!mayPlan() && event.key !== "v" && event.key !== "/") return;
     const act = {
+      "/": () => {
+        listShown.value = true;
+        this.openFilter();
+      },
       m: () => {
         listShown.value = true;
         this.adding.openMeasure();

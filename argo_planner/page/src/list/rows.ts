@@ -2,13 +2,17 @@
 
 import { computed, effect, signal, untracked } from "@preact/signals-core";
 
-import { outline, visibleRows, type Row } from "../model/outline";
+import { matchingRows, outline, visibleRows, type Row } from "../model/outline";
 import { dependOn } from "../state/depend-on";
 import { renamedKeys, renames } from "../state/identity";
 import { mission, planId, select, selection } from "../state/plan";
+import { groupDetail, stepNumbers, taskDetail, taskTitle } from "../state/task-labels";
 
 /** Keys of the folded groups. */
 export const folded = signal<ReadonlySet<string>>(new Set());
+
+/** Words that the shown rows contain; empty: all are shown. */
+export const filter = signal("");
 
 /** Key of the row from which Shift extends the selection. */
 let anchor: string | null = null;
@@ -21,13 +25,29 @@ effect(() => {
 effect(() => {
   dependOn(planId);
   folded.value = new Set();
+  filter.value = "";
   anchor = null;
 });
 
 export const allRows = computed<readonly Row[]>(() =>
   mission.value === null ? [] : outline(mission.value),
 );
-export const shownRows = computed<readonly Row[]>(() => visibleRows(allRows.value, folded.value));
+/** The visible rows. While the list is filtered, folded groups show what matches in them. */
+export const shownRows = computed<readonly Row[]>(() => {
+  const words = filter.value.toLowerCase().split(/\s+/).filter(Boolean);
+  if (words.length === 0) return visibleRows(allRows.value, folded.value);
+  return matchingRows(allRows.value, (row) => {
+    const text = textOf(row).toLowerCase();
+    return words.every((word) => text.includes(word));
+  });
+});
+
+/** Return what a row shows, and its name. */
+function textOf(row: Row): string {
+  const number = stepNumbers.value.get(row.key) ?? "";
+  if (row.kind === "group") return `${number} ${row.group.name} ${groupDetail(row.group)}`;
+  return `${number} ${taskTitle(row.task)} ${row.task.name} ${taskDetail(row.task)}`;
+}
 
 /** Fold a group, or unfold it. */
 export function setFolded(row: Row, closed: boolean): void {

@@ -25,10 +25,12 @@ export function taskNames(mission: Mission): Set<string> {
   return new Set(mission.tasks.map((task) => task.name));
 }
 
+const NUMBERED = /^(WAYPOINT|WAIT) \d+$/;
+
 /** Return whether a task has a name of its own, and not one that its action and its number make, as `MEASURE 14`. */
 export function hasOwnName({ name, action, object_id }: Task): boolean {
   const plain = name.replace(/ \(\d+\)$/, "");
   if (action === "MEASURE") return plain !== `MEASURE ${object_id ?? ""}`;
   if (action === "START") return plain !== "START";
-  return !new RegExp(`^(${action}( \\d+)?|DOCK)$`).test(plain);
+  return plain !== "DOCK" && plain !== action && !NUMBERED.test(plain);
 }

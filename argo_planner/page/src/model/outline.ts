@@ -88,6 +88,18 @@ export function visibleRows(rows: readonly Row[], folded: ReadonlySet<string>): 
   return shown;
 }
 
+/** Return the rows that match, each with the groups around it. */
+export function matchingRows(rows: readonly Row[], matches: (row: Row) => boolean): Row[] {
+  const found = new Set<Row>();
+  const open: Row[] = [];
+  for (const row of rows) {
+    open.length = Math.min(open.length, row.depth);
+    if (matches(row)) for (const one of [...open, row]) found.add(one);
+    if (row.kind === "group") open.push(row);
+  }
+  return rows.filter((row) => found.has(row));
+}
+
 /** Return the name of a group without the groups around it. */
 export function ownName(group: string): string {
   return group.slice(group.lastIndexOf("/") + 1);

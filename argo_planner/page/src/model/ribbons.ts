@@ -45,12 +45,12 @@ export function ribbonPaths(legs: readonly RibbonLeg[]): RibbonPath[] {
   const driven = new Map<string, Set<number>>();
   return legs.map((leg) => {
     const plain = sampleLeg(leg);
-    const lanes = plain.map((one) => Math.min(MOST_LANES - 1, earlierLegs(driven, one)));
+    const lanes = plain.map((one) => earlierLegs(driven, one));
     for (const one of plain) {
       const key = cell(one, 0, 0);
       const there = driven.get(key);
-      if (there) there.add(leg.way);
-      else driven.set(key, new Set([leg.way]));
+      if (there === undefined) driven.set(key, new Set([leg.way]));
+      else if (there.size < MOST_LANES - 1) there.add(leg.way); // more make no difference
     }
     return { ...leg, samples: shiftedAside(plain, lanes) };
   });
@@ -89,11 +89,15 @@ function sampleLeg({ points, start }: RibbonLeg): Sample[] {
   return samples;
 }
 
-/** Return the number of earlier legs here, in either direction. */
+/** Return the number of earlier legs here, in either direction, up to the highest lane. */
 function earlierLegs(driven: ReadonlyMap<string, ReadonlySet<number>>, sample: Sample): number {
   const found = new Set<number>();
   for (let i = -1; i <= 1; i++)
-    for (let j = -1; j <= 1; j++) for (const way of driven.get(cell(sample, i, j)) ?? []) found.add(way);
+    for (let j = -1; j <= 1; j++)
+      for (const way of driven.get(cell(sample, i, j)) ?? []) {
+        found.add(way);
+        if (found.size === MOST_LANES - 1) return found.size;
+      }
   return found.size;
 }
 

@@ -116,6 +116,7 @@ function depth(rows: readonly Row[], index: number): number {
 /** Return whether a row or a group around it is selected. */
 function inSelection(rows: readonly Row[], row: Row, selection: readonly string[]): boolean {
   if (selection.includes(row.key)) return true;
+  if (row.inside === null) return false;
   const around = rows.find((one) => one.kind === "group" && one.group.name === row.inside);
   return around !== undefined && inSelection(rows, around, selection);
 }

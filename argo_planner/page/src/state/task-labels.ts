@@ -9,7 +9,7 @@ import { countSteps, readSteps, type ReadSteps, type StepNumbers } from "../mode
 import { floorOf } from "../model/standing-map";
 import { t } from "../texts";
 import { bound, figure, percent, seconds, tenths, unitText } from "../ui/figures";
-import { mission, planId, revision, tasksByName } from "./plan";
+import { mission, planId, revision, tasksAfterStart, tasksByName } from "./plan";
 import { missionSentences } from "./sentences";
 import { checkpointsById, world } from "./world";
 
@@ -37,6 +37,11 @@ export function taskLabel(name: string): string {
   const task = tasksByName.value.get(name);
   return task === undefined ? name : `${numberOf(name)} ${taskTitle(task)}`.trim();
 }
+
+/** Values and labels of the tasks after START, for choices. */
+export const laterTaskOptions = computed(() =>
+  tasksAfterStart.value.map((name) => ({ value: name, label: taskLabel(name) })),
+);
 
 /** Return the number and the name of a group. */
 export function groupLabel(name: string): string {

@@ -1,6 +1,7 @@
 /** Technical terms: actions, events, responses. */
 
 import { both } from "./both";
+import { numberFormat } from "./number-format";
 
 export const words = both(
   {
@@ -82,7 +83,7 @@ export const words = both(
 /** Format a time (s) as `1:05:20 h`, `5:20 min` or `12 s`; `toWhole` rounds it. */
 function duration(s: number, language: string, toWhole: (value: number) => number): string {
   const tenths = toWhole(10 * s) / 10;
-  if (tenths < 60) return `${tenths.toLocaleString(language)} s`;
+  if (tenths < 60) return `${numberFormat(language, 0, 1).format(tenths)} s`;
   const whole = toWhole(s);
   const [hours, minutes] = [Math.floor(whole / 3600), Math.floor((whole % 3600) / 60)];
   const tail = String(whole % 60).padStart(2, "0");

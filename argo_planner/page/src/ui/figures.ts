@@ -1,15 +1,16 @@
 /** Numbers as people write them, in the language of the page. */
 
 import { dateLocale, language, t } from "../texts";
+import { numberFormat } from "../texts/number-format";
 
 /** Format a number with at most `digits` decimals. */
 export function figure(value: number, digits = 2): string {
-  return value.toLocaleString(language.value, { maximumFractionDigits: digits });
+  return numberFormat(language.value, 0, digits).format(value);
 }
 
 /** Format a number with one decimal, so that numbers below each other are alike. */
 export function tenths(value: number): string {
-  return value.toLocaleString(language.value, { minimumFractionDigits: 1, maximumFractionDigits: 1 });
+  return numberFormat(language.value, 1, 1).format(value);
 }
 
 /** Format a limit of a range; null: it has no limit on this side. */

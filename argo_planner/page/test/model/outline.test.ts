@@ -1,6 +1,6 @@
 import { expect, test } from "vitest";
 
-import { outline, visibleRows } from "../../src/model/outline";
+import { matchingRows, outline, visibleRows } from "../../src/model/outline";
 import { group, mission } from "./missions";
 
 const NESTED = mission("a b c d e", group("G", "b", "d"), group("G/H", "c", "d"));
@@ -33,4 +33,10 @@ test("each row knows the innermost group around it", () => {
 
 test("groups of missing tasks are left out", () => {
   expect(drawn(outline(mission("a", group("G", "x", "y"))))).toEqual(["task:a"]);
+});
+
+test("what matches is shown with the groups around it", () => {
+  const rows = matchingRows(outline(NESTED), ({ key }) => key === "task:c" || key === "task:e");
+  expect(drawn(rows)).toEqual(["group:G", "-group:G/H", "--task:c", "task:e"]);
+  expect(drawn(matchingRows(outline(NESTED), ({ key }) => key === "group:G"))).toEqual(["group:G"]);
 });

@@ -12,7 +12,7 @@ from argo_compiler.base.errors import INCOMPLETE, ArgoError
 from argo_compiler.base.garbage_collector import enable_garbage_collector
 from argo_compiler.base.version import __version__
 from argo_planner.lazy_group import LazyCommand, LazyGroup
-from argo_planner.terminal.language import VARIABLE, Language, set_language
+from argo_planner.terminal.language import VARIABLE, MessageLanguage, set_language
 from argo_planner.terminal.output import EXIT_INCOMPLETE, guard_stdout_and_stderr
 from argo_planner.terminal.signals import SignalWatch, ignore_signals, raise_on_signals
 from argo_planner.terminal.verbosity import set_verbosity
@@ -150,7 +150,7 @@ def argo(
         bool, typer.Option("-q", "--quiet", help="show results and errors only")
     ] = False,
     language: Annotated[
-        Language | None,
+        MessageLanguage | None,
         typer.Option(help="language of errors and diagnostics", envvar=VARIABLE, show_envvar=True),
     ] = None,
 ) -> None:

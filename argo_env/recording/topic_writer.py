@@ -39,11 +39,16 @@ class TopicWriter:
         self._write_message(topic, message.SerializeToString(), t)
 
     def put_json(self, topic: str, message: Model, t: float) -> None:
-        """Write a model as JSON at the time t (s); fields that are None are left out."""
+        """Write a model as JSON at the time t (s).
+
+        Left out are fields that are None, and wordings of texts: a recording is in English.
+        """
         if topic not in self._channels:
             schema = json.dumps(plain_schema(type(message)), ensure_ascii=False).encode()
             self._open_channel(topic, "json", f"argo.{type(message).__name__}", schema)
-        self._write_message(topic, message.model_dump_json(exclude_none=True).encode(), t)
+        wordings = {name for name in type(message).model_fields if name.endswith(_WORDING)}
+        content = message.model_dump_json(exclude_none=True, exclude=wordings)
+        self._write_message(topic, content.encode(), t)
 
     def attach(self, name: str, media_type: str, content: str | bytes, t: float = 0.0) -> None:
         """Store a file of the run, at the time t (s); without an override, nothing is stored."""
@@ -70,13 +75,14 @@ class TopicWriter:
 
 
 Schema = dict[str, Any]
+_WORDING = "_wording"
 
 
 def plain_schema(model: type[Model]) -> Schema:
     """Return the JSON schema of a model as viewers support it: without references and null values.
 
     Nested models are inlined. Fields without such a schema, such as mappings and fields of several
-    types, are left out.
+    types, and wordings of texts are left out.
     """
     full = model.model_json_schema(mode="serialization")
     return _plain_object(full, full.get("$defs", {})) | {"title": full["title"]}
@@ -86,6 +92,7 @@ def _plain_object(schema: Schema, definitions: Schema) -> Schema:
     plain = {
         name: _plain_field(field, definitions)
         for name, field in schema.get("properties", {}).items()
+        if not name.endswith(_WORDING)
     }
     return {"type": "object", "properties": {k: v for k, v in plain.items() if v is not None}}
 

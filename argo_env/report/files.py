@@ -46,6 +46,7 @@ _WORDINGS: Any = {
     "tasks": {"__all__": {"reason_wording"}},
     "mishaps": {"__all__": {"detail_wording"}},
     "anomalies": {"__all__": {"detail_wording"}},
+    "findings": {"__all__": {"detail_wording"}},
 }
 """what a report leaves out: it is in English"""
 

@@ -6,14 +6,14 @@ from enum import StrEnum
 VARIABLE = "ARGO_LANGUAGE"
 
 
-class Language(StrEnum):
-    """Language of the messages of the command."""
+class MessageLanguage(StrEnum):
+    """MessageLanguage of the messages of the command."""
 
     ENGLISH = "en"
     GERMAN = "de"
 
 
-def set_language(language: Language | None) -> None:
+def set_language(language: MessageLanguage | None) -> None:
     """Set the language of all further messages; None leaves that of the environment."""
     if language is not None:
         os.environ[VARIABLE] = language
@@ -24,7 +24,7 @@ def in_chosen_language(text: str) -> str:
 
     The catalogue of German messages is read only if German is chosen.
     """
-    if os.environ.get(VARIABLE, "")[:2].lower() != Language.GERMAN:
+    if os.environ.get(VARIABLE, "")[:2].lower() != MessageLanguage.GERMAN:
         return text
     from argo_compiler.base.translation import in_german
 

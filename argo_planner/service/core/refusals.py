@@ -66,9 +66,15 @@ class FiledSince(Conflict):
 
     def __init__(self, name: str, folder: str) -> None:
         self.name, self.folder = name, folder
-        there = f"in the folder '{folder}'" if folder else "in no folder"
+        there = Message("in no folder")
+        if folder:
+            there = Message("in the folder '{folder}'", folder=folder)
         super().__init__(
-            f"somebody has moved '{name}' in the meantime: it is {there} now; move it from there"
+            Message(
+                "somebody has moved '{name}' in the meantime: it is {there}; move it from there",
+                name=name,
+                there=there,
+            )
         )
 
     def __reduce__(self) -> tuple[object, ...]:

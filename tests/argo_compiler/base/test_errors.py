@@ -26,6 +26,7 @@ from argo_planner.service.core.refusals import (
     ChangedSince,
     CommandIdTaken,
     EditRefused,
+    FiledSince,
     NothingToUndo,
     PlanTooLarge,
     StaleRevision,
@@ -63,6 +64,8 @@ MADE = [
     StaleRevision(3, 5, ()),
     ChangedSince("by bob", FINDINGS),
     EditRefused("no such place", 1, FINDINGS),
+    FiledSince("Night round", ""),
+    FiledSince("Night round", "Floor 1"),
 ]
 
 

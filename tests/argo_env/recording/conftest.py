@@ -8,6 +8,8 @@ from argo_compiler.hfsm import Occurred, Pause, Resume
 from argo_compiler.il import EventKind, Group
 from argo_env.recording.files import recording_to
 from argo_env.recording.reader import read_recording
+from argo_env.report.files import to_json
+from argo_env.run.record import RunRecord
 from argo_env.run.session import simulate
 from argo_env.run.spec import RunSpec, logged_events
 from tests.yard import measure, mission, opened, shelter, waypoint
@@ -35,6 +37,11 @@ SPEC = RunSpec(
 )
 
 
+def as_stored(record: RunRecord) -> RunRecord:
+    """Return a record as reports and recordings store it: in English, without wordings."""
+    return RunRecord.model_validate_json(to_json(record))
+
+
 @pytest.fixture(scope="session")
 def record_run(yard):
     """Return a function that runs the plan, records it to a file and returns the run's record."""
@@ -55,5 +62,9 @@ def recorded(record_run, tmp_path_factory):
     file = folder / "run.mcap"
     record = record_run(file, source=source)
     return SimpleNamespace(
-        record=record, file=file, content=file.read_bytes(), decoded=read_recording(file)
+        record=record,
+        stored=as_stored(record),
+        file=file,
+        content=file.read_bytes(),
+        decoded=read_recording(file),
     )

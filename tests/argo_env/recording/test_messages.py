@@ -208,7 +208,7 @@ def colour_of(primitive):
 
 
 def test_readings_tasks_and_trace_are_those_of_the_record(contents, recorded) -> None:
-    record = recorded.record
+    record = recorded.stored
     for topic, models in (
         ("/readings", record.readings), ("/tasks", record.tasks), ("/trace", record.trace),
         ("/findings", record.anomalies),

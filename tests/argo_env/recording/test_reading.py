@@ -20,7 +20,7 @@ from argo_env.report import write_report
 from argo_env.run.journal import open_journal
 from argo_env.run.session import resume, simulate
 from argo_env.run.spec import RunSpec
-from tests.argo_env.recording.conftest import PLAN, SPEC
+from tests.argo_env.recording.conftest import PLAN, SPEC, as_stored
 from tests.conftest import examples
 from tests.yard import Watching, cut, opened
 
@@ -38,7 +38,7 @@ def one_process():
 
 def test_the_report_can_be_made_again(recorded, yard, tmp_path: Path) -> None:
     recording = recorded.decoded
-    assert recording.record == recorded.record
+    assert recording.record == recorded.stored
     assert recording.site == yard.site
     assert (recording.flaw, recording.facts["seed"]) == (None, "3")
     write_report(recorded.record, yard.site, tmp_path / "of the run")
@@ -78,7 +78,7 @@ def test_an_interrupted_run_is_recorded_with_its_record_so_far(yard, tmp_path: P
             SPEC, opened(yard), observers=[recorder], interrupted=lambda: next(checks)
         )
     recording = read_recording(file)
-    assert recording.record == record
+    assert recording.record == as_stored(record)
     assert (recording.flaw, record.result.ended) == (None, False)
 
 
@@ -94,7 +94,7 @@ def test_a_resumed_run_is_recorded_with_the_record_of_all_of_it(
         resumed_at = journal.entries[-1].t
         record = resume(journal, opened(yard), observers=[recorder])
     recording = read_recording(file)
-    assert recording.record == record
+    assert recording.record == as_stored(record)
     assert record.resumed == (resumed_at,)
     assert 0 < recording.messages["/pose"] < recorded.decoded.messages["/pose"]
 
@@ -109,9 +109,9 @@ def test_a_file_that_breaks_off_is_read_up_to_there(recorded, tmp_path_factory, 
         assert share < 0.5, "half of the file has the start of the run"
         return
     assert recording.flaw
-    assert recording.record in (None, recorded.record)
+    assert recording.record in (None, recorded.stored)
     for name in ("readings", "tasks"):
-        rest, all_ = getattr(recording, name), getattr(recorded.record, name)
+        rest, all_ = getattr(recording, name), getattr(recorded.stored, name)
         assert rest == all_[: len(rest)]
     assert 0.0 <= recording.until <= recorded.record.result.duration
     if recording.record is None:
@@ -137,7 +137,7 @@ def test_a_damaged_file_is_refused_or_read_correctly(recorded, tmp_path_factory,
     damaged = tmp_path_factory.mktemp("damaged") / "damaged.mcap"
     damaged.write_bytes(content)
     recording = _read_or_none(damaged)
-    assert recording is None or (recording.flaw and recording.record in (None, recorded.record))
+    assert recording is None or (recording.flaw and recording.record in (None, recorded.stored))
 
 
 def test_all_damage_to_the_end_is_noticed(recorded, tmp_path: Path) -> None:
@@ -151,7 +151,7 @@ def test_all_damage_to_the_end_is_noticed(recorded, tmp_path: Path) -> None:
         file.write_bytes(content)
         recording = read_recording(file)
         assert recording.flaw == "has a missing or damaged index"
-        assert recording.record == recorded.record
+        assert recording.record == recorded.stored
 
 
 def test_bytes_after_the_end_are_counted(recorded, tmp_path: Path) -> None:
@@ -162,7 +162,7 @@ def test_bytes_after_the_end_are_counted(recorded, tmp_path: Path) -> None:
         file.write_bytes(whole + more)
         recording = read_recording(file)
         assert recording.flaw == f"has {number} after its end"
-        assert recording.record == recorded.record
+        assert recording.record == recorded.stored
 
 
 def test_a_file_without_its_middle_is_refused_with_a_reason(recorded, tmp_path: Path) -> None:
@@ -255,7 +255,7 @@ def test_a_chunk_larger_than_any_is_damage(tmp_path: Path, monkeypatch) -> None:
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such files")
 def test_a_recording_that_is_open_already_is_read(recorded) -> None:
     with recorded.file.open("rb") as file:
-        assert read_recording(Path(f"/dev/fd/{file.fileno()}")).record == recorded.record
+        assert read_recording(Path(f"/dev/fd/{file.fileno()}")).record == recorded.stored
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such files")

@@ -136,7 +136,10 @@ def test_an_order_that_can_not_be_stored_says_so_and_is_stored_when_there_is_roo
         while service.client.get(f"/api/jobs/{job}").json()["problem"] is not None:
             time.sleep(0.05)
     with served(tmp_path, site) as service:
-        assert service.client.get(f"/api/jobs/{job}").json() == found | {"problem": None}
+        assert service.client.get(f"/api/jobs/{job}").json() == found | {
+            "problem": None,
+            "problem_wording": None,
+        }
 
 
 def test_an_order_of_an_earlier_revision_is_not_accepted(service: Served) -> None:

@@ -40,7 +40,7 @@ def test_a_mission_that_somebody_else_has_moved_stays_there(service: Served) -> 
     id = service.create("Round")
     file(service, id, "Weekly", seen="")
     refused = problem(file(service, id, "Daily", seen=""), 409, "filed-since")
-    assert "in the folder 'Weekly' now" in refused["detail"]
+    assert "in the folder 'Weekly'" in refused["detail"]
     assert summary(service, id)["folder"] == "Weekly"
     assert file(service, id, "Daily", seen="Weekly").status_code == 200
 

@@ -56,7 +56,7 @@ def test_a_run_is_started_followed_controlled_and_reported(service: Served, id: 
     live = service.socket("/api/robot/live", {"authorization": f"Bearer {ALL}"})
     assert json.loads(live.recv())["kind"] == "state"
     run = start(service, id, speed=20.0)["id"]
-    refused = service.run(id, client=service.as_("bob"))
+    refused = service.run(id, client=service.as_("bob"), drive="route")
     assert "ann has begun run" in problem(refused, 409, "conflict")["detail"]
     wait_for(service, run, moving=True)
     assert ask(service, run, "pause")["progress"] == "confirmed"
@@ -155,6 +155,7 @@ def test_the_kinds_of_faults_are_listed_and_those_that_do_not_fit_are_refused_at
     assert "rate" in too_large.text
 
 
+@pytest.mark.physics
 def test_faults_have_places_sizes_and_times(service: Served, id: str) -> None:
     faults = [
         {"kind": "gas_leak", "place": [9.0, 3.5, 0.8], "at": 20.0, "until": 110.0},

@@ -335,7 +335,7 @@ export class ArgoApp extends PageElement {
     const ofMission = (part: unknown) => keyed(planId.value, part);
     const looks = `${behind ? "behind" : ""} ${listShown.value ? "list-shown" : ""}`;
     return html`<main class=${looks} ?inert=${behind}>
-      ${ofMission(html`<argo-list @keydown=${this.onListKey}></argo-list>`)}
+      ${ofMission(html`<argo-list></argo-list>`)}
       <div class="work" @pointerdown=${() => (listShown.value = false)}>
       <argo-scene><p class="dim loading">${t().scene.loading}</p></argo-scene>
       ${ofMission(html`<argo-strip></argo-strip>`)}
@@ -361,11 +361,6 @@ export class ArgoApp extends PageElement {
       </aside>
       </div>
     </main>`;
-  }
-
-  /** Close the drawer of the list by Escape, unless something in the list has used it. */
-  private onListKey(event: KeyboardEvent): void {
-    if (event.key === "Escape" && !event.defaultPrevented) listShown.value = false;
   }
 
   private onTabKey(event: KeyboardEvent): void {

@@ -12,7 +12,7 @@ import { isUnderWay } from "../model/run-mode";
 import { sendRequest, pendingRequests } from "../state/requests";
 import { run, runIsOn, showRun } from "../state/run";
 import { mayOperate, mayPlan } from "../state/session";
-import { panel, tool } from "../state/view";
+import { listShown, panel, tool } from "../state/view";
 import { t } from "../texts";
 import { css, customElement, html, PageElement, query } from "../ui/element";
 
@@ -95,6 +95,7 @@ export class PageKeys extends PageElement {
     else if (key === "p" && !command && !event.altKey && planId.value !== null) void openPlans("plans");
     else if (key === "f8" && planId.value !== null) openRun();
     else if (key === "f9" && !event.repeat && canTakeOver()) void takeOver();
+    else if (key === "escape" && listShown.value) listShown.value = false;
     else if (key === "escape" && tool.value !== "select") {
       tool.value = "select";
       dispatchEvent(new CustomEvent("focus-list"));

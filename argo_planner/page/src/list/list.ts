@@ -9,7 +9,7 @@ import { nameOfKey, type Row } from "../model/outline";
 import { identityOf } from "../state/identity";
 import { planId, select, selection, tasksByName } from "../state/plan";
 import { mayPlan } from "../state/session";
-import { listShown, lookAt, pointedName, tool } from "../state/view";
+import { lookAt, pointedName, showList, tool } from "../state/view";
 import { t } from "../texts";
 import { iconButton, valueOf } from "../ui/controls";
 import { css, customElement, html, nothing, PageElement, query, state } from "../ui/element";
@@ -295,11 +295,11 @@ export class MissionList extends PageElement {
     if (!mayPlan() && event.key !== "v" && event.key !== "/") return;
     const act = {
       "/": () => {
-        listShown.value = true;
+        showList();
         this.openFilter();
       },
       m: () => {
-        listShown.value = true;
+        showList();
         this.adding.openMeasure();
       },
       g: () => void groupSelection(),
@@ -310,7 +310,7 @@ export class MissionList extends PageElement {
       n: () => (tool.value = tool.value === "navigate" ? "select" : "navigate"),
       o: () => (tool.value = tool.value === "obstacle" ? "select" : "obstacle"),
       w: () => {
-        listShown.value = true;
+        showList();
         this.adding.addAtPlace();
       },
     }[event.key];

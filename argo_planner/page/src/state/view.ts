@@ -32,8 +32,13 @@ export function lookAt(task: Task): void {
 export type Panel = "properties" | "script" | "route" | "evaluate" | "run";
 export const panel = signal<Panel>("properties");
 
-/** Whether the list is open on narrow pages, where it is a drawer. */
+/** Whether the drawer is open that the list is on narrow pages. */
 export const listShown = signal(false);
+
+/** Show the list: on narrow pages, open its drawer. */
+export function showList(): void {
+  listShown.value = matchMedia("(max-width: 719px)").matches;
+}
 
 /** Reset the view and the tools when another mission is opened. */
 export function resetView(): void {

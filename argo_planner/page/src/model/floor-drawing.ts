@@ -94,7 +94,7 @@ function placeOf(task: Task, mission: Mission, site: World, checkpoints: Readonl
 }
 
 /** Return the pose of a task; START without a pose is at the dock of its area. */
-function poseOfTask(task: Task, mission: Mission, site: World): Pose | null {
+export function poseOfTask(task: Task, mission: Mission, site: World): Pose | null {
   if (task.pose) return task.pose;
   if (task.action !== "START") return null;
   return (site.docks.find((dock) => dock.area === mission.start_area) ?? site.docks[0])?.pose ?? null;

@@ -43,18 +43,19 @@ export function readSteps(mission: Mission, entries: MissionReading["entries"]):
 export function countSteps(mission: Mission, unusual: ReadonlySet<string>): StepNumbers {
   const numbers = new Map<string, string>();
   const at = positions(mission);
-  const starting = new Map<string, string>();
-  for (const { name, start } of mission.groups) if (unusual.has(groupKey(name))) starting.set(start, name);
+  const patrols = new Map(
+    mission.groups.filter(({ name }) => unusual.has(groupKey(name))).map((group) => [group.start, group]),
+  );
   let step = 0;
   let part = 0;
   let last = -1; // index of the last task of the step that is a group
   let ended = 0;
   mission.tasks.forEach((task, index) => {
-    const patrol = starting.get(task.name);
+    const patrol = patrols.get(task.name);
     if (patrol !== undefined) {
-      numbers.set(groupKey(patrol), String(++step));
+      numbers.set(groupKey(patrol.name), String(++step));
       part = 0;
-      last = at.get(mission.groups.find((group) => group.name === patrol)?.end ?? "") ?? -1;
+      last = at.get(patrol.end) ?? -1;
     }
     const key = taskKey(task.name);
     if (index <= last) numbers.set(key, `${step}.${++part}`);

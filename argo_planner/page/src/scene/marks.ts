@@ -4,9 +4,9 @@ import { computed, signal } from "@preact/signals-core";
 import { Vector3 } from "three";
 
 import type { Obstacle, Pose, Task, World, WorldCheckpoint } from "../api/types";
+import { floorNumber, poseOfTask } from "../model/floor-drawing";
 import { taskKey } from "../model/outline";
 import { markPoint } from "../model/faults";
-import { floorOf } from "../model/standing-map";
 import { mission, planId, select, selection } from "../state/plan";
 import { faultsOf, shownFaultList, type FaultList } from "../state/faults";
 import { preview } from "../state/preview";
@@ -118,7 +118,7 @@ function checkpointMark(checkpoint: WorldCheckpoint): Mark {
 
 /** Return the default fields of a mark at a pose, raised by `raised` m. */
 function fieldsAtPose(site: World, { x, y, z }: Pose, raised = RAISED) {
-  const floor = floorOf(site.floors, z)?.number ?? 1;
+  const floor = floorNumber(site.floors, z);
   return { at: new Vector3(x, y, z + raised), floor, numbers: "", value: "", tasks: [] };
 }
 
@@ -144,12 +144,9 @@ function taskMarks(site: World): Mark[] {
   return found;
 }
 
-/** Return the pose of a task; START without a pose is at the dock of its area. */
+/** Return the pose of a task of the open mission. */
 export function poseOf(task: Task, site: World): Pose | null {
-  if (task.pose) return task.pose;
-  if (task.action !== "START") return null;
-  const area = mission.value?.start_area ?? null;
-  return (site.docks.find((dock) => dock.area === area) ?? site.docks[0])?.pose ?? null;
+  return mission.value && poseOfTask(task, mission.value, site);
 }
 
 function placeMarks(site: World): Mark[] {

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from fastapi import Response
 
 from argo_compiler.base.errors import Invalid
+from argo_compiler.base.message import Message
 from argo_compiler.base.model import Model
 from argo_env.faults.description import FaultDescription, describe_faults
 from argo_env.faults.kinds import AnyFault, find_site_errors
@@ -29,4 +30,4 @@ async def list_faults(service: Service, _: Viewer) -> Response:
 def require_faults_on_site(faults: Sequence[AnyFault], site: Site, seed: int) -> None:
     """Raise Invalid, with the indices in the list, for faults that do not fit the site."""
     if errors := find_site_errors(faults, site, seed):
-        raise Invalid("; ".join(errors.values()))
+        raise Invalid(Message("{errors:;}", errors=tuple(errors.values())))

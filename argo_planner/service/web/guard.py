@@ -33,9 +33,9 @@ from argo_planner.service.web.upload_limits import (
 LOOPBACK = ("localhost", "127.0.0.1", "[::1]")
 
 _POLICY = (
-    "default-src 'self'; script-src 'self'; style-src 'self'; img-src 'self' "
-    "data: blob:; connect-src 'self'; worker-src 'self' blob:; object-src "
-    "'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    "default-src 'self'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
+    "connect-src 'self'; worker-src 'self' blob:; object-src 'none'; base-uri 'none'; "
+    "form-action 'none'; frame-ancestors 'none'"
 )
 _HEADERS = {
     "content-security-policy": _POLICY,
